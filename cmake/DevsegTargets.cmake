@@ -1,0 +1,16 @@
+# devseg_target(NAME): the house's compile settings for one target of this project.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+
+function(devseg_target name)
+    target_compile_options(${name} PRIVATE
+        -Wall -Wextra -Wshadow -Wpedantic -Wconversion -Werror)
+    # Contraction into fused multiply-adds depends on the compiler's mood and the target CPU:
+    # switched off, so that the same input gives the same bytes everywhere.
+    target_compile_options(${name} PRIVATE -ffp-contract=off)
+    if(DEVSEG_SANITIZE)
+        target_compile_options(${name} PRIVATE
+            -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+        target_link_options(${name} PRIVATE -fsanitize=address,undefined)
+    endif()
+endfunction()

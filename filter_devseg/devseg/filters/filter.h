@@ -1,0 +1,113 @@
+// A filter, declared once: both host adapters, the documentation and the tests read these records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "devseg/mesh/charts.h"
+#include "devseg/mesh/input_gate.h"
+#include "devseg/mesh/texture.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+
+using Color = std::array<std::uint8_t, 3>; // red, green, blue
+
+enum class ParameterKind { boolean, integer, real, choice };
+using ParameterValue = std::variant<bool, int, double>; // a choice is the int of its position
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+struct Parameter {
+    std::string name;  // snake_case: the word in C++, scripts and Python
+    std::string label; // for dialogs
+    std::string help;  // meaning, unit, usual values
+    ParameterKind kind = ParameterKind::real;
+    ParameterValue default_value;
+    double minimum = 0.0; // integers and reals
+    double maximum = 0.0;
+    std::vector<std::string> choices;
+};
+
+/// A number that a filter returns. Text and unsigned sizes do not survive the hosts.
+using ResultValue = std::variant<bool, int, double, std::vector<double>>;
+using ResultValues = std::vector<std::pair<std::string, ResultValue>>;
+struct ResultField {
+    std::string name;
+    std::string meaning; // with unit
+};
+
+/// The menu of the host that the filter belongs to.
+enum class FilterCategory { remeshing, texture, color, measure };
+
+/// What a filter leaves on the mesh, as bits.
+enum Writes : unsigned {
+    writes_nothing = 0,
+    writes_charts = 1, // chart_id, seam_edges and the face-edge selection
+    writes_quality = 2,
+    writes_color = 4,
+    writes_uv = 8
+};
+
+/// What filters see of a mesh: checked, in internal units.
+struct FilterInput {
+    const Mesh& mesh;
+    std::optional<ChartMap> charts; // from chart_id and seam_edges, if the mesh has them
+    std::optional<CornerUv> uv;     // wedge texture coordinates, if the mesh has them
+};
+
+struct FilterOutput {
+    std::optional<ChartMap> charts;
+    std::optional<std::vector<double>> face_quality; // #F
+    std::optional<std::vector<Color>> face_color;    // #F
+    std::optional<CornerUv> uv;
+    ResultValues values;
+    std::vector<std::string> notes; // for the user, one sentence each
+};
+
+struct FilterDeclaration {
+    std::string menu_name;
+    std::string python_name;
+    std::string help; // HTML
+    FilterCategory category = FilterCategory::remeshing;
+    unsigned writes = writes_nothing;
+    bool needs_uv = false;
+    std::vector<Parameter> parameters;
+    std::vector<ResultField> results;
+    std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
+};
+
+/// All filters of the suite, in the order of the menus.
+const std::vector<FilterDeclaration>& filter_table();
+
+/// A mesh as a host has it; per-face data is for all faces or empty.
+struct HostMesh {
+    RawMesh geometry;
+    std::vector<double> chart_id;
+    std::vector<double> seam_edges; // bits 1, 2, 4
+    std::vector<std::array<Vec2, 3>> wedge_uv;
+};
+
+/// The results for the host's own faces. Vectors are for all faces or empty.
+struct HostResult {
+    std::vector<int> chart_id;
+    std::vector<int> seam_edges;
+    std::vector<double> face_quality;
+    std::vector<Color> face_color;
+    std::vector<std::array<Vec2, 3>> wedge_uv;
+    ResultValues values;
+    std::vector<std::string> notes;
+};
+
+/// Gates the mesh, runs the filter and maps its output back. Parameters that are not given take
+/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then.
+HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
+                      const ParameterValues& values, Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,17 @@
+// The groups that make up the filter table, one source each.
+#pragma once
+
+#include <vector>
+
+#include "devseg/filters/filter.h"
+
+namespace devseg {
+
+std::vector<FilterDeclaration> segmentation_filters();
+std::vector<FilterDeclaration> flattening_filters();
+std::vector<FilterDeclaration> measure_filters();
+
+/// Charts of the mesh's attributes; without them, its connected components.
+ChartMap charts_or_components(const FilterInput& input);
+
+} // namespace devseg

@@ -1,0 +1,195 @@
+#include <cmath>
+#include <string>
+
+#include "devseg/cut/disks.h"
+#include "devseg/errors.h"
+#include "devseg/filters/declare.h"
+#include "devseg/filters/filter_groups.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/flatten/snap.h"
+#include "devseg/pack/pack.h"
+
+namespace devseg {
+
+namespace {
+
+struct FlattenOptions {
+    FlattenMethod method = FlattenMethod::symmetric_dirichlet;
+    bool pack = true; // into the unit square; otherwise side by side in model units
+};
+
+constexpr const char* flatten_help =
+    "Lays every chart flat, positively oriented and with its own area, and writes the result as "
+    "wedge texture coordinates: packed into the unit square at one common scale, or side by side "
+    "in model units.<br>"
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them, "
+    "each connected component of the mesh is a chart. Charts that are not disks are cut first. "
+    "<b>Symmetric Dirichlet</b> keeps lengths as well as possible and never turns a face over; "
+    "<b>LSCM</b> keeps angles and changes lengths more. Charts on which LSCM turns faces over are "
+    "flattened with the other method, and counted.<br>"
+    "See:<br><i>Jason Smith, Scott Schaefer</i><br>"
+    "<b>\"Bijective Parameterization with Free Boundaries\"</b><br>"
+    "ACM Transactions on Graphics (SIGGRAPH), 2015, doi:10.1145/2766947<br>"
+    "<i>Bruno Lévy, Sylvain Petitjean, Nicolas Ray, Jérome Maillot</i><br>"
+    "<b>\"Least Squares Conformal Maps for Automatic Texture Atlas Generation\"</b><br>"
+    "ACM Transactions on Graphics (SIGGRAPH), 2002, doi:10.1145/566654.566590";
+
+constexpr const char* pack_help =
+    "Packs the charts of existing texture coordinates, whoever made them, into the unit square: "
+    "each at the scale of its area on the surface, by outline, so that charts lie in the holes and "
+    "bays of others.<br>"
+    "Charts are read from the texture coordinates and keep their shape; they are turned, but never "
+    "mirrored.";
+
+// Moves flat charts to their places, rounds them as hosts store them, and spreads them to corners.
+struct Layout {
+    CornerUv uv;
+    Index unsettled = 0; // faces that rounding flattened
+};
+
+Layout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
+               double scale_to_side, Progress& progress) {
+    std::vector<PackItem> items;
+    for (const FlatChart& chart : charts)
+        items.push_back({&chart.surface.corners, &chart.uv});
+    const PackResult packed = pack_charts(items, options, progress);
+    const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
+    Layout layout;
+    layout.uv.assign(mesh.twin.size(), Vec2::Zero());
+    for (std::size_t c = 0; c < charts.size(); ++c) {
+        FlatChart& chart = charts[c];
+        for (Vec2& p : chart.uv)
+            p = scale * packed.placements[c](p);
+        layout.unsettled += snap_to_single(chart.surface.corners, chart.uv);
+        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+            layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+    }
+    return layout;
+}
+
+void note_unsettled(const Layout& layout, FilterOutput& output) {
+    if (layout.unsettled > 0)
+        output.notes.push_back(std::to_string(layout.unsettled) +
+                               " faces are too thin for 32-bit texture coordinates and lost their "
+                               "area in the plane");
+}
+
+FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
+                         Progress& progress) {
+    progress.begin_phase("cutting charts to disks", 0.05);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts_or_components(input), progress);
+    progress.begin_phase("flattening charts", 0.75);
+    std::vector<FlatChart> flat =
+        flatten_charts(input.mesh, cuts.charts, options.method, progress);
+    progress.begin_phase("packing charts", 0.2);
+    const Layout layout =
+        lay_out(input.mesh, flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
+
+    FilterOutput output;
+    int mended = 0;
+    bool converged = true;
+    double energy = 0.0;
+    for (const FlatChart& chart : flat) {
+        mended += chart.mended ? 1 : 0;
+        converged = converged && chart.converged;
+        energy = std::max(energy, chart.energy);
+    }
+    output.values = {
+        {"charts_number", cuts.charts.count},
+        {"cut_charts_number", cuts.cut_charts},
+        {"mended_charts_number", mended},
+        {"converged", converged},
+        {"worst_chart_energy", energy},
+    };
+    if (cuts.cut_charts > 0)
+        output.notes.push_back(std::to_string(cuts.cut_charts) +
+                               " charts were no disks and were cut open first");
+    if (mended > 0)
+        output.notes.push_back(std::to_string(mended) + " charts had flipped faces and were "
+                                                        "flattened with Symmetric Dirichlet");
+    note_unsettled(layout, output);
+    output.uv = layout.uv;
+    output.charts = std::move(cuts.charts);
+    return output;
+}
+
+// A chart of existing texture coordinates at the scale of its area on the surface.
+FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv, ChartSurface surface) {
+    FlatChart chart;
+    chart.uv.resize(surface.vertex.size());
+    double plane = 0.0;
+    double area = 0.0;
+    for (Index h = 0; h < 3 * surface.face_count(); ++h)
+        chart.uv[at(surface.origin(h))] = uv[at(surface.mesh_half_edge(h))];
+    for (const Index f : surface.face) {
+        plane += std::abs(uv_area(uv, f));
+        area += mesh.face_areas[at(f)];
+    }
+    if (!(plane > 0.0))
+        throw InvalidMesh("expected charts with an area in the plane, found one of " +
+                              std::to_string(surface.face.size()) +
+                              " faces without; run 'Charts: Flatten' first",
+                          surface.face);
+    const double scale = std::sqrt(area / plane);
+    for (Vec2& p : chart.uv)
+        p *= scale;
+    chart.surface = std::move(surface);
+    return chart;
+}
+
+FilterOutput run_pack(const FilterInput& input, const PackOptions& options, Progress& progress) {
+    progress.begin_phase("packing charts", 1.0);
+    const ChartMap charts = charts_from_uv(input.mesh, *input.uv);
+    std::vector<FlatChart> flat;
+    for (ChartSurface& surface : extract_charts(input.mesh, charts))
+        flat.push_back(read_flat_chart(input.mesh, *input.uv, std::move(surface)));
+    const Layout layout = lay_out(input.mesh, flat, options, 1.0, progress);
+    FilterOutput output;
+    output.values = {{"charts_number", charts.count}};
+    note_unsettled(layout, output);
+    output.uv = layout.uv;
+    return output;
+}
+
+FilterDeclaration flatten() {
+    using O = FlattenOptions;
+    return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
+                      FilterCategory::texture, flatten_help)
+        .choice(&O::method, "method", "Method", {"Symmetric Dirichlet", "LSCM"},
+                "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
+                "change of angles, faster.")
+        .boolean(&O::pack, "pack", "Pack into the unit square",
+                 "On: all charts in the unit square at one common scale, for textures. Off: side "
+                 "by side in model units.")
+        .writes(writes_charts | writes_uv)
+        .result("charts_number", "charts")
+        .result("cut_charts_number", "charts that were no disks and were cut first")
+        .result("mended_charts_number", "charts that needed the injective method")
+        .result("converged", "whether all charts reached the tolerance")
+        .result("worst_chart_energy", "largest symmetric Dirichlet energy of a chart, 1 for an "
+                                      "isometry, no unit")
+        .runs(run_flatten);
+}
+
+FilterDeclaration pack() {
+    using O = PackOptions;
+    return Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
+                      FilterCategory::texture, pack_help)
+        .real(&O::padding, "padding", "Padding", 0.0, 0.1,
+              "Least distance of two charts, as a share of the square's side.")
+        .boolean(&O::allow_rotation, "allow_rotation", "Allow rotation",
+                 "Turn charts to their best box and by quarter turns; off keeps the direction of "
+                 "the texture.")
+        .needs_uv()
+        .writes(writes_uv)
+        .result("charts_number", "charts that were packed")
+        .runs(run_pack);
+}
+
+} // namespace
+
+std::vector<FilterDeclaration> flattening_filters() {
+    return {flatten(), pack()};
+}
+
+} // namespace devseg

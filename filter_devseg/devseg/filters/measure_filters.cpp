@@ -1,0 +1,100 @@
+#include "devseg/filters/declare.h"
+#include "devseg/filters/filter_groups.h"
+#include "devseg/metrics/parametrization.h"
+#include "devseg/metrics/segmentation.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr const char* segmentation_help =
+    "Measures a segmentation: how many charts, how long the seams, how developable the charts. "
+    "Nothing is changed.<br>"
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them, "
+    "each connected component of the mesh is a chart. The values are returned to scripts and "
+    "written to the log.";
+
+constexpr const char* parametrization_help =
+    "Measures how well texture coordinates keep the shape of the surface, whoever made them. "
+    "Charts are read from the texture coordinates: an edge is a seam where they differ on its two "
+    "sides. Each chart is compared at the scale that gives it its area on the surface. Nothing is "
+    "changed; the values are returned to scripts and written to the log.<br>"
+    "See:<br><i>Pedro V. Sander, John Snyder, Steven J. Gortler, Hugues Hoppe</i><br>"
+    "<b>\"Texture Mapping Progressive Meshes\"</b><br>"
+    "SIGGRAPH, 2001, doi:10.1145/383259.383307";
+
+FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
+    progress.begin_phase("measuring charts", 1.0);
+    const SegmentationMeasures m = measure_segmentation(input.mesh, charts_or_components(input));
+    FilterOutput output;
+    output.values = {
+        {"charts_number", m.charts_number},
+        {"disk_charts_number", m.disk_charts_number},
+        {"gauss_area_std", m.gauss_area_std},
+        {"max_fitting_error", m.max_fitting_error},
+        {"seam_length", m.seam_length},
+        {"largest_chart_area_share", m.largest_chart_area_share},
+    };
+    return output;
+}
+
+FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Progress& progress) {
+    progress.begin_phase("measuring texture coordinates", 1.0);
+    const ParametrizationMeasures m = measure_parametrization(input.mesh, *input.uv);
+    FilterOutput output;
+    output.values = {
+        {"charts_number", m.charts_number},
+        {"disk_charts_number", m.disk_charts_number},
+        {"l2_stretch", m.l2_stretch},
+        {"linf_stretch", m.linf_stretch},
+        {"l2_shear", m.l2_shear},
+        {"symmetric_dirichlet_energy", m.symmetric_dirichlet_energy},
+        {"max_area_change", m.max_area_change},
+        {"flipped_faces_number", m.flipped_faces_number},
+        {"overlapping_faces_number", m.overlapping_faces_number},
+        {"seam_length", m.seam_length},
+        {"packing_efficiency", m.packing_efficiency},
+    };
+    return output;
+}
+
+FilterDeclaration segmentation_measures() {
+    return Declare<NoOptions>("Charts: Measure Segmentation", "get_segmentation_measures",
+                              FilterCategory::measure, segmentation_help)
+        .result("charts_number", "charts")
+        .result("disk_charts_number", "charts that are disks once cut along the seams")
+        .result("gauss_area_std", "standard deviation over the charts of the sum of |2 pi − angle "
+                                  "sum| of their inner vertices, steradians")
+        .result("max_fitting_error", "largest squared cosine difference of a face's normal to its "
+                                     "chart's best cone, no unit")
+        .result("seam_length", "length of all cut edges, each counted once, model units")
+        .result("largest_chart_area_share", "area of the largest chart over the area of all, 0 to 1")
+        .runs(run_segmentation);
+}
+
+FilterDeclaration parametrization_measures() {
+    return Declare<NoOptions>("Charts: Measure Flattening", "get_parametrization_measures",
+                              FilterCategory::measure, parametrization_help)
+        .needs_uv()
+        .result("charts_number", "charts, as the texture coordinates show them")
+        .result("disk_charts_number", "charts that are disks")
+        .result("l2_stretch", "root mean square stretch, 1 for an isometry, no unit")
+        .result("linf_stretch", "largest stretch in any direction at any face, no unit")
+        .result("l2_shear", "root mean square change of the triangles' angles, radians")
+        .result("symmetric_dirichlet_energy", "mean of (s1² + s2² + 1/s1² + 1/s2²)/4 over the "
+                                              "area, 1 for an isometry, no unit")
+        .result("max_area_change", "largest |1 − flat area / area on the surface| of a face")
+        .result("flipped_faces_number", "faces turned over against their chart, or flat to a line")
+        .result("overlapping_faces_number", "faces that lie on another face in the plane")
+        .result("seam_length", "length of all cut edges, each counted once, model units")
+        .result("packing_efficiency", "covered share of the layout's bounding box, 0 to 1")
+        .runs(run_parametrization);
+}
+
+} // namespace
+
+std::vector<FilterDeclaration> measure_filters() {
+    return {segmentation_measures(), parametrization_measures()};
+}
+
+} // namespace devseg

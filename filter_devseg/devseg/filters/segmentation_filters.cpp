@@ -1,0 +1,144 @@
+#include <string>
+
+#include "devseg/cut/disks.h"
+#include "devseg/filters/chart_colors.h"
+#include "devseg/filters/declare.h"
+#include "devseg/filters/filter_groups.h"
+#include "devseg/metrics/segmentation.h"
+#include "devseg/segment/dcharts.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr const char* dcharts_help =
+    "Cuts the surface into few charts that are nearly developable, so that they can be flattened "
+    "with little distortion: unions of cones, cylinders and planes with a common axis. Charts grow "
+    "from seeds while the <i>fitting error</i> (the squared difference between the cosines of the "
+    "normal's and the chart's angle to the axis) stays below a bound; seeds and axes are improved "
+    "over several rounds. What no chart can reach is filled by the neighbours, or by new charts "
+    "where it is large.<br>"
+    "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
+    "the face's edges that are cut), the same cuts as selected face-edges, the fitting error as "
+    "face quality and a colour for each chart. Every chart is cut to a disk.<br>"
+    "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
+    "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
+    "Computer Graphics Forum (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
+
+constexpr const char* disks_help =
+    "Cuts every chart open until it is a disk, which is what flattening needs: by shortest paths "
+    "between its boundary loops, along short cycles through its handles, and by a slit if the "
+    "chart is closed. Charts that are disks already are left as they are.<br>"
+    "Charts are read from the face attribute <b>chart_id</b>; without it, each connected component "
+    "of the mesh is a chart. The cuts are added to <b>seam_edges</b>.<br>"
+    "See:<br><i>Jeff Erickson, Sariel Har-Peled</i><br>"
+    "<b>\"Optimally Cutting a Surface into a Disk\"</b><br>"
+    "Discrete &amp; Computational Geometry 31, 2004, doi:10.1007/s00454-003-2948-z";
+
+constexpr const char* colorize_help =
+    "Gives each chart a colour, so that neighbours differ clearly. The same charts always get the "
+    "same colours.<br>"
+    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
+    "coordinates, and without those each connected component of the mesh is a chart.";
+
+FilterOutput run_dcharts(const FilterInput& input, const DChartsOptions& options,
+                         Progress& progress) {
+    DChartsResult segmentation = segment_dcharts(input.mesh, options, progress);
+    progress.begin_phase("cutting charts to disks", 0.1);
+    DiskCuts cuts = cut_charts_to_disks(
+        input.mesh, make_chart_map(input.mesh, segmentation.chart, {}, false), progress);
+    FilterOutput output;
+    output.values = {
+        {"charts_number", cuts.charts.count},
+        {"hole_charts_number", segmentation.hole_charts},
+        {"rounds_number", segmentation.rounds},
+        {"converged", segmentation.converged},
+        {"seam_length", seam_length(input.mesh, cuts.charts)},
+    };
+    output.face_color = face_chart_colors(input.mesh, cuts.charts);
+    output.face_quality = std::move(segmentation.fitting_error);
+    output.charts = std::move(cuts.charts);
+    return output;
+}
+
+FilterOutput run_disks(const FilterInput& input, const NoOptions&, Progress& progress) {
+    progress.begin_phase("cutting charts to disks", 1.0);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts_or_components(input), progress);
+    FilterOutput output;
+    output.values = {
+        {"charts_number", cuts.charts.count},
+        {"cut_charts_number", cuts.cut_charts},
+        {"cut_length", cuts.cut_length * input.mesh.unit_length},
+    };
+    output.charts = std::move(cuts.charts);
+    return output;
+}
+
+FilterOutput run_colorize(const FilterInput& input, const NoOptions&, Progress&) {
+    const ChartMap charts = !input.charts && input.uv ? charts_from_uv(input.mesh, *input.uv)
+                                                      : charts_or_components(input);
+    FilterOutput output;
+    output.values = {{"charts_number", charts.count}};
+    output.face_color = face_chart_colors(input.mesh, charts);
+    return output;
+}
+
+FilterDeclaration dcharts() {
+    using O = DChartsOptions;
+    return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
+                      FilterCategory::remeshing, dcharts_help)
+        .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
+                 "The initial estimate of the number of charts, from 1 to the number of faces. "
+                 "Large regions that fit no chart get charts of their own, so that the final "
+                 "number may be larger.")
+        .real(&O::max_fitting_error, "max_fitting_error", "Largest fitting error", 0.0, 4.0,
+              "Bound of the fitting error while charts grow, without unit, above 0. Smaller "
+              "charts fit better: 0.2 is usual for free forms, 0.01 for mechanical parts.")
+        .real(&O::alpha, "alpha", "Weight of developability", 0.0, 10.0,
+              "Exponent of the fitting error in the cost of adding a face, without unit.")
+        .real(&O::beta, "beta", "Weight of compactness", 0.0, 10.0,
+              "Exponent of the roundness of the chart in the cost, without unit. Larger values "
+              "avoid long strips.")
+        .real(&O::gamma, "gamma", "Weight of straight borders", 0.0, 10.0,
+              "Exponent of the ratio of outer to inner edge length in the cost, without unit. "
+              "Larger values make smoother borders.")
+        .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+                 "The rounds of growing and reseeding end here at the latest; usually fewer than "
+                 "5 % of the faces change their chart long before.")
+        .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+                 "0 starts at the face farthest from the centre; other numbers at a random face. "
+                 "The same number always gives the same charts.")
+        .writes(writes_charts | writes_quality | writes_color)
+        .result("charts_number", "charts, each a disk")
+        .result("hole_charts_number", "charts that were added where no other fitted")
+        .result("rounds_number", "rounds of growing and reseeding")
+        .result("converged", "whether fewer than 5 % of the faces changed in the last round")
+        .result("seam_length", "length of all cut edges, model units")
+        .runs(run_dcharts);
+}
+
+FilterDeclaration disks() {
+    return Declare<NoOptions>("Charts: Cut to Disks", "compute_seams_charts_to_disks_per_edge",
+                              FilterCategory::remeshing, disks_help)
+        .writes(writes_charts)
+        .result("charts_number", "charts, each a disk")
+        .result("cut_charts_number", "charts that had to be cut")
+        .result("cut_length", "length of the new cuts, model units")
+        .runs(run_disks);
+}
+
+FilterDeclaration colorize() {
+    return Declare<NoOptions>("Charts: Colorize", "compute_color_by_chart_per_face",
+                              FilterCategory::color, colorize_help)
+        .writes(writes_color)
+        .result("charts_number", "charts that were coloured")
+        .runs(run_colorize);
+}
+
+} // namespace
+
+std::vector<FilterDeclaration> segmentation_filters() {
+    return {dcharts(), disks(), colorize()};
+}
+
+} // namespace devseg

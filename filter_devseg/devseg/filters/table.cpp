@@ -1,0 +1,23 @@
+#include <iterator>
+
+#include "devseg/filters/filter_groups.h"
+
+namespace devseg {
+
+const std::vector<FilterDeclaration>& filter_table() {
+    static const std::vector<FilterDeclaration> table = [] {
+        std::vector<FilterDeclaration> all;
+        for (auto group : {segmentation_filters(), flattening_filters(), measure_filters()})
+            std::move(group.begin(), group.end(), std::back_inserter(all));
+        return all;
+    }();
+    return table;
+}
+
+ChartMap charts_or_components(const FilterInput& input) {
+    if (input.charts)
+        return *input.charts;
+    return make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {}, false);
+}
+
+} // namespace devseg

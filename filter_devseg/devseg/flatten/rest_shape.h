@@ -1,0 +1,33 @@
+// The triangles of a chart as they are in space, laid into the plane one by one: what every
+// flattening method compares its map with.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "devseg/mesh/charts.h"
+
+namespace devseg {
+
+/// A chart that is ready to be flattened. Positions are in internal units of the mesh.
+struct FlatteningProblem {
+    Index vertex_count = 0;
+    std::vector<Triangle> faces;       // #f local vertices
+    std::vector<Index> boundary;       // vertices of the only boundary loop, counterclockwise
+    std::vector<double> boundary_edge; // length of the edge from boundary[i] to boundary[i + 1]
+    std::vector<Eigen::Matrix2d> edges;   // #f: columns are the edges 0→1 and 0→2 of the face
+    std::vector<Eigen::Matrix2d> inverse; // #f: the inverse of `edges`
+    std::vector<double> area;             // #f
+    std::vector<std::array<double, 3>> cotangent; // #f: of the angle opposite to edge k → k + 1
+    double total_area = 0.0;
+};
+
+/// Throws NumericalFailure unless the surface is a disk. Triangles that are too thin to have a
+/// shape of their own in double precision are given the least extra width that makes them solid
+/// (all three lengths grow by the same amount, as in intrinsic mollification), so that every
+/// energy and angle stays finite.
+FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& surface);
+
+} // namespace devseg

@@ -1,0 +1,125 @@
+#include "devseg/flatten/snap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "devseg/flatten/map_tools.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr int rounds = 8;      // sweeps over the flipped faces
+constexpr int reach = 4;       // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
+
+bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
+    const Triangle& t = faces[at(f)];
+    return orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0;
+}
+
+double rounded(double x) {
+    return static_cast<double>(static_cast<float>(x));
+}
+
+// Faces of each vertex: [begin[v], begin[v + 1]).
+struct Stars {
+    std::vector<Index> begin;
+    std::vector<Index> faces;
+};
+
+Stars build_stars(const std::vector<Triangle>& faces, std::size_t vertices) {
+    Stars stars;
+    stars.begin.assign(vertices + 1, 0);
+    for (const Triangle& t : faces)
+        for (const Index v : t)
+            ++stars.begin[at(v) + 1];
+    std::partial_sum(stars.begin.begin(), stars.begin.end(), stars.begin.begin());
+    stars.faces.resize(3 * faces.size());
+    std::vector<Index> cursor(stars.begin.begin(), stars.begin.end() - 1);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const Index v : faces[f])
+            stars.faces[at(cursor[at(v)]++)] = static_cast<Index>(f);
+    return stars;
+}
+
+// The distance between neighbouring single precision numbers near the point.
+double unit_in_last_place(const Vec2& p) {
+    const float size = static_cast<float>(p.cwiseAbs().maxCoeff());
+    return static_cast<double>(
+        std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
+}
+
+class Repair {
+public:
+    Repair(const std::vector<Triangle>& faces, std::vector<Vec2>& uv)
+        : faces_(faces), uv_(uv), stars_(build_stars(faces, uv.size())) {}
+
+    // Moves a vertex of the face so that fewer faces around it are flipped.
+    bool mend(Index face) {
+        for (const Index v : faces_[at(face)])
+            if (move(v))
+                return true;
+        return false;
+    }
+
+private:
+    int flipped_around(Index v) const {
+        int count = 0;
+        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i)
+            count += positive(faces_, uv_, stars_.faces[at(i)]) ? 0 : 1;
+        return count;
+    }
+    bool move(Index v) {
+        const Vec2 home = uv_[at(v)];
+        const double unit = unit_in_last_place(home);
+        Vec2 best = home;
+        int fewest = flipped_around(v);
+        const int before = fewest;
+        for (int step = 1; step < 1 << reach && fewest > 0; step *= 2)
+            for (int direction = 0; direction < 9; ++direction) {
+                const Vec2 offset(direction % 3 - 1, direction / 3 - 1);
+                const Vec2 moved = home + unit * step * offset;
+                uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                const int count = flipped_around(v);
+                if (count < fewest) {
+                    fewest = count;
+                    best = uv_[at(v)];
+                }
+            }
+        uv_[at(v)] = best;
+        return fewest < before;
+    }
+
+    const std::vector<Triangle>& faces_;
+    std::vector<Vec2>& uv_;
+    Stars stars_;
+};
+
+} // namespace
+
+Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) {
+    for (Vec2& p : uv)
+        p = Vec2(rounded(p.x()), rounded(p.y()));
+    std::vector<Index> flipped;
+    for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+        if (!positive(faces, uv, f))
+            flipped.push_back(f);
+    if (flipped.empty())
+        return 0;
+    Repair repair(faces, uv);
+    for (int round = 0; round < rounds && !flipped.empty(); ++round) {
+        for (const Index f : flipped)
+            if (!positive(faces, uv, f))
+                repair.mend(f);
+        // A mended face may have cost a neighbour: look at all of them again.
+        flipped.clear();
+        for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+            if (!positive(faces, uv, f))
+                flipped.push_back(f);
+    }
+    return static_cast<Index>(flipped.size());
+}
+
+} // namespace devseg

@@ -1,0 +1,125 @@
+#include "devseg/mesh/charts.h"
+
+#include <numeric>
+
+namespace devseg {
+
+namespace {
+
+// One vertex for each fan of corners that hangs together across uncut edges.
+void weld_corners(const Mesh& mesh, ChartSurface& surface) {
+    const Index corners = 3 * surface.face_count();
+    surface.corners.assign(surface.face.size(), Triangle{-1, -1, -1});
+    const auto corner = [&](Index h) -> Index& { return surface.corners[at(h / 3)][at(h % 3)]; };
+    for (Index start = 0; start < corners; ++start) {
+        if (corner(start) >= 0)
+            continue;
+        const Index v = surface.vertex_count();
+        surface.vertex.push_back(mesh.origin(surface.mesh_half_edge(start)));
+        for (Index h = start; h >= 0 && corner(h) < 0; h = surface.twin[at(Mesh::previous(h))])
+            corner(h) = v;
+        for (Index back = surface.twin[at(start)]; back >= 0;
+             back = surface.twin[at(Mesh::next(back))]) {
+            if (corner(Mesh::next(back)) >= 0)
+                break;
+            corner(Mesh::next(back)) = v;
+        }
+    }
+}
+
+// Boundary half-edges chained head to tail; at its end, the next one is found by turning around
+// the vertex inside the surface.
+void trace_loops(ChartSurface& surface) {
+    const Index half_edges = 3 * surface.face_count();
+    std::vector<std::uint8_t> done(at(half_edges), 0);
+    for (Index start = 0; start < half_edges; ++start) {
+        if (surface.twin[at(start)] >= 0 || done[at(start)] != 0)
+            continue;
+        std::vector<Index> loop;
+        for (Index h = start; done[at(h)] == 0;) {
+            done[at(h)] = 1;
+            loop.push_back(h);
+            h = Mesh::next(h);
+            while (surface.twin[at(h)] >= 0)
+                h = Mesh::next(surface.twin[at(h)]);
+        }
+        surface.loops.push_back(std::move(loop));
+    }
+}
+
+} // namespace
+
+ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
+                        const std::vector<std::uint8_t>& seam, bool split_at_seams) {
+    const auto is_cut = [&](Index h) { return !seam.empty() && seam[at(h)] != 0; };
+    const auto same_label = [&](Index h) {
+        return labels[at(h / 3)] == labels[at(mesh.twin[at(h)] / 3)];
+    };
+    FaceComponents parts = face_components(mesh, [&](Index h) {
+        return same_label(h) && !(split_at_seams && is_cut(h));
+    });
+    ChartMap result;
+    result.chart = std::move(parts.label);
+    result.count = parts.count;
+    result.seam.assign(mesh.twin.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index opposite = mesh.twin[at(h)];
+        if (opposite < 0)
+            continue;
+        const bool border = result.chart[at(h / 3)] != result.chart[at(opposite / 3)];
+        result.seam[at(h)] = border || is_cut(h) || is_cut(opposite) ? 1 : 0;
+    }
+    return result;
+}
+
+ChartFaces group_faces(const ChartMap& charts) {
+    ChartFaces result;
+    result.begin.assign(at(charts.count) + 1, 0);
+    for (const Index c : charts.chart)
+        ++result.begin[at(c) + 1];
+    std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+    result.faces.resize(charts.chart.size());
+    std::vector<Index> cursor(result.begin.begin(), result.begin.end() - 1);
+    for (std::size_t f = 0; f < charts.chart.size(); ++f)
+        result.faces[at(cursor[at(charts.chart[f])]++)] = static_cast<Index>(f);
+    return result;
+}
+
+ChartSurface extract_chart(const Mesh& mesh, const ChartMap& charts, const Index* first_face,
+                           const Index* last_face, std::vector<Index>& local_face) {
+    ChartSurface surface;
+    surface.face.assign(first_face, last_face);
+    for (Index f = 0; f < surface.face_count(); ++f)
+        local_face[at(surface.face[at(f)])] = f;
+    surface.twin.assign(3 * surface.face.size(), -1);
+    Index inner_half_edges = 0;
+    for (Index h = 0; h < 3 * surface.face_count(); ++h) {
+        const Index global = surface.mesh_half_edge(h);
+        const Index opposite = mesh.twin[at(global)];
+        if (opposite < 0 || charts.seam[at(global)] != 0)
+            continue;
+        surface.twin[at(h)] = 3 * local_face[at(opposite / 3)] + opposite % 3;
+        ++inner_half_edges;
+    }
+    surface.edge_count = 3 * surface.face_count() - inner_half_edges / 2;
+    for (const Index f : surface.face)
+        local_face[at(f)] = -1;
+    weld_corners(mesh, surface);
+    trace_loops(surface);
+    return surface;
+}
+
+std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts) {
+    const ChartFaces groups = group_faces(charts);
+    std::vector<Index> local_face(mesh.faces.size(), -1);
+    std::vector<ChartSurface> surfaces;
+    surfaces.reserve(at(charts.count));
+    for (Index c = 0; c < charts.count; ++c)
+        surfaces.push_back(extract_chart(mesh, charts,
+                                         groups.faces.data() + groups.begin[at(c)],
+                                         groups.faces.data() + groups.begin[at(c) + 1],
+                                         local_face));
+    return surfaces;
+}
+
+} // namespace devseg

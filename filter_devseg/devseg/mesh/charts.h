@@ -1,0 +1,61 @@
+// Charts: a label for each face, a mark for each cut edge, and one chart as a surface of its own.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+/// A segmentation with its cuts. `seam` is symmetric: a half-edge and its twin agree. Edges
+/// between two charts are always seams; further ones are darts, slits and cuts to a disk.
+struct ChartMap {
+    std::vector<Index> chart;       // #F, 0 … count − 1
+    std::vector<std::uint8_t> seam; // 3 #F
+    Index count = 0;
+};
+
+/// Labels → ChartMap: relabels so that every chart is edge-connected and the labels contiguous
+/// (in the order of each chart's first face), and marks the edges between charts as seams.
+/// `seam` (3 #F, may be empty) holds further cuts. A cut may not split a chart in two unless
+/// `split_at_seams`: then it does, and the parts become charts.
+ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
+                        const std::vector<std::uint8_t>& seam, bool split_at_seams);
+
+/// The faces of each chart, in ascending order: faces of chart c are
+/// faces[begin[c]] … faces[begin[c + 1] − 1].
+struct ChartFaces {
+    std::vector<Index> begin; // #charts + 1
+    std::vector<Index> faces; // #F
+};
+ChartFaces group_faces(const ChartMap& charts);
+
+/// One chart, cut open along its seams: a manifold of its own with local vertices and half-edges.
+struct ChartSurface {
+    std::vector<Index> face;          // #f: index in the mesh
+    std::vector<Triangle> corners;    // #f: local vertices
+    std::vector<Index> vertex;        // #v: index of the mesh vertex
+    std::vector<Index> twin;          // 3 #f: local half-edges, −1 on the chart's boundary
+    std::vector<std::vector<Index>> loops; // boundary loops as local half-edges, in their order
+    Index edge_count = 0;
+
+    Index vertex_count() const { return static_cast<Index>(vertex.size()); }
+    Index face_count() const { return static_cast<Index>(face.size()); }
+    Index origin(Index h) const { return corners[at(h / 3)][at(h % 3)]; }
+    Index target(Index h) const { return origin(Mesh::next(h)); }
+    Index euler_characteristic() const { return vertex_count() - edge_count + face_count(); }
+    bool is_disk() const { return loops.size() == 1 && euler_characteristic() == 1; }
+    /// Half-edge of the mesh that the local half-edge lies on.
+    Index mesh_half_edge(Index h) const { return 3 * face[at(h / 3)] + h % 3; }
+};
+
+/// `faces` must be the faces of one chart. `local_face` is scratch of size #F filled with −1,
+/// and is left so.
+ChartSurface extract_chart(const Mesh& mesh, const ChartMap& charts, const Index* first_face,
+                           const Index* last_face, std::vector<Index>& local_face);
+
+/// The same for each chart, in order of their labels.
+std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts);
+
+} // namespace devseg

@@ -1,0 +1,405 @@
+#include "devseg/mesh/input_gate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "devseg/errors.h"
+
+namespace devseg {
+
+namespace {
+
+std::string counted(Index count, const char* one, const char* many) {
+    return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
+void require_faces(const RawMesh& raw) {
+    if (raw.faces.empty())
+        throw InvalidMesh("expected a triangle mesh, found " +
+                          counted(static_cast<Index>(raw.points.size()), "vertex", "vertices") +
+                          " and no faces; reconstruct a surface first (for a point cloud: "
+                          "'Surface Reconstruction: Screened Poisson')");
+}
+
+void require_valid_indices(const RawMesh& raw) {
+    const Index count = static_cast<Index>(raw.points.size());
+    for (std::size_t f = 0; f < raw.faces.size(); ++f)
+        for (const Index v : raw.faces[f])
+            if (v < 0 || v >= count)
+                throw InvalidMesh("expected vertex indices from 0 to " +
+                                      std::to_string(count - 1) + ", found " + std::to_string(v) +
+                                      " in face " + std::to_string(f) + "; mend the file",
+                                  {static_cast<Index>(f)});
+}
+
+void require_finite(const RawMesh& raw) {
+    std::vector<Index> bad;
+    Index first_vertex = -1;
+    for (std::size_t f = 0; f < raw.faces.size(); ++f)
+        for (const Index v : raw.faces[f])
+            if (!raw.points[at(v)].allFinite()) {
+                if (first_vertex < 0)
+                    first_vertex = v;
+                bad.push_back(static_cast<Index>(f));
+                break;
+            }
+    if (!bad.empty())
+        throw InvalidMesh("expected finite coordinates, found a NaN or an infinite number at "
+                          "vertex " + std::to_string(first_vertex) + " (" +
+                              counted(static_cast<Index>(bad.size()), "face", "faces") +
+                              " affected, first face " + std::to_string(bad.front()) +
+                              "); delete these faces, they have been selected "
+                              "('Delete Selected Faces and Vertices')",
+                          bad);
+}
+
+// Centre and scale: afterwards the bounding box is about 1 wide. The factor is a power of two,
+// which changes no digit.
+void normalise(const RawMesh& raw, Mesh& mesh) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
+    Vec3 high = -low;
+    for (const Triangle& t : raw.faces)
+        for (const Index v : t) {
+            low = low.cwiseMin(raw.points[at(v)]);
+            high = high.cwiseMax(raw.points[at(v)]);
+        }
+    const double size = (high / 2.0 - low / 2.0).maxCoeff() * 2.0;
+    if (!(size > 0.0) || !std::isfinite(size))
+        throw InvalidMesh(size > 0.0
+                              ? "expected a model of a finite size, found coordinates that are "
+                                "too large to measure; scale the model down"
+                              : "expected a surface, found all vertices at one point; "
+                                "there is nothing to segment");
+    const Vec3 centre = low / 2.0 + high / 2.0;
+    mesh.unit_length = std::ldexp(1.0, std::ilogb(size));
+    mesh.points.resize(raw.points.size());
+    for (std::size_t v = 0; v < raw.points.size(); ++v)
+        mesh.points[v] = (raw.points[v] - centre) / mesh.unit_length;
+}
+
+// Items sorted into buckets 0 … bucket_count − 1 (counting sort): bucket b is [begin[b], begin[b+1]).
+template <class Item>
+struct Buckets {
+    std::vector<Index> begin;
+    std::vector<Item> items;
+};
+
+template <class Item, class BucketOf, class MakeItem>
+Buckets<Item> sort_into_buckets(Index item_count, Index bucket_count, BucketOf bucket_of,
+                                MakeItem make_item) {
+    Buckets<Item> result;
+    result.begin.assign(at(bucket_count) + 1, 0);
+    for (Index i = 0; i < item_count; ++i)
+        ++result.begin[at(bucket_of(i)) + 1];
+    std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
+    result.items.resize(at(item_count));
+    std::vector<Index> cursor(result.begin.begin(), result.begin.end() - 1);
+    for (Index i = 0; i < item_count; ++i)
+        result.items[at(cursor[at(bucket_of(i))]++)] = make_item(i);
+    for (Index b = 0; b < bucket_count; ++b)
+        std::sort(result.items.begin() + result.begin[at(b)],
+                  result.items.begin() + result.begin[at(b) + 1]);
+    return result;
+}
+
+struct FaceSelection {
+    std::vector<Index> kept;         // faces that go on
+    std::vector<Index> duplicate_of; // #source faces: the earlier face on the same vertices, or −1
+    Index repeated = 0;              // faces that name a vertex twice
+    Index duplicates = 0;
+};
+
+FaceSelection select_proper_faces(const RawMesh& raw) {
+    const Index count = static_cast<Index>(raw.faces.size());
+    const auto sorted = [&](Index f) {
+        Triangle t = raw.faces[at(f)];
+        std::sort(t.begin(), t.end());
+        return t;
+    };
+    struct Key {
+        Index middle, largest, face;
+        bool operator<(const Key& o) const {
+            return std::tie(middle, largest, face) < std::tie(o.middle, o.largest, o.face);
+        }
+    };
+    const auto buckets = sort_into_buckets<Key>(
+        count, static_cast<Index>(raw.points.size()), [&](Index f) { return sorted(f)[0]; },
+        [&](Index f) {
+            const Triangle t = sorted(f);
+            return Key{t[1], t[2], f};
+        });
+
+    FaceSelection result;
+    result.duplicate_of.assign(at(count), -1);
+    for (std::size_t b = 0; b + 1 < buckets.begin.size(); ++b)
+        for (Index i = buckets.begin[b] + 1; i < buckets.begin[b + 1]; ++i) {
+            const Key& before = buckets.items[at(i - 1)];
+            const Key& key = buckets.items[at(i)];
+            if (key.middle != before.middle || key.largest != before.largest)
+                continue;
+            const Index first = result.duplicate_of[at(before.face)];
+            result.duplicate_of[at(key.face)] = first >= 0 ? first : before.face;
+        }
+    result.kept.reserve(at(count));
+    for (Index f = 0; f < count; ++f) {
+        const Triangle t = sorted(f);
+        if (t[0] == t[1] || t[1] == t[2]) {
+            result.duplicate_of[at(f)] = -1;
+            ++result.repeated;
+        } else if (result.duplicate_of[at(f)] >= 0) {
+            ++result.duplicates;
+        } else {
+            result.kept.push_back(f);
+        }
+    }
+    return result;
+}
+
+// All half-edges of each edge that has exactly two faces, whatever their directions.
+std::vector<Index> neighbours_regardless_of_direction(const std::vector<Triangle>& faces,
+                                                      Index vertex_count,
+                                                      std::vector<std::uint8_t>& cut,
+                                                      Index& crowded_edges) {
+    std::vector<Index> neighbour(3 * faces.size(), -1);
+    const auto ends = [&](Index h) {
+        const Triangle& t = faces[at(h / 3)];
+        return std::minmax({t[at(h % 3)], t[at((h % 3 + 1) % 3)]});
+    };
+    using Use = std::pair<Index, Index>; // (larger vertex, half-edge)
+    const auto buckets = sort_into_buckets<Use>(
+        static_cast<Index>(neighbour.size()), vertex_count,
+        [&](Index h) { return ends(h).first; }, [&](Index h) { return Use(ends(h).second, h); });
+    for (Index v = 0; v < vertex_count; ++v) {
+        const auto first = buckets.items.begin() + buckets.begin[at(v)];
+        const auto last = buckets.items.begin() + buckets.begin[at(v) + 1];
+        for (auto run = first; run != last;) {
+            auto end = run;
+            while (end != last && end->first == run->first)
+                ++end;
+            if (end - run == 2) {
+                neighbour[at(run->second)] = (run + 1)->second;
+                neighbour[at((run + 1)->second)] = run->second;
+            } else if (end - run > 2) {
+                ++crowded_edges;
+                for (auto use = run; use != end; ++use)
+                    cut[at(use->second)] = 1;
+            }
+            run = end;
+        }
+    }
+    return neighbour;
+}
+
+struct Orientation {
+    std::vector<std::uint8_t> flipped; // #F
+    Index turned = 0;                  // faces turned over
+    Index one_sided_edges = 0;         // edges where no coherent orientation exists
+};
+
+// Breadth-first over each component; the orientation that most faces had is kept.
+Orientation orient(const std::vector<Triangle>& faces, std::vector<Index>& neighbour,
+                   std::vector<std::uint8_t>& cut) {
+    const Index count = static_cast<Index>(faces.size());
+    const auto start_vertex = [&](Index h) { return faces[at(h / 3)][at(h % 3)]; };
+    Orientation result;
+    result.flipped.assign(at(count), 2); // 2 = not reached yet
+    std::vector<Index> component;
+    for (Index seed = 0; seed < count; ++seed) {
+        if (result.flipped[at(seed)] != 2)
+            continue;
+        component.assign(1, seed);
+        result.flipped[at(seed)] = 0;
+        Index turned = 0;
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            const Index f = component[i];
+            turned += result.flipped[at(f)];
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index opposite = neighbour[at(h)];
+                if (opposite < 0)
+                    continue;
+                // Two faces that run along their edge in the same direction disagree.
+                const bool disagree = start_vertex(h) == start_vertex(opposite);
+                const std::uint8_t wanted = result.flipped[at(f)] ^ (disagree ? 1 : 0);
+                std::uint8_t& state = result.flipped[at(opposite / 3)];
+                if (state == 2) {
+                    state = wanted;
+                    component.push_back(opposite / 3);
+                } else if (state != wanted) {
+                    ++result.one_sided_edges;
+                    cut[at(h)] = cut[at(opposite)] = 1;
+                    neighbour[at(h)] = neighbour[at(opposite)] = -1;
+                }
+            }
+        }
+        const Index size = static_cast<Index>(component.size());
+        if (2 * turned > size) {
+            for (const Index f : component)
+                result.flipped[at(f)] ^= 1;
+            turned = size - turned;
+        }
+        result.turned += turned;
+    }
+    return result;
+}
+
+// Gives every fan of faces around a vertex a vertex of its own. Returns how many were added.
+Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
+    const Index corners = mesh.half_edge_count();
+    std::vector<Index> corner_vertex(at(corners), -1);
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    Index added = 0;
+    for (Index start = 0; start < corners; ++start) {
+        if (corner_vertex[at(start)] >= 0)
+            continue;
+        Index v = mesh.origin(start);
+        if (used[at(v)] != 0) {
+            mesh.points.push_back(mesh.points[at(v)]);
+            source_vertex.push_back(source_vertex[at(v)]);
+            v = mesh.vertex_count() - 1;
+            ++added;
+        } else {
+            used[at(v)] = 1;
+        }
+        // Corner h of a face is the origin of half-edge h. Around the vertex: across the edge
+        // that ends here, and across the edge that starts here.
+        for (Index h = start; h >= 0 && corner_vertex[at(h)] < 0;
+             h = mesh.twin[at(Mesh::previous(h))])
+            corner_vertex[at(h)] = v;
+        for (Index back = mesh.twin[at(start)]; back >= 0; back = mesh.twin[at(Mesh::next(back))]) {
+            const Index h = Mesh::next(back);
+            if (corner_vertex[at(h)] >= 0)
+                break;
+            corner_vertex[at(h)] = v;
+        }
+    }
+    for (Index h = 0; h < corners; ++h)
+        mesh.faces[at(h / 3)][at(h % 3)] = corner_vertex[at(h)];
+    return added;
+}
+
+// Drops the points that no face uses.
+void drop_unused_points(Mesh& mesh, std::vector<Index>& source_vertex) {
+    std::vector<Index> renamed(mesh.points.size(), -1);
+    for (const Triangle& t : mesh.faces)
+        for (const Index v : t)
+            renamed[at(v)] = 0;
+    Index count = 0;
+    for (std::size_t v = 0; v < renamed.size(); ++v)
+        if (renamed[v] == 0) {
+            renamed[v] = count;
+            mesh.points[at(count)] = mesh.points[v];
+            source_vertex[at(count)] = source_vertex[v];
+            ++count;
+        }
+    mesh.points.resize(at(count));
+    source_vertex.resize(at(count));
+    for (Triangle& t : mesh.faces)
+        for (Index& v : t)
+            v = renamed[at(v)];
+}
+
+// Source faces that were left out take the results of a face on the same vertices, or of a face
+// that shares an edge or a vertex with them.
+void find_stand_ins(const RawMesh& raw, const std::vector<Index>& duplicate_of, GatedMesh& gated) {
+    gated.stand_in.assign(raw.faces.size(), -1);
+    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
+        gated.stand_in[at(gated.source_face[f])] = static_cast<Index>(f);
+    if (gated.source_face.size() == raw.faces.size())
+        return;
+    std::vector<Index> face_at_vertex(raw.points.size(), -1);
+    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
+        for (const Index v : raw.faces[at(gated.source_face[f])])
+            face_at_vertex[at(v)] = static_cast<Index>(f);
+    for (std::size_t f = 0; f < raw.faces.size(); ++f) {
+        Index& stand_in = gated.stand_in[f];
+        if (stand_in >= 0)
+            continue;
+        if (duplicate_of[f] >= 0)
+            stand_in = gated.stand_in[at(duplicate_of[f])];
+        for (const Index v : raw.faces[f])
+            if (stand_in < 0)
+                stand_in = face_at_vertex[at(v)];
+        if (stand_in < 0)
+            stand_in = 0;
+    }
+}
+
+} // namespace
+
+GatedMesh gate_mesh(const RawMesh& raw) {
+    require_faces(raw);
+    require_valid_indices(raw);
+    require_finite(raw);
+
+    GatedMesh gated;
+    Mesh& mesh = gated.mesh;
+    normalise(raw, mesh);
+    gated.source_vertex.resize(raw.points.size());
+    std::iota(gated.source_vertex.begin(), gated.source_vertex.end(), 0);
+
+    FaceSelection selection = select_proper_faces(raw);
+    gated.source_face = std::move(selection.kept);
+    for (const Index f : gated.source_face)
+        mesh.faces.push_back(raw.faces[at(f)]);
+
+    gated.cut.assign(3 * mesh.faces.size(), 0);
+    Index crowded_edges = 0;
+    std::vector<Index> neighbour = neighbours_regardless_of_direction(
+        mesh.faces, mesh.vertex_count(), gated.cut, crowded_edges);
+    Orientation orientation = orient(mesh.faces, neighbour, gated.cut);
+    gated.flipped = std::move(orientation.flipped);
+
+    // Turn faces over: corners (a, b, c) become (a, c, b), so edge e becomes edge 2 − e.
+    const auto moved = [&](Index h) {
+        return gated.flipped[at(h / 3)] != 0 ? h / 3 * 3 + 2 - h % 3 : h;
+    };
+    std::vector<std::uint8_t> cut(gated.cut.size());
+    mesh.twin.assign(gated.cut.size(), -1);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        cut[at(moved(h))] = gated.cut[at(h)];
+        if (neighbour[at(h)] >= 0)
+            mesh.twin[at(moved(h))] = moved(neighbour[at(h)]);
+    }
+    gated.cut = std::move(cut);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        if (gated.flipped[f] != 0)
+            std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+
+    const Index split = split_fans(mesh, gated.source_vertex);
+    drop_unused_points(mesh, gated.source_vertex);
+    compute_face_geometry(mesh);
+    if (!(mesh.total_area > 0.0))
+        throw InvalidMesh("expected a surface, found " +
+                          counted(static_cast<Index>(raw.faces.size()), "face", "faces") +
+                          " without any area; there is nothing to segment");
+    find_stand_ins(raw, selection.duplicate_of, gated);
+
+    const auto note = [&](Index count, const std::string& text) {
+        if (count > 0)
+            gated.notes.push_back(text);
+    };
+    note(selection.repeated, counted(selection.repeated, "face repeats", "faces repeat") +
+                       " a vertex and was left out ('Remove Zero Area Faces' drops such faces)");
+    note(selection.duplicates, counted(selection.duplicates, "face lies", "faces lie") +
+                         " on the vertices of another one and was left out "
+                         "('Remove Duplicate Faces' drops such faces)");
+    note(crowded_edges, counted(crowded_edges, "edge has", "edges have") +
+                            " more than two faces and was cut "
+                            "('Repair non Manifold Edges' mends them)");
+    note(orientation.turned, counted(orientation.turned, "face was", "faces were") +
+                                 " read with the orientation of its neighbours "
+                                 "('Re-Orient All Faces Coherently' does it for good)");
+    note(orientation.one_sided_edges,
+         "the surface is one-sided and was cut along " +
+             counted(orientation.one_sided_edges, "edge", "edges"));
+    note(crowded_edges == 0 && orientation.one_sided_edges == 0 ? split : 0,
+         counted(split, "vertex joins", "vertices join") +
+             " fans of faces and was split ('Repair non Manifold Vertices by Splitting')");
+    return gated;
+}
+
+} // namespace devseg

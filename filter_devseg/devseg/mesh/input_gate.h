@@ -1,0 +1,46 @@
+// The one place where a host's mesh becomes a Mesh: checked, cleaned inside, mapped back.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+/// A mesh as hosts have it: any triangles, possibly non-manifold, unoriented or degenerate.
+struct RawMesh {
+    std::vector<Vec3> points;    // #V, model units
+    std::vector<Triangle> faces; // #F
+};
+
+/// The checked mesh with the way back to the host's faces ("source faces").
+///
+/// What is worked around without touching the host's mesh: faces that repeat a vertex or another
+/// face are left out, edges with more than two faces are cut, vertices where several fans touch
+/// are split, faces are oriented coherently, and one-sided surfaces are cut where no coherent
+/// orientation exists. Coordinates are moved to the origin and scaled by a power of two, so that
+/// neither the position nor the size of a model matters.
+struct GatedMesh {
+    Mesh mesh;
+    std::vector<Index> source_face;   // #F: index of the source face
+    std::vector<Index> source_vertex; // #V: index of the source vertex
+    std::vector<std::uint8_t> flipped; // #F: 1 where the orientation was turned over
+    std::vector<std::uint8_t> cut;    // 3 #F: 1 on half-edges whose edge the gate had to cut
+    std::vector<Index> stand_in; // #source faces: the face whose results it takes, −1 = none
+    std::vector<std::string> notes; // what was worked around, one sentence each
+
+    /// Source corner of corner k of face f; a turned face swaps its last two corners.
+    Index source_corner(Index f, Index k) const {
+        return flipped[at(f)] != 0 && k != 0 ? 3 - k : k;
+    }
+    /// Source edge (edge e joins corners e and e + 1) of edge e of face f.
+    Index source_edge(Index f, Index e) const { return flipped[at(f)] != 0 ? 2 - e : e; }
+};
+
+/// Throws InvalidMesh where nothing sensible can be done: no faces, an index out of range,
+/// coordinates that are not finite, all faces without area.
+GatedMesh gate_mesh(const RawMesh& raw);
+
+} // namespace devseg

@@ -1,0 +1,66 @@
+#include "devseg/mesh/mesh.h"
+
+#include <utility>
+
+namespace devseg {
+
+namespace {
+
+// A face without area has no normal of its own. It takes the area-weighted mean of its
+// neighbours', spread over several rounds so that slivers beside slivers get one as well.
+void spread_normals(Mesh& mesh, std::vector<Index> missing) {
+    while (!missing.empty()) {
+        std::vector<std::pair<Index, Vec3>> found;
+        std::vector<Index> still_missing;
+        for (const Index f : missing) {
+            Vec3 sum = Vec3::Zero();
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index opposite = mesh.twin[at(h)];
+                if (opposite >= 0)
+                    sum += mesh.face_normals[at(opposite / 3)];
+            }
+            if (sum.squaredNorm() > 0.0)
+                found.emplace_back(f, sum.normalized());
+            else
+                still_missing.push_back(f);
+        }
+        if (found.empty())
+            break;
+        for (const auto& [f, normal] : found)
+            mesh.face_normals[at(f)] = normal;
+        missing = std::move(still_missing);
+    }
+    for (const Index f : missing)
+        mesh.face_normals[at(f)] = Vec3::UnitZ(); // a component without any area: any direction
+}
+
+} // namespace
+
+void compute_face_geometry(Mesh& mesh) {
+    const std::size_t count = mesh.faces.size();
+    mesh.face_areas.resize(count);
+    mesh.face_normals.resize(count);
+    mesh.face_centers.resize(count);
+    mesh.total_area = 0.0;
+    std::vector<Index> without_normal;
+    for (std::size_t f = 0; f < count; ++f) {
+        const Triangle& t = mesh.faces[f];
+        const Vec3& a = mesh.points[at(t[0])];
+        const Vec3& b = mesh.points[at(t[1])];
+        const Vec3& c = mesh.points[at(t[2])];
+        const Vec3 normal = (b - a).cross(c - a);
+        const double length = normal.norm();
+        mesh.face_areas[f] = 0.5 * length;
+        mesh.total_area += 0.5 * length;
+        mesh.face_centers[f] = (a + b + c) / 3.0;
+        if (length > 0.0) {
+            mesh.face_normals[f] = normal / length;
+        } else {
+            mesh.face_normals[f].setZero();
+            without_normal.push_back(static_cast<Index>(f));
+        }
+    }
+    spread_normals(mesh, std::move(without_normal));
+}
+
+} // namespace devseg

@@ -1,0 +1,20 @@
+// Texture coordinates at the corners of faces ("wedges"), and the charts that they imply.
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/charts.h"
+
+namespace devseg {
+
+/// Position in the plane of corner k of face f at index 3 f + k.
+using CornerUv = std::vector<Vec2>; // 3 #F
+
+/// Charts and cuts as texture coordinates show them: an edge is a seam where the coordinates on
+/// its two sides differ by more than a millionth of the size of the whole layout.
+ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv);
+
+/// Signed area of face f in the plane, in squared units of `uv`.
+double uv_area(const CornerUv& uv, Index f);
+
+} // namespace devseg

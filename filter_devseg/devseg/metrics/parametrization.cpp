@@ -1,0 +1,162 @@
+#include "devseg/metrics/parametrization.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "devseg/flatten/map_tools.h"
+#include "devseg/metrics/overlap.h"
+#include "devseg/metrics/segmentation.h"
+
+namespace devseg {
+
+namespace {
+
+// A face thinner than this share of its longest edge squared has no shape to be compared.
+constexpr double no_area = 1e-12;
+// A face that covers less than this share of the area it should cover has collapsed in the plane.
+constexpr double collapsed = 1e-6;
+
+struct Corner3 {
+    Vec3 a, b, c;
+};
+
+Corner3 corners_on_surface(const Mesh& mesh, Index f) {
+    const Triangle& t = mesh.faces[at(f)];
+    return {mesh.points[at(t[0])], mesh.points[at(t[1])], mesh.points[at(t[2])]};
+}
+
+bool has_area(const Mesh& mesh, Index f) {
+    const Corner3 p = corners_on_surface(mesh, f);
+    const double longest = std::max(
+        {(p.b - p.a).squaredNorm(), (p.c - p.b).squaredNorm(), (p.a - p.c).squaredNorm()});
+    return mesh.face_areas[at(f)] > no_area * longest;
+}
+
+// Singular values of the affine map from the plane to the surface on one face, Γ first.
+std::array<double, 2> singular_values(const Mesh& mesh, const CornerUv& uv, Index f) {
+    const Corner3 p = corners_on_surface(mesh, f);
+    const double base = (p.b - p.a).norm();
+    const double x = (p.c - p.a).dot(p.b - p.a) / base;
+    const double y = 2.0 * mesh.face_areas[at(f)] / base;
+    Eigen::Matrix2d surface;
+    surface << base, x, 0.0, y;
+    Eigen::Matrix2d plane;
+    plane.col(0) = uv[at(3 * f + 1)] - uv[at(3 * f)];
+    plane.col(1) = uv[at(3 * f + 2)] - uv[at(3 * f)];
+    const Eigen::Matrix2d j = surface * plane.inverse();
+    const double e = std::hypot(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
+    const double g = std::hypot(j(0, 0) - j(1, 1), j(1, 0) + j(0, 1));
+    const double large = 0.5 * (e + g);
+    return {large, std::abs(j.determinant()) / large};
+}
+
+template <class Vec>
+double angle_at(const Vec& corner, const Vec& p, const Vec& q) {
+    const Vec a = p - corner;
+    const Vec b = q - corner;
+    const double dot = a.dot(b);
+    const double sine = std::sqrt(std::max(0.0, a.squaredNorm() * b.squaredNorm() - dot * dot));
+    return std::atan2(sine, dot);
+}
+
+double squared_angle_change(const Mesh& mesh, const CornerUv& uv, Index f) {
+    const Triangle& t = mesh.faces[at(f)];
+    double sum = 0.0;
+    for (Index k = 0; k < 3; ++k) {
+        const Index n = (k + 1) % 3;
+        const Index m = (k + 2) % 3;
+        const double change = angle_at(uv[at(3 * f + k)], uv[at(3 * f + n)], uv[at(3 * f + m)]) -
+                              angle_at(mesh.points[at(t[at(k)])], mesh.points[at(t[at(n)])],
+                                       mesh.points[at(t[at(m)])]);
+        sum += change * change;
+    }
+    return sum / 3.0;
+}
+
+struct ChartAreas {
+    std::vector<double> surface; // of each chart
+    std::vector<double> plane;   // sum of the absolute areas
+    std::vector<double> balance; // sum of the signed areas: its sign is the chart's orientation
+};
+
+ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts) {
+    const std::size_t count = at(charts.count);
+    ChartAreas areas{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0),
+                     std::vector<double>(count, 0.0)};
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const std::size_t c = at(charts.chart[at(f)]);
+        const double area = uv_area(uv, f);
+        areas.surface[c] += mesh.face_areas[at(f)];
+        areas.plane[c] += std::abs(area);
+        areas.balance[c] += area;
+    }
+    return areas;
+}
+
+double bounding_box_area(const CornerUv& uv) {
+    Vec2 low = uv.front();
+    Vec2 high = uv.front();
+    for (const Vec2& p : uv) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    return (high - low).prod();
+}
+
+} // namespace
+
+ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv& uv) {
+    const ChartMap charts = charts_from_uv(mesh, uv);
+    const ChartAreas areas = sum_areas(mesh, uv, charts);
+    ParametrizationMeasures result;
+    result.charts_number = charts.count;
+    for (const ChartSurface& surface : extract_charts(mesh, charts))
+        result.disk_charts_number += surface.is_disk() ? 1 : 0;
+
+    double weight = 0.0;
+    double stretch = 0.0;
+    double energy = 0.0;
+    double shear = 0.0;
+    double covered = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const std::size_t c = at(charts.chart[at(f)]);
+        const double area = mesh.face_areas[at(f)];
+        const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
+        const bool flipped = !(sign * orientation(uv[at(3 * f)], uv[at(3 * f + 1)],
+                                                  uv[at(3 * f + 2)]) > 0.0);
+        result.flipped_faces_number += flipped ? 1 : 0;
+        const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
+        const double flat = std::abs(uv_area(uv, f));
+        covered += flat;
+        if (!has_area(mesh, f) || !(flat * scale > collapsed * area))
+            continue;
+        const auto [large, small] = singular_values(mesh, uv, f);
+        // Γ² and γ² after the chart's lengths in the plane are multiplied by √scale.
+        const double large2 = large * large / scale;
+        const double small2 = small * small / scale;
+        weight += area;
+        stretch += area * 0.5 * (large2 + small2);
+        energy += area * 0.25 * (large2 + small2 + 1.0 / large2 + 1.0 / small2);
+        shear += area * squared_angle_change(mesh, uv, f);
+        result.max_area_change =
+            std::max(result.max_area_change, std::abs(1.0 - flat * scale / area));
+        if (!flipped)
+            result.linf_stretch = std::max(result.linf_stretch, std::sqrt(large2));
+    }
+    if (weight > 0.0) {
+        result.l2_stretch = std::sqrt(stretch / weight);
+        result.symmetric_dirichlet_energy = energy / weight;
+        result.l2_shear = std::sqrt(shear / weight);
+    }
+    for (const std::uint8_t overlapping : find_overlapping_faces(mesh, uv))
+        result.overlapping_faces_number += overlapping;
+    result.seam_length = seam_length(mesh, charts);
+    const double box = bounding_box_area(uv);
+    result.packing_efficiency = box > 0.0 ? covered / box : 0.0;
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,45 @@
+// Packing flat charts into the unit square, by outline and at one common scale.
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+
+struct PackOptions {
+    double padding = 0.002;     // least distance of two charts, as a share of the square's side
+    bool allow_rotation = true; // turn each chart to its best box and by quarter turns
+};
+
+/// A chart to pack, in any units that all charts share.
+struct PackItem {
+    const std::vector<Triangle>* faces = nullptr; // #f
+    const std::vector<Vec2>* points = nullptr;    // #v
+};
+
+/// The rigid motion of one chart: rotation first, then translation. Never a mirror image.
+struct Placement {
+    double cosine = 1.0;
+    double sine = 0.0;
+    Vec2 offset = Vec2::Zero();
+
+    Vec2 operator()(const Vec2& p) const {
+        return Vec2(cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()) + offset;
+    }
+};
+
+struct PackResult {
+    std::vector<Placement> placements; // one for each item, in the items' units
+    double side = 0.0;                 // of the square [0, side]² that holds all of them
+};
+
+/// Charts are placed from the largest to the smallest, each at the lowest free place of a bit
+/// image of the sheet; holes of placed charts are free places like others. The smallest square in
+/// which all fit is searched. Placed charts are at least `padding` · side apart. Throws
+/// InvalidParameter for a padding outside of [0, 0.1], Cancelled.
+PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
+                       Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,357 @@
+#include "devseg/pattern/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <numeric>
+#include <sstream>
+
+#include "devseg/errors.h"
+#include "devseg/pattern/label_point.h"
+
+namespace devseg {
+
+namespace {
+
+// Beyond these sizes positions in double precision no longer hold a piece's shape next to the
+// margins of the sheet (10 mm), or 0.1 mm on the sheet.
+constexpr double smallest_layout_mm = 1e-10;
+constexpr double largest_layout_mm = 1e12;
+
+// A chart that covers less than this share of its own area has collapsed in the plane.
+constexpr double collapsed = 1e-6;
+
+// A chart with less than this share of all area, on the model and in the plane, is a degenerate
+// face that some atlas gave a chart of its own. On a sheet of a square metre it is 1 µm wide.
+constexpr double crumb = 1e-12;
+
+// Share of its squared perimeter that a hole must enclose. Less is a cut whose sides coincide,
+// such as the gate makes at edges with three faces: nothing to cut out there.
+constexpr double no_area = 1e-12;
+
+// A model thinner along y than this share of its size has no height to be scaled by.
+constexpr double no_extent = 1e-9;
+
+// Larger errors of a piece's lengths are reported. 'Charts: Flatten' keeps all areas; other
+// makers of texture coordinates often do not.
+constexpr double scale_tolerance = 0.01;
+
+// Distance of pieces that had to be moved, as a share of the layout's size.
+constexpr double shelf_gap = 0.02;
+
+std::string number(double value) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << value;
+    return text.str();
+}
+
+void check_options(const PatternOptions& o) {
+    if (!(o.mm_per_unit > 0.0) || !std::isfinite(o.mm_per_unit))
+        throw InvalidParameter("mm_per_unit: expected a number above 0, found " +
+                               number(o.mm_per_unit));
+    if (!(o.height_mm >= 0.0) || !std::isfinite(o.height_mm))
+        throw InvalidParameter("height_mm: expected a number above 0, or 0 to scale by "
+                               "mm_per_unit, found " + number(o.height_mm));
+}
+
+// Millimetres for one internal unit of the mesh.
+double paper_scale(const Mesh& mesh, const PatternOptions& options) {
+    if (options.height_mm == 0.0)
+        return options.mm_per_unit * mesh.unit_length;
+    Vec3 low = mesh.points.front();
+    Vec3 high = low;
+    for (const Vec3& p : mesh.points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double extent = high.y() - low.y();
+    if (!(extent > no_extent * (high - low).norm()))
+        throw InvalidParameter("height_mm: expected a model with a height, found one without "
+                               "extent along y; give mm_per_unit instead");
+    return options.height_mm / extent;
+}
+
+constexpr const char* remedy = "; run 'Charts: Flatten' first";
+
+void check_coordinates(const CornerUv& uv) {
+    std::vector<Index> bad;
+    for (std::size_t f = 0; 3 * f < uv.size(); ++f)
+        if (!uv[3 * f].allFinite() || !uv[3 * f + 1].allFinite() || !uv[3 * f + 2].allFinite())
+            bad.push_back(static_cast<Index>(f));
+    if (!bad.empty())
+        throw InvalidMesh("expected finite texture coordinates, found NaN or infinite ones on " +
+                              std::to_string(bad.size()) +
+                              (bad.size() == 1 ? " face" : " faces") + remedy,
+                          bad);
+    if (std::all_of(uv.begin(), uv.end(), [&](const Vec2& p) { return p == uv.front(); }))
+        throw InvalidMesh(std::string("expected texture coordinates that lay the charts out, "
+                                      "found all of them at one point") + remedy);
+}
+
+struct ChartAreas {
+    std::vector<double> surface; // of each chart, internal units squared
+    std::vector<double> plane;   // of each chart, signed, uv units squared
+    double surface_total = 0.0;
+    double plane_total = 0.0; // of all faces, without sign
+
+    // Internal units for one unit of the texture coordinates.
+    double scale() const { return std::sqrt(surface_total / plane_total); }
+    bool is_crumb(std::size_t c) const {
+        return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
+    }
+};
+
+ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts) {
+    ChartAreas areas;
+    areas.surface.assign(at(charts.count), 0.0);
+    areas.plane.assign(at(charts.count), 0.0);
+    areas.surface_total = mesh.total_area;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const double area = uv_area(uv, f);
+        areas.surface[at(charts.chart[at(f)])] += mesh.face_areas[at(f)];
+        areas.plane[at(charts.chart[at(f)])] += area;
+        areas.plane_total += std::abs(area);
+    }
+    if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
+        throw InvalidMesh(std::string("expected texture coordinates that cover an area, found ") +
+                          (areas.plane_total > 0.0 ? "some that are too large to measure"
+                                                   : "none") + remedy);
+    return areas;
+}
+
+// Charts without area in the plane cannot be cut; crumbs need not be.
+void check_charts(const ChartMap& charts, const ChartAreas& areas) {
+    const double scale = areas.scale();
+    std::vector<std::uint8_t> is_bad(at(charts.count), 0);
+    Index count = 0;
+    for (std::size_t c = 0; c < is_bad.size(); ++c)
+        if (!areas.is_crumb(c) &&
+            !(std::abs(areas.plane[c]) * scale * scale >= collapsed * areas.surface[c])) {
+            is_bad[c] = 1;
+            ++count;
+        }
+    if (count == 0)
+        return;
+    std::vector<Index> faces;
+    for (std::size_t f = 0; f < charts.chart.size(); ++f)
+        if (is_bad[at(charts.chart[f])] != 0)
+            faces.push_back(static_cast<Index>(f));
+    throw InvalidMesh("expected charts that lie flat in the texture coordinates, found " +
+                          std::to_string(count) + " of " + std::to_string(charts.count) +
+                          (count == 1 ? " that covers" : " that cover") + " no area" + remedy,
+                      faces);
+}
+
+double perimeter(const std::vector<Vec2>& points) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        length += (points[(i + 1) % points.size()] - points[i]).norm();
+    return length;
+}
+
+// A fan of triangles from the first point: as exact for pieces that lie far from the origin.
+double signed_area(const std::vector<Vec2>& points) {
+    double twice = 0.0;
+    for (std::size_t i = 2; i < points.size(); ++i) {
+        const Vec2 p = points[i - 1] - points.front();
+        const Vec2 q = points[i] - points.front();
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
+
+// Corners of the texture coordinates along a boundary loop; `place` brings them to paper.
+template <class Place>
+PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
+                Place place) {
+    PiecePath path;
+    for (const Index h : loop) {
+        const Vec2 p = place(uv[at(surface.mesh_half_edge(h))]);
+        if (path.points.empty() || p != path.points.back())
+            path.points.push_back(p);
+    }
+    while (path.points.size() > 1 && path.points.back() == path.points.front())
+        path.points.pop_back();
+    path.area = signed_area(path.points);
+    return path;
+}
+
+void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
+    const auto outer = std::max_element(
+        paths.begin(), paths.end(),
+        [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
+    std::swap(*outer, paths.front());
+    piece.outer = std::move(paths.front());
+    piece.area = piece.outer.area;
+    for (const Vec2& p : piece.outer.points)
+        piece.box.extend(p);
+    for (std::size_t i = 1; i < paths.size(); ++i) {
+        const double length = perimeter(paths[i].points);
+        if (std::abs(paths[i].area) <= no_area * length * length)
+            continue;
+        piece.area += paths[i].area;
+        piece.holes.push_back(std::move(paths[i]));
+    }
+}
+
+void move(PatternPiece& piece, const Vec2& offset) {
+    const auto shift = [&](PiecePath& path) {
+        for (Vec2& p : path.points)
+            p += offset;
+    };
+    shift(piece.outer);
+    std::for_each(piece.holes.begin(), piece.holes.end(), shift);
+    piece.box.translate(offset);
+}
+
+Eigen::AlignedBox2d bounds(const std::vector<PatternPiece>& pieces) {
+    Eigen::AlignedBox2d box;
+    for (const PatternPiece& piece : pieces)
+        box.extend(piece.box);
+    return box;
+}
+
+// A piece that was turned over in its place may stick into its neighbours. Where even the boxes
+// keep clear it stays; the others go to rows above the layout.
+void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& turned) {
+    const Eigen::AlignedBox2d layout = bounds(pieces);
+    const double gap = shelf_gap * layout.sizes().maxCoeff();
+    std::vector<std::size_t> moved;
+    for (const std::size_t i : turned)
+        for (std::size_t j = 0; j < pieces.size(); ++j)
+            if (j != i && !pieces[i].box.intersection(pieces[j].box).isEmpty()) {
+                moved.push_back(i);
+                break;
+            }
+    Vec2 corner(layout.min().x(), layout.max().y() + gap);
+    double row_height = 0.0;
+    for (const std::size_t i : moved) {
+        const Vec2 size = pieces[i].box.sizes();
+        if (corner.x() > layout.min().x() && corner.x() + size.x() > layout.max().x()) {
+            corner = Vec2(layout.min().x(), corner.y() + row_height + gap);
+            row_height = 0.0;
+        }
+        move(pieces[i], corner - pieces[i].box.min());
+        corner.x() += size.x() + gap;
+        row_height = std::max(row_height, size.y());
+    }
+}
+
+// All names equally long, so that they sort: P01 … P12, or P001 … P120.
+void number_pieces(std::vector<PatternPiece>& pieces) {
+    const std::size_t digits = std::max<std::size_t>(2, std::to_string(pieces.size()).size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::string ordinal = std::to_string(i + 1);
+        pieces[i].name = 'P' + std::string(digits - ordinal.size(), '0') + ordinal;
+    }
+}
+
+void note_scale_errors(Pattern& pattern) {
+    const PatternPiece* worst = nullptr;
+    const auto error = [](const PatternPiece& p) { return std::abs(std::log(p.length_scale)); };
+    for (const PatternPiece& piece : pattern.pieces)
+        if (error(piece) > scale_tolerance && (worst == nullptr || error(piece) > error(*worst)))
+            worst = &piece;
+    if (worst != nullptr)
+        pattern.notes.push_back("the charts are not at one common scale in the texture "
+                                "coordinates: lengths of piece " + worst->name + " are " +
+                                number(std::round(1000.0 * worst->length_scale) / 10.0) +
+                                " % of the true ones ('Charts: Flatten' keeps the scale)");
+}
+
+// All pieces where the texture coordinates put them, up to a common shift.
+std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
+                                       const ChartMap& charts, const ChartAreas& areas,
+                                       double mm, Progress& progress) {
+    const double mm_per_uv = areas.scale() * mm;
+    const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
+    // A layout that is mirrored for the most part is mirrored as a whole, which keeps its pieces
+    // apart as they were; what is still mirrored then is turned over in its place.
+    const double balance = std::accumulate(areas.plane.begin(), areas.plane.end(), 0.0);
+    const double side = balance < 0.0 ? -1.0 : 1.0;
+    std::vector<PatternPiece> pieces;
+    std::vector<std::size_t> turned;
+    for (std::size_t c = 0; c < surfaces.size(); ++c) {
+        progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
+        if (areas.is_crumb(c) || surfaces[c].loops.empty())
+            continue;
+        const double mirror = areas.plane[c] < 0.0 ? -1.0 : 1.0;
+        std::vector<PiecePath> paths;
+        for (const std::vector<Index>& loop : surfaces[c].loops)
+            paths.push_back(trace(surfaces[c], loop, uv, [&](const Vec2& p) {
+                const Vec2 local = mm_per_uv * (p - uv.front());
+                return Vec2(mirror * local.x(), local.y());
+            }));
+        PatternPiece piece;
+        piece.chart = static_cast<Index>(c);
+        set_paths(piece, std::move(paths));
+        if (mirror != side) {
+            move(piece, Vec2(-2.0 * piece.box.center().x(), 0.0));
+            turned.push_back(pieces.size());
+        }
+        pieces.push_back(std::move(piece));
+    }
+    shelve(pieces, turned);
+    return pieces;
+}
+
+// The layout's lower left corner comes to the origin.
+void place_on_sheet(Pattern& pattern, const char* scale_name) {
+    const Eigen::AlignedBox2d box = bounds(pattern.pieces);
+    pattern.width = box.sizes().x();
+    pattern.height = box.sizes().y();
+    const double size = std::max(pattern.width, pattern.height);
+    if (!(size >= smallest_layout_mm) || !(size <= largest_layout_mm))
+        throw InvalidParameter(std::string(scale_name) +
+                               ": expected a scale at which the pieces take " +
+                               number(smallest_layout_mm) + " to " + number(largest_layout_mm) +
+                               " mm, found " + number(size) + " mm");
+    for (PatternPiece& piece : pattern.pieces)
+        move(piece, -box.min());
+}
+
+void place_label(PatternPiece& piece) {
+    std::vector<const std::vector<Vec2>*> outlines = {&piece.outer.points};
+    for (const PiecePath& hole : piece.holes)
+        outlines.push_back(&hole.points);
+    const LabelPoint point = find_label_point(outlines);
+    piece.label_position = point.position;
+    piece.label_radius = point.radius;
+}
+
+} // namespace
+
+Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+                     Progress& progress) {
+    check_options(options);
+    const double mm = paper_scale(mesh, options);
+    check_coordinates(uv);
+
+    progress.begin_phase("reading charts", 0.2);
+    const ChartMap charts = charts_from_uv(mesh, uv);
+    const ChartAreas areas = measure_charts(mesh, uv, charts);
+    check_charts(charts, areas);
+
+    progress.begin_phase("tracing outlines", 0.4);
+    Pattern pattern;
+    pattern.mm_per_unit = mm / mesh.unit_length;
+    pattern.pieces = trace_pieces(mesh, uv, charts, areas, mm, progress);
+    place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
+
+    progress.begin_phase("naming pieces", 0.4);
+    number_pieces(pattern.pieces);
+    for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
+        PatternPiece& piece = pattern.pieces[i];
+        const std::size_t c = at(piece.chart);
+        if (areas.surface[c] > 0.0)
+            piece.length_scale =
+                areas.scale() * std::sqrt(std::abs(areas.plane[c]) / areas.surface[c]);
+        place_label(piece);
+        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+    }
+    note_scale_errors(pattern);
+    return pattern;
+}
+
+} // namespace devseg

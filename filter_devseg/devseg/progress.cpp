@@ -1,0 +1,44 @@
+#include "devseg/progress.h"
+
+#include <algorithm>
+
+#include "devseg/errors.h"
+
+namespace devseg {
+
+namespace {
+// Hosts redraw a progress bar at every call: more often than this only costs time, and less often
+// would make cancelling feel slow.
+constexpr std::chrono::milliseconds minimum_interval{20};
+} // namespace
+
+void Progress::begin_phase(const char* name, double share) {
+    phase_start_ = std::min(1.0, phase_start_ + phase_share_);
+    phase_share_ = std::clamp(share, 0.0, 1.0 - phase_start_);
+    phase_ = name;
+    last_call_ = {};
+    update(0.0);
+}
+
+void Progress::update(double phase_fraction) {
+    check();
+    if (!callback_)
+        return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_call_ < minimum_interval)
+        return;
+    last_call_ = now;
+    const double fraction = phase_start_ + phase_share_ * std::clamp(phase_fraction, 0.0, 1.0);
+    last_fraction_ = std::max(last_fraction_, fraction);
+    if (!callback_(last_fraction_, phase_)) {
+        cancelled_.store(true, std::memory_order_relaxed);
+        throw Cancelled();
+    }
+}
+
+void Progress::check() const {
+    if (cancelled())
+        throw Cancelled();
+}
+
+} // namespace devseg

@@ -1,0 +1,52 @@
+// Region growing with one queue for each chart [JKS05, section 3.1]; shared by methods that differ
+// in the cost of adding a face.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+/// A 4-ary min-heap of candidate faces; flatter than a binary one, so fewer cache misses.
+class CandidateHeap {
+public:
+    struct Entry {
+        float key;      // cost without the factor that all entries of this chart share
+        float distance; // length of the path from the chart's seed
+        Index face;
+    };
+
+    bool empty() const { return entries_.empty(); }
+    const Entry& top() const { return entries_.front(); }
+    void clear() { entries_.clear(); }
+    void push(const Entry& entry);
+    void pop();
+
+private:
+    static bool before(const Entry& a, const Entry& b) {
+        return a.key != b.key ? a.key < b.key : a.face < b.face; // ties by face: deterministic
+    }
+    std::vector<Entry> entries_;
+};
+
+/// Finds the chart with the smallest key among all, after one chart's key changed: O(log n).
+class Tournament {
+public:
+    explicit Tournament(Index players);
+    void set(Index player, float key);
+    Index winner() const { return winner_[1]; }
+    float key(Index player) const { return keys_[at(player)]; }
+
+private:
+    Index better(Index a, Index b) const {
+        return keys_[at(b)] < keys_[at(a)] ? b : a; // ties: the lower number, which is a
+    }
+    Index leaves_ = 1;
+    std::vector<float> keys_;
+    std::vector<Index> winner_;
+};
+
+} // namespace devseg

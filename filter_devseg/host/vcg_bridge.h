@@ -1,0 +1,139 @@
+// Between the host's mesh (VCG) and the plain arrays of the core. Reads and writes live elements
+// only, in their order; the same sources serve both scalar types and all versions of the host.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <common/ml_document/mesh_model.h>
+
+#include "devseg/filters/filter.h"
+
+namespace devseg {
+
+inline RawMesh read_raw_mesh(const CMeshO& m) {
+    RawMesh raw;
+    std::vector<Index> live(m.vert.size(), -1);
+    raw.points.reserve(static_cast<std::size_t>(m.vn));
+    for (std::size_t v = 0; v < m.vert.size(); ++v)
+        if (!m.vert[v].IsD()) {
+            live[v] = static_cast<Index>(raw.points.size());
+            const auto& p = m.vert[v].cP();
+            raw.points.emplace_back(p[0], p[1], p[2]);
+        }
+    raw.faces.reserve(static_cast<std::size_t>(m.fn));
+    for (const auto& f : m.face)
+        if (!f.IsD())
+            raw.faces.push_back({live[vcg::tri::Index(m, f.cV(0))], live[vcg::tri::Index(m, f.cV(1))],
+                                 live[vcg::tri::Index(m, f.cV(2))]});
+    return raw;
+}
+
+/// Wedge texture coordinates of the live faces; the mesh must have them enabled.
+inline std::vector<std::array<Vec2, 3>> read_wedge_uv(const CMeshO& m) {
+    std::vector<std::array<Vec2, 3>> uv;
+    uv.reserve(static_cast<std::size_t>(m.fn));
+    for (const auto& f : m.face)
+        if (!f.IsD())
+            uv.push_back({Vec2(f.cWT(0).U(), f.cWT(0).V()), Vec2(f.cWT(1).U(), f.cWT(1).V()),
+                          Vec2(f.cWT(2).U(), f.cWT(2).V())});
+    return uv;
+}
+
+/// A custom scalar attribute of the live faces; empty when the mesh does not have it.
+inline std::vector<double> read_face_attribute(const CMeshO& m, const std::string& name) {
+    std::vector<double> values;
+    const auto handle = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<Scalarm>(m, name);
+    if (!vcg::tri::Allocator<CMeshO>::IsValidHandle(m, handle))
+        return values;
+    values.reserve(static_cast<std::size_t>(m.fn));
+    for (std::size_t f = 0; f < m.face.size(); ++f)
+        if (!m.face[f].IsD())
+            values.push_back(static_cast<double>(handle[f]));
+    return values;
+}
+
+inline void write_face_attribute(CMeshO& m, const std::string& name,
+                                 const std::vector<int>& values) {
+    auto handle = vcg::tri::Allocator<CMeshO>::GetPerFaceAttribute<Scalarm>(m, name);
+    std::size_t i = 0;
+    for (std::size_t f = 0; f < m.face.size(); ++f)
+        if (!m.face[f].IsD())
+            handle[f] = static_cast<Scalarm>(values[i++]);
+}
+
+inline HostMesh read_host_mesh(const MeshModel& model) {
+    HostMesh host;
+    host.geometry = read_raw_mesh(model.cm);
+    host.chart_id = read_face_attribute(model.cm, "chart_id");
+    host.seam_edges = read_face_attribute(model.cm, "seam_edges");
+    if (model.hasDataMask(MeshModel::MM_WEDGTEXCOORD))
+        host.wedge_uv = read_wedge_uv(model.cm);
+    return host;
+}
+
+/// Writes what the result holds, after the filter has succeeded; returns the bits of what changed.
+inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
+    unsigned changed = MeshModel::MM_NONE;
+    const auto enable = [&](int mask) {
+        model.updateDataMask(mask);
+        changed |= static_cast<unsigned>(mask);
+    };
+    if (!result.face_quality.empty())
+        enable(MeshModel::MM_FACEQUALITY);
+    if (!result.face_color.empty())
+        enable(MeshModel::MM_FACECOLOR);
+    if (!result.wedge_uv.empty())
+        enable(MeshModel::MM_WEDGTEXCOORD);
+    if (!result.chart_id.empty()) {
+        write_face_attribute(model.cm, "chart_id", result.chart_id);
+        write_face_attribute(model.cm, "seam_edges", result.seam_edges);
+        changed |= MeshModel::MM_FACEFLAG;
+    }
+    std::size_t i = 0;
+    for (auto& f : model.cm.face) {
+        if (f.IsD())
+            continue;
+        if (!result.face_quality.empty())
+            f.Q() = static_cast<Scalarm>(result.face_quality[i]);
+        if (!result.face_color.empty()) {
+            const Color& c = result.face_color[i];
+            f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
+        }
+        for (int k = 0; k < 3; ++k) {
+            if (!result.wedge_uv.empty()) {
+                const Vec2& p = result.wedge_uv[i][static_cast<std::size_t>(k)];
+                f.WT(k).U() = static_cast<float>(p.x());
+                f.WT(k).V() = static_cast<float>(p.y());
+                f.WT(k).N() = 0;
+            }
+            if (!result.seam_edges.empty()) {
+                if ((result.seam_edges[i] >> k) & 1)
+                    f.SetFaceEdgeS(k);
+                else
+                    f.ClearFaceEdgeS(k);
+            }
+        }
+        ++i;
+    }
+    return changed;
+}
+
+/// Selects exactly the given live faces, so that the user sees which ones are meant.
+inline void select_faces(CMeshO& m, const std::vector<Index>& faces) {
+    std::vector<bool> wanted(static_cast<std::size_t>(m.fn), false);
+    for (const Index f : faces)
+        wanted[static_cast<std::size_t>(f)] = true;
+    std::size_t i = 0;
+    for (auto& f : m.face) {
+        if (f.IsD())
+            continue;
+        if (wanted[i++])
+            f.SetS();
+        else
+            f.ClearS();
+    }
+}
+
+} // namespace devseg

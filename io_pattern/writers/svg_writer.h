@@ -1,0 +1,18 @@
+// Drawing → SVG 1.1 with Inkscape's layers.
+#pragma once
+
+#include <string>
+
+#include "writers/drawing.h"
+
+namespace devseg {
+
+/// The file's bytes (UTF-8): 1 user unit is 1 mm. The same drawing gives the same bytes, whatever
+/// the locale. All numbers of the drawing must be finite.
+std::string svg_bytes(const Drawing& drawing);
+
+/// Writes under a temporary name and renames: `path` (UTF-8) holds the whole drawing afterwards,
+/// or is as it was. Throws FileError.
+void save_svg(const std::string& path, const Drawing& drawing);
+
+} // namespace devseg

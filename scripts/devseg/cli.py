@@ -1,0 +1,231 @@
+"""The command line `devseg`."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from devseg.errors import DevsegError, one_line
+from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS
+
+FORMATS = ("svg", "ply", "obj")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs a command; returns 0, or 1 after one line on stderr (argparse leaves with 2)."""
+    parser = _parser()
+    args = parser.parse_args(argv)
+    return guarded(lambda: args.command(args, args.subparser))
+
+
+def guarded(command: Callable[[], None]) -> int:
+    """Turns every failure into one line, and a traceback only where DEVSEG_DEBUG asks for it."""
+    try:
+        command()
+    except (DevsegError, KeyboardInterrupt, Exception) as error:
+        if os.environ.get("DEVSEG_DEBUG"):
+            raise
+        print(f"devseg: error: {_message(error)}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _message(error: BaseException) -> str:
+    if isinstance(error, DevsegError):
+        return one_line(str(error))
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted; nothing of the unfinished input was written"
+    if isinstance(error, OSError) and error.strerror:
+        return one_line(f"{error.filename or 'file'}: {error.strerror}")
+    text = one_line(f"{type(error).__name__}: {error}")
+    return f"unexpected {text}; please report it with the output of DEVSEG_DEBUG=1"
+
+
+def _parser() -> argparse.ArgumentParser:
+    from devseg import __version__
+
+    parser = argparse.ArgumentParser(
+        prog="devseg",
+        description="Cuts meshes into few, nearly developable charts and makes patterns of them.",
+    )
+    parser.add_argument("--version", action="version", version=f"devseg {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    run = commands.add_parser("run", help="segment, flatten, pack and export meshes")
+    run.add_argument("input", nargs="+", type=Path, metavar="INPUT", help="a mesh file")
+    run.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="for the files")
+    add_run_options(run)
+    run.set_defaults(command=run_command, subparser=run)
+
+    measure = commands.add_parser("measure", help="measures of a mesh with texture coordinates")
+    measure.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
+    measure.add_argument("--json", action="store_true", help="print them as JSON")
+    measure.set_defaults(command=_measure_command, subparser=measure)
+
+    info = commands.add_parser("info", help="versions, plugins, filters and hosts")
+    info.set_defaults(command=_info_command, subparser=info)
+    return parser
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `devseg run` beside its inputs and its folder."""
+    parser.add_argument("--method", choices=METHODS, default="dcharts", help="default: dcharts")
+    parser.add_argument(
+        "--charts", type=_integer(1), metavar="N", help="number of charts to start from"
+    )
+    parser.add_argument(
+        "--max-fitting-error", type=_positive, metavar="E", help="how far from developable"
+    )
+    parser.add_argument("--max-iterations", type=_integer(1), metavar="N", help="at most N rounds")
+    parser.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
+    parser.add_argument(
+        "--flatten",
+        choices=FLATTENINGS,
+        default="symmetric-dirichlet",
+        help="default: symmetric-dirichlet",
+    )
+    parser.add_argument(
+        "--formats",
+        type=_formats,
+        default=("svg", "ply"),
+        metavar="LIST",
+        help=f"of {','.join(FORMATS)}; default: svg,ply",
+    )
+    scale = parser.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--height-mm", type=_positive, metavar="H", help="height (y) of the finished object"
+    )
+    scale.add_argument(
+        "--mm-per-unit", type=_positive, metavar="S", help="size of a model unit; default: 1"
+    )
+    parser.add_argument(
+        "--json", action="store_true", help="print the results as JSON (a list for several inputs)"
+    )
+
+
+def _integer(least: int) -> Callable[[str], int]:
+    def integer(text: str) -> int:
+        value = int(text) if text.lstrip("+-").isdecimal() else None
+        # The host stores integers in 32 bits.
+        if value is None or not least <= value < 2**31:
+            raise argparse.ArgumentTypeError(
+                f"expected a whole number of at least {least}, found '{text}'"
+            )
+        return value
+
+    return integer
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (value > 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"expected a number above 0, found '{text}'")
+    return value
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    chosen = tuple(dict.fromkeys(text.lower().split(",")))
+    for name in chosen:
+        if name not in FORMATS:
+            raise argparse.ArgumentTypeError(
+                f"expected some of {','.join(FORMATS)}, found '{name}'"
+            )
+    return chosen
+
+
+def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
+    """`devseg run`; parser reports wrong usage."""
+    from devseg.outputs import to_json
+    from devseg.pipeline import RunOptions, run
+
+    method = METHODS[args.method]
+    given = {name: getattr(args, name) for name in METHOD_OPTIONS}
+    segmentation: dict[str, Any] = {}
+    for name, value in given.items():
+        if value is None:
+            continue
+        if name not in method.options:
+            parser.error(f"--{name.replace('_', '-')} does not apply to --method {method.name}")
+        segmentation[method.options[name]] = value
+    _check_names(args, parser)
+    if args.height_mm:
+        scale = {"height_mm": args.height_mm}
+    else:
+        scale = {"mm_per_unit": args.mm_per_unit or 1.0}
+    options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, scale)
+    results = []
+    for path in args.input:
+        result = run(path, options)
+        for warning in result["warnings"]:
+            print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
+        results.append(result)
+        if not args.json:
+            print(_summary(result, args.out))
+    if args.json:
+        sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
+
+
+def _check_names(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
+    """No input may overwrite another's outputs, nor be overwritten by them."""
+    seen: dict[str, Path] = {}
+    for path in args.input:
+        if path.stem in seen:
+            parser.error(
+                f"{seen[path.stem]} and {path} would write the same files; use one -o DIR for each"
+            )
+        seen[path.stem] = path
+        for extension in args.formats:
+            target = args.out / f"{path.stem}.{extension}"
+            if target.exists() and path.exists() and target.samefile(path):
+                parser.error(f"{path} would be overwritten; choose another -o DIR")
+
+
+_LABELS = {
+    "svg": "pattern",
+    "ply": "mesh",
+    "obj": "mesh",
+    "png": "picture",
+    "json": "measures",
+}
+
+
+def _summary(result: dict[str, Any], out: Path) -> str:
+    lines = [f"{_LABELS[kind]:<9} {out / name}" for kind, name in result["outputs"].items()]
+    flat = result["parametrization"]
+    figures = [
+        f"{flat['charts_number']} charts",
+        f"L2 stretch {flat['l2_stretch']:.4g}",
+        f"Linf stretch {flat['linf_stretch']:.4g}",
+        f"seams {flat['seam_length']:.4g} units",
+        f"packing {100 * flat['packing_efficiency']:.0f} %",
+        f"{sum(result['seconds'].values()):.1f} s",
+    ]
+    return "\n".join([*lines, f"{'figures':<9} {', '.join(figures)}"])
+
+
+def _measure_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    from devseg.measure import measure
+    from devseg.outputs import to_json
+
+    result = measure(args.input)
+    if args.json:
+        sys.stdout.write(to_json(result))
+        return
+    for group in ("segmentation", "parametrization"):
+        print(group)
+        for name, value in result[group].items():
+            print(f"  {name:<28} {value:.6g}")
+
+
+def _info_command(_: argparse.Namespace, __: argparse.ArgumentParser) -> None:
+    from devseg.info import info
+
+    print(info())

@@ -1,0 +1,105 @@
+"""The host, pymeshlab: its import, its chatter and the data of its meshes."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import tempfile
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from devseg.errors import DevsegError, one_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import ModuleType
+
+    import numpy as np
+
+
+class Chatter:
+    """What the host printed during a `captured` block; complete when the block has ended."""
+
+    text = ""
+
+
+@contextlib.contextmanager
+def captured() -> Iterator[Chatter]:
+    """Keeps what C++ code prints off the terminal and out of a JSON on stdout.
+
+    Works on the file descriptors, as the host does not go through sys.stdout. DEVSEG_DEBUG=1
+    passes the text on to stderr.
+    """
+    chatter = Chatter()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    with tempfile.TemporaryFile() as sink:
+        saved = os.dup(1), os.dup(2)
+        try:
+            os.dup2(sink.fileno(), 1)
+            os.dup2(sink.fileno(), 2)
+            yield chatter
+        finally:
+            # Python code of pymeshlab prints too, into buffers that must empty into the sink.
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os.dup2(saved[0], 1)
+            os.dup2(saved[1], 2)
+            os.close(saved[0])
+            os.close(saved[1])
+            sink.seek(0)
+            chatter.text = sink.read().decode(errors="replace")
+            if os.environ.get("DEVSEG_DEBUG") and chatter.text:
+                sys.stderr.write(chatter.text)
+
+
+def pymeshlab() -> ModuleType:
+    """The pymeshlab module; an error that says what to do where it is not installed."""
+    if "pymeshlab" in sys.modules:
+        return sys.modules["pymeshlab"]
+    try:
+        # It loads some sixty plugins and prints a warning about each that it cannot load.
+        with captured():
+            import pymeshlab as module
+    except ImportError as error:
+        raise DevsegError(
+            f"pymeshlab cannot be imported ({one_line(str(error))}); run scripts/quickstart.sh"
+        ) from error
+    return module
+
+
+@dataclass(frozen=True)
+class MeshData:
+    """A mesh with its flattening, as arrays.
+
+    Attributes:
+        vertices: #V by 3.
+        faces: #F by 3, vertex indices.
+        texcoords: #F by 3 by 2, of every face corner.
+        charts: #F, the chart of every face, 0 to n-1.
+        seams: #F by 3, whether the face's edges (v0v1), (v1v2), (v2v0) are cut.
+        colors: #F by 3, red, green, blue from 0 to 1.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    texcoords: np.ndarray
+    charts: np.ndarray
+    seams: np.ndarray
+    colors: np.ndarray
+
+
+def mesh_data(mesh: Any) -> MeshData:
+    """The arrays of a pymeshlab mesh that carries charts, seams and texture coordinates."""
+    import numpy as np
+
+    seams = mesh.face_custom_scalar_attribute_array("seam_edges").astype(np.int64)
+    return MeshData(
+        vertices=mesh.vertex_matrix(),
+        faces=mesh.face_matrix().astype(np.int64),
+        texcoords=mesh.wedge_tex_coord_matrix().reshape(-1, 3, 2),
+        charts=mesh.face_custom_scalar_attribute_array("chart_id").astype(np.int64),
+        seams=(seams[:, None] & np.array([1, 2, 4])) != 0,
+        colors=mesh.face_color_matrix()[:, :3],
+    )

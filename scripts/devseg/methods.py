@@ -1,0 +1,46 @@
+"""The methods that the command line offers: one entry each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Method:
+    """A segmentation method.
+
+    Attributes:
+        name: word of the command line.
+        filter: name of the filter.
+        options: options of the command line and the filter parameters they set; an option that
+            is not here does not apply to the method.
+    """
+
+    name: str
+    filter: str
+    options: Mapping[str, str]
+
+
+# Every segmentation filter has these.
+_COMMON = {"seed": "random_seed", "max_iterations": "max_iterations"}
+
+METHODS = {
+    method.name: method
+    for method in (
+        Method(
+            "dcharts",
+            "compute_segmentation_dcharts_per_face",
+            {"charts": "charts_number", "max_fitting_error": "max_fitting_error", **_COMMON},
+        ),
+    )
+}
+
+# Words of --flatten and the values of the filter's parameter "method".
+FLATTENINGS = {
+    "symmetric-dirichlet": "Symmetric Dirichlet",
+    "lscm": "LSCM",
+}
+
+# The options of the command line that a method may take.
+METHOD_OPTIONS = ("charts", "max_fitting_error", "seed", "max_iterations")

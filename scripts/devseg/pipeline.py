@@ -1,0 +1,166 @@
+"""`devseg run`: one mesh in, its pattern, coloured mesh, picture and measures out."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from devseg import host
+from devseg.errors import DevsegError, host_message
+from devseg.load import load_mesh
+from devseg.methods import FLATTENINGS, Method
+from devseg.outputs import staged, to_json
+from devseg.plugins import load_plugins
+from devseg.progress import Progress
+
+CUT_FILTER = "compute_seams_charts_to_disks_per_edge"
+FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
+PACK_FILTER = "apply_texcoord_chart_packing_per_wedge"
+COLOR_FILTER = "compute_color_by_chart_per_face"
+SEGMENTATION_MEASURES = "get_segmentation_measures"
+PARAMETRIZATION_MEASURES = "get_parametrization_measures"
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What `devseg run` is to do with every input.
+
+    Attributes:
+        out: folder of the outputs.
+        method: segmentation method.
+        segmentation: parameters of its filter that differ from the defaults.
+        flatten: key of FLATTENINGS.
+        formats: svg, ply, obj.
+        scale: the pattern's size: either mm_per_unit or height_mm.
+    """
+
+    out: Path
+    method: Method
+    segmentation: Mapping[str, Any]
+    flatten: str
+    formats: tuple[str, ...]
+    scale: Mapping[str, float]
+
+
+class Session:
+    """The filters applied to one mesh, with the parameters that were in force."""
+
+    def __init__(self, path: Path, meshes: Any) -> None:
+        self.path = path
+        self.meshes = meshes
+        self.parameters: dict[str, dict[str, Any]] = {}
+
+    def apply(self, name: str, **parameters: Any) -> dict[str, Any]:
+        """Applies a filter and returns its results.
+
+        Raises:
+            DevsegError: with the filter's own message.
+        """
+        values = self._guard(self.meshes.filter_parameter_values, name, **parameters)
+        if values:
+            self.parameters[name] = values
+        return self._guard(self.meshes.apply_filter, name, **parameters) or {}
+
+    def save(self, file: Path, **parameters: Any) -> None:
+        """Saves the current mesh, in the format of the file's extension."""
+        self._guard(self.meshes.save_current_mesh, str(file), **parameters)
+
+    def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
+        errors = (host.pymeshlab().PyMeshLabException, RuntimeError, MemoryError)
+        try:
+            with host.captured():
+                return function(*args, **parameters)
+        except errors as error:
+            raise DevsegError(f"{self.path}: {host_message(error)}") from error
+
+
+def versions() -> dict[str, str]:
+    """Versions of everything that shapes the result."""
+    names = ("devseg", "pymeshlab", "numpy", "pillow")
+    found = {name: importlib.metadata.version(name) for name in names}
+    return {**found, "python": platform.python_version()}
+
+
+def run(path: Path, options: RunOptions) -> dict[str, Any]:
+    """Runs the whole pipeline on one file and returns what NAME.json holds.
+
+    Raises:
+        DevsegError: with nothing written.
+    """
+    name = path.stem
+    with staged(options.out) as folder:
+        progress = Progress(name)
+        with progress.stage("load"):
+            meshes, warnings = load_mesh(path)
+            load_plugins()
+        mesh = meshes.current_mesh()
+        size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
+        session = Session(path, meshes)
+        measures = flatten_mesh(session, options, progress)
+        outputs = _write(session, options, folder / name, progress)
+        result = {
+            "input": path.name,
+            "method": options.method.name,
+            "mesh": size,
+            **measures,
+            "parameters": {**session.parameters, "pattern": dict(options.scale)},
+            "versions": versions(),
+            "warnings": warnings,
+            "seconds": progress.seconds,
+            "outputs": outputs,
+        }
+        (folder / outputs["json"]).write_text(to_json(result), encoding="utf-8")
+    return result
+
+
+def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
+    """Segments, cuts, flattens, packs and colours the mesh; returns the measures."""
+    with progress.stage("segment"):
+        session.apply(options.method.filter, **options.segmentation)
+    with progress.stage("cut"):
+        session.apply(CUT_FILTER)
+    with progress.stage("flatten"):
+        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], pack=False)
+    with progress.stage("pack"):
+        session.apply(PACK_FILTER)
+    with progress.stage("measure"):
+        session.apply(COLOR_FILTER)
+        return {
+            "segmentation": session.apply(SEGMENTATION_MEASURES),
+            "parametrization": session.apply(PARAMETRIZATION_MEASURES),
+        }
+
+
+def _write(session: Session, options: RunOptions, stem: Path, progress: Progress) -> dict[str, str]:
+    """Writes all files but the JSON; returns the names of all, by kind."""
+    from devseg.render import render_pair
+
+    outputs = {}
+    # with_suffix would cut a name such as "part.v2".
+    file = stem.parent / (stem.name + ".")
+    for extension in options.formats:
+        target = Path(f"{file}{extension}")
+        with progress.stage(extension):
+            if extension == "svg":
+                session.save(target, labels=True, **options.scale)
+            elif extension == "ply":
+                session.save(
+                    target,
+                    binary=True,
+                    save_textures=False,
+                    __ca_fs__chart_id=True,
+                    __ca_fs__seam_edges=True,
+                )
+            else:
+                session.save(target, save_textures=False)
+        outputs[extension] = target.name
+    with progress.stage("picture"):
+        target = Path(f"{file}png")
+        render_pair(host.mesh_data(session.meshes.current_mesh())).save(target)
+        outputs["png"] = target.name
+    outputs["json"] = Path(f"{file}json").name
+    return outputs

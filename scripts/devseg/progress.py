@@ -1,0 +1,44 @@
+"""Seconds per stage, shown while they pass where somebody is looking."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class Progress:
+    """Measures the stages of one input.
+
+    Attributes:
+        seconds: of every stage that has ended, in order.
+    """
+
+    def __init__(self, name: str, show: bool | None = None) -> None:
+        self.seconds: dict[str, float] = {}
+        self._name = name
+        self._show = sys.stderr.isatty() if show is None else show
+
+    @contextlib.contextmanager
+    def stage(self, stage: str) -> Iterator[None]:
+        """Times a block; on a terminal one line tells what runs, then how long it took."""
+        self._write(f"{self._name}: {stage} ...")
+        start = time.perf_counter()
+        try:
+            yield
+        except BaseException:
+            # The line makes room for the error message.
+            self._write("")
+            raise
+        self.seconds[stage] = round(time.perf_counter() - start, 3)
+        self._write(f"{self._name}: {stage} {self.seconds[stage]:.1f} s\n")
+
+    def _write(self, text: str) -> None:
+        if self._show:
+            # Back to the line's start, and erase what was there.
+            sys.stderr.write("\r\x1b[K" + text)
+            sys.stderr.flush()

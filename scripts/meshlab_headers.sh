@@ -1,0 +1,160 @@
+# shellcheck shell=bash
+# MeshLab's headers (src/common, src/vcglib) of exactly the version that the pymeshlab wheel was
+# built from. No registry has a development package; Debian's source package carries them.
+# Sourced by setup.sh, which provides say, die, logged, find_python and setup_log.
+: "${setup_log:?source setup.sh instead}"
+
+# Upstream's repository, for machines that reach it and no Debian mirror.
+meshlab_git=${DEVSEG_MESHLAB_GIT:-https://github.com/cnr-isti-vclab/meshlab}
+devseg_cache=${XDG_CACHE_HOME:-$HOME/.cache}/devseg
+
+# tree_version DIR: the version of a MeshLab source tree; fails where it is not one.
+tree_version() {
+    [[ -d $1/src/common && -d $1/src/vcglib/vcg && -f $1/ML_VERSION ]] && tr -d '[:space:]' <"$1/ML_VERSION"
+}
+
+# debian_mirror APT_DIR CODENAME: the URI in the machine's own apt sources that serves the main
+# archive of the release it runs.
+debian_mirror() {
+    local file
+    for file in "$1"/sources.list.d/*.sources; do
+        [[ -f $file ]] || continue
+        # deb822: paragraphs of "Field: value"; every paragraph stands for URIs x Suites. The
+        # blank line that is added ends the last one.
+        { cat "$file" && printf '\n\n'; } | awk -v suite="$2" '
+            /^#/ { next }
+            /^[[:space:]]*$/ {
+                if (uri != "" && enabled != "no" && index(" " suites " ", " " suite " ")) {
+                    print uri
+                    exit
+                }
+                uri = suites = enabled = ""
+                next
+            }
+            tolower($1) == "uris:" { uri = $2 }
+            tolower($1) == "enabled:" { enabled = tolower($2) }
+            tolower($1) == "suites:" { $1 = ""; suites = $0 " " }'
+    done
+    for file in "$1"/sources.list "$1"/sources.list.d/*.list; do
+        [[ -f $file ]] || continue
+        # classic: deb [options] URI SUITE COMPONENT...
+        sed -n 's/^deb[[:space:]]\+\(\[[^]]*\][[:space:]]*\)\?//p' "$file" |
+            awk -v suite="$2" '$2 == suite { print $1; exit }'
+    done
+}
+
+# extract TARBALL DIR: only the headers, not the 40 times larger rest.
+extract_headers() {
+    logged tar -xf "$1" -C "$2" --strip-components=1 --wildcards \
+        '*/ML_VERSION' '*/src/common/*' '*/src/vcglib/*'
+}
+
+# fetch_debian VERSION DIR SUITE...: takes the upstream tarball of Debian's source package. The
+# lists live in a directory of their own: the machine's apt stays as it is.
+fetch_debian() {
+    local version=$1 target=$2 mirror=${DEVSEG_DEBIAN_MIRROR:-} suite work keyring options package
+    shift 2
+    command -v apt-get >/dev/null || return 1
+    if [[ -z $mirror ]]; then
+        mirror=$(
+            . /etc/os-release
+            [[ $ID != debian ]] || debian_mirror /etc/apt "${VERSION_CODENAME:-stable}" | head -n 1
+        )
+    fi
+    [[ -n $mirror ]] || return 1
+    keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+    [[ -f $keyring ]] && keyring="[signed-by=$keyring]" || keyring=
+    work=$target.apt
+    for suite in "$@"; do
+        rm -rf "$work"
+        mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
+        printf 'deb-src %s %s %s main\n' "$keyring" "$mirror" "$suite" >"$work/sources.list"
+        options=(-o "Dir::Etc::sourcelist=$work/sources.list" -o Dir::Etc::sourceparts=/dev/null
+            -o "Dir::State::lists=$work/lists" -o "Dir::Cache=$work/cache"
+            -o APT::Sandbox::User= -o Acquire::Retries=2)
+        logged apt-get "${options[@]}" update || logged apt-get "${options[@]}" update || continue
+        package=$(apt-cache "${options[@]}" showsrc meshlab 2>/dev/null |
+            awk -v v="$version" '$1 == "Version:" && index($2, v) == 1 { print $2; exit }')
+        [[ -n $package ]] || continue
+        (cd "$work" && { fetch_source || fetch_source; }) || continue
+        mkdir -p "$target"
+        extract_headers "$work"/meshlab_*.orig.tar.* "$target" && break
+        rm -rf "$target"
+    done
+    rm -rf "$work"
+    [[ -d $target ]]
+}
+
+# The packaging files of a superseded revision vanish from mirrors, the tarball stays: tar only.
+fetch_source() {
+    logged apt-get "${options[@]}" source --tar-only --download-only "meshlab=$package"
+}
+
+# fetch_git VERSION DIR: the tagged upstream sources.
+fetch_git() {
+    local tag
+    command -v git >/dev/null || return 1
+    for tag in "MeshLab-$1" "Meshlab-$1"; do
+        rm -rf "$2"
+        GIT_TERMINAL_PROMPT=0 logged timeout 300 git clone --quiet --depth 1 --branch "$tag" \
+            "$meshlab_git" "$2" || continue
+        GIT_TERMINAL_PROMPT=0 logged timeout 300 git -C "$2" submodule --quiet update --init \
+            --depth 1 src/vcglib || continue
+        return
+    done
+    return 1
+}
+
+# cached_headers VERSION SUITE...: sets headers_dir and headers_from, fetching if need be.
+cached_headers() {
+    local version=$1 part
+    shift
+    headers_dir=$devseg_cache/meshlab-$version
+    headers_from=cache
+    [[ $(tree_version "$headers_dir") == "$version" ]] && return
+    mkdir -p "$devseg_cache" || return 1
+    say "fetching the MeshLab $version headers (once, about 5 MB)"
+    # Filled beside its final place and renamed: an interrupted run leaves no half tree behind.
+    part=$(mktemp -d "$devseg_cache/part.XXXXXX") || return 1
+    headers_from="Debian source package"
+    if ! fetch_debian "$version" "$part/tree" "$@"; then
+        headers_from="upstream git"
+        fetch_git "$version" "$part/tree" || headers_from=
+    fi
+    if [[ -n $headers_from && $(tree_version "$part/tree") == "$version" ]]; then
+        rm -rf "$headers_dir"
+        # Where another run was faster, its tree is as good as ours.
+        mv -T "$part/tree" "$headers_dir" 2>/dev/null || true
+    fi
+    rm -rf "$part"
+    [[ $(tree_version "$headers_dir") == "$version" ]]
+}
+
+# find_headers: sets headers_dir, headers_version and wheel_version, which always belong together.
+find_headers() {
+    headers_version=2025.07
+    wheel_version=2025.7.post1
+    if [[ -n ${MESHLAB_SOURCE_DIR:-} ]]; then
+        local found
+        found=$(tree_version "$MESHLAB_SOURCE_DIR") ||
+            die "MESHLAB_SOURCE_DIR=$MESHLAB_SOURCE_DIR has no ML_VERSION, src/common and" \
+                "src/vcglib (a git submodule); give a complete MeshLab $headers_version tree"
+        [[ $found == "$headers_version" ]] ||
+            die "MESHLAB_SOURCE_DIR holds MeshLab $found, but pymeshlab $wheel_version needs" \
+                "$headers_version; unset it to have the headers fetched"
+        headers_dir=$(cd "$MESHLAB_SOURCE_DIR" && pwd)
+        headers_from=MESHLAB_SOURCE_DIR
+    elif ! cached_headers "$headers_version" testing unstable; then
+        say "no source offers MeshLab $headers_version any more; trying the pair of 2022.02"
+        headers_version=2022.02
+        wheel_version=2022.2.post4
+        if ! find_python "$wheel_version" >/dev/null ||
+            ! cached_headers "$headers_version" trixie; then
+            tail -n 15 "$setup_log" >&2
+            die "found MeshLab headers neither on a Debian mirror nor by git;" \
+                "set MESHLAB_SOURCE_DIR to a MeshLab 2025.07 source tree (with src/vcglib)," \
+                "or DEVSEG_DEBIAN_MIRROR to a Debian mirror"
+        fi
+    fi
+    say "MeshLab headers $headers_version ($headers_from)"
+}
