@@ -18,12 +18,13 @@ constexpr double name_share = 0.7;
 constexpr double largest_name = 8.0; // mm, font size
 constexpr double letter_width = 0.6; // of the font size, digits and capitals of common fonts
 
-// Three decimals (1 µm) are far below what a blade can follow. Smaller patterns, such as models
-// in metres exported at 1 mm for a unit, need more: the grid is to be this share of the layout …
+// Three decimals (1 µm) are far below what a blade can follow. Small patterns, such as models in
+// metres exported at 1 mm for a unit, need more. The grid is to be at most this share of the
+// layout's size, and rounding may change the area of no piece by more than the second share
+// (0.1 % is promised). Pieces below a millionth of the whole are measured against that millionth:
+// nobody cuts them.
 constexpr int usual_decimals = 3;
 constexpr double grid_share = 1e-4;
-// … and rounding may change the area of no piece by more than this share (0.1 % is promised), where
-// pieces below a millionth of the whole are measured against that: nobody cuts them.
 constexpr double area_tolerance = 2e-4;
 constexpr double negligible_piece = 1e-6;
 // More digits than a double holds next to the margin say nothing.

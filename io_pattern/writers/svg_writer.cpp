@@ -15,10 +15,9 @@ namespace devseg {
 
 namespace {
 
-const QString svg_namespace = QStringLiteral("http://www.w3.org/2000/svg");
-const QString inkscape_namespace = QStringLiteral("http://www.inkscape.org/namespaces/inkscape");
-const QString sodipodi_namespace =
-    QStringLiteral("http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd");
+const char* const svg_namespace = "http://www.w3.org/2000/svg";
+const char* const inkscape_namespace = "http://www.inkscape.org/namespaces/inkscape";
+const char* const sodipodi_namespace = "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd";
 
 constexpr double stroke_width = 0.1; // mm, a hairline that viewers still show
 
@@ -126,7 +125,7 @@ private:
             if (digits.endsWith('.'))
                 digits.chop(1);
         }
-        return digits == QLatin1String("-0") ? QStringLiteral("0") : digits;
+        return digits == QLatin1String("-0") ? QString("0") : digits;
     }
 
     // XML has no way to write control characters.

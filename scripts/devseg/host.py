@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import io
 import os
 import sys
 import tempfile
@@ -26,32 +28,38 @@ class Chatter:
 
 @contextlib.contextmanager
 def captured() -> Iterator[Chatter]:
-    """Keeps what C++ code prints off the terminal and out of a JSON on stdout.
+    """Keeps what the host prints off the terminal and out of a JSON on stdout.
 
-    Works on the file descriptors, as the host does not go through sys.stdout. DEVSEG_DEBUG=1
-    passes the text on to stderr.
+    C++ code writes to the file descriptors, the bindings to sys.stdout, which need not be the same
+    (in a notebook it is not). DEVSEG_DEBUG=1 passes the text on to stderr.
     """
     chatter = Chatter()
-    sys.stdout.flush()
-    sys.stderr.flush()
+    printed = io.StringIO()
+    _flush()
     with tempfile.TemporaryFile() as sink:
         saved = os.dup(1), os.dup(2)
         try:
             os.dup2(sink.fileno(), 1)
             os.dup2(sink.fileno(), 2)
-            yield chatter
+            with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+                yield chatter
         finally:
-            # Python code of pymeshlab prints too, into buffers that must empty into the sink.
-            sys.stdout.flush()
-            sys.stderr.flush()
+            # What is still in the C library's buffers belongs to this block.
+            _flush()
             os.dup2(saved[0], 1)
             os.dup2(saved[1], 2)
             os.close(saved[0])
             os.close(saved[1])
             sink.seek(0)
-            chatter.text = sink.read().decode(errors="replace")
+            chatter.text = printed.getvalue() + sink.read().decode(errors="replace")
             if os.environ.get("DEVSEG_DEBUG") and chatter.text:
                 sys.stderr.write(chatter.text)
+
+
+def _flush() -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    ctypes.CDLL(None).fflush(None)
 
 
 def pymeshlab() -> ModuleType:

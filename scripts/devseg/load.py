@@ -59,9 +59,11 @@ def _load_message(path: Path, error: BaseException) -> str:
 def _check(path: Path, meshes: Any, log: str) -> list[str]:
     import numpy as np
 
-    if meshes.mesh_number() != 1:
+    # pymeshlab 2022.2 calls it number_meshes.
+    count = (getattr(meshes, "mesh_number", None) or meshes.number_meshes)()
+    if count != 1:
         raise DevsegError(
-            f"{path}: expected one mesh, found {meshes.mesh_number()}; join them first "
+            f"{path}: expected one mesh, found {count}; join them first "
             "(generate_by_merging_visible_meshes)"
         )
     mesh = meshes.current_mesh()

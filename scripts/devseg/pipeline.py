@@ -17,10 +17,7 @@ from devseg.outputs import staged, to_json
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
-CUT_FILTER = "compute_seams_charts_to_disks_per_edge"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
-PACK_FILTER = "apply_texcoord_chart_packing_per_wedge"
-COLOR_FILTER = "compute_color_by_chart_per_face"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
 
@@ -118,17 +115,12 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
 
 
 def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
-    """Segments, cuts, flattens, packs and colours the mesh; returns the measures."""
+    """Segments, flattens and packs the mesh; returns the measures."""
     with progress.stage("segment"):
         session.apply(options.method.filter, **options.segmentation)
-    with progress.stage("cut"):
-        session.apply(CUT_FILTER)
     with progress.stage("flatten"):
-        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], pack=False)
-    with progress.stage("pack"):
-        session.apply(PACK_FILTER)
+        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
     with progress.stage("measure"):
-        session.apply(COLOR_FILTER)
         return {
             "segmentation": session.apply(SEGMENTATION_MEASURES),
             "parametrization": session.apply(PARAMETRIZATION_MEASURES),

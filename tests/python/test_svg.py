@@ -103,15 +103,13 @@ def test_paper_is_in_millimetres(save: Callable) -> None:
 
 
 def test_check_square_is_true(save: Callable) -> None:
-    path = save(mm_per_unit=5.0)
-    assert "scale" in layers(path)
-    sizes = []
-    for element in SVG.parse(str(path), ppi=25.4, reify=True).select(
-        lambda e: isinstance(e, SvgPath) and not e.values.get("id", "").endswith("-cut")
-    ):
-        x0, y0, x1, y1 = element.bbox()
-        sizes.append((x1 - x0, y1 - y0))
-    assert any(abs(w - 50) < 0.1 and abs(h - 50) < 0.1 for w, h in sizes)
+    drawn = SVG.parse(str(save(mm_per_unit=5.0)), ppi=25.4, reify=True)
+    square = drawn.get_element_by_id("check-square")
+    assert square is not None
+    x0, y0, x1, y1 = square.bbox()
+    assert (x1 - x0, y1 - y0) == pytest.approx((50, 50), abs=0.1)
+    frame = drawn.get_element_by_id("frame").bbox()
+    assert frame[2:] == pytest.approx((drawn.width, drawn.height), abs=1e-3)
 
 
 def test_layers_are_as_cutters_want_them(save: Callable) -> None:

@@ -11,7 +11,8 @@ std::vector<FilterDeclaration> segmentation_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> measure_filters();
 
-/// Charts of the mesh's attributes; without them, its connected components.
-ChartMap charts_or_components(const FilterInput& input);
+/// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,
+/// its connected components.
+ChartMap find_charts(const FilterInput& input);
 
 } // namespace devseg

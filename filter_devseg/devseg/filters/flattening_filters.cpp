@@ -22,8 +22,9 @@ constexpr const char* flatten_help =
     "Lays every chart flat, positively oriented and with its own area, and writes the result as "
     "wedge texture coordinates: packed into the unit square at one common scale, or side by side "
     "in model units.<br>"
-    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them, "
-    "each connected component of the mesh is a chart. Charts that are not disks are cut first. "
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
+    "from existing texture coordinates, and without those each connected component of the mesh is "
+    "a chart. Charts that are not disks are cut first. "
     "<b>Symmetric Dirichlet</b> keeps lengths as well as possible and never turns a face over; "
     "<b>LSCM</b> keeps angles and changes lengths more. Charts on which LSCM turns faces over are "
     "flattened with the other method, and counted.<br>"
@@ -77,7 +78,7 @@ void note_unsettled(const Layout& layout, FilterOutput& output) {
 FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
                          Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.05);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts_or_components(input), progress);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
     progress.begin_phase("flattening charts", 0.75);
     std::vector<FlatChart> flat =
         flatten_charts(input.mesh, cuts.charts, options.method, progress);

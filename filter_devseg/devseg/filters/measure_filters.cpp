@@ -10,8 +10,9 @@ namespace {
 constexpr const char* segmentation_help =
     "Measures a segmentation: how many charts, how long the seams, how developable the charts. "
     "Nothing is changed.<br>"
-    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them, "
-    "each connected component of the mesh is a chart. The values are returned to scripts and "
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
+    "from the wedge texture coordinates, and without those each connected component of the mesh is "
+    "a chart. The values are returned to scripts and "
     "written to the log.";
 
 constexpr const char* parametrization_help =
@@ -25,7 +26,7 @@ constexpr const char* parametrization_help =
 
 FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("measuring charts", 1.0);
-    const SegmentationMeasures m = measure_segmentation(input.mesh, charts_or_components(input));
+    const SegmentationMeasures m = measure_segmentation(input.mesh, find_charts(input));
     FilterOutput output;
     output.values = {
         {"charts_number", m.charts_number},

@@ -29,8 +29,9 @@ constexpr const char* disks_help =
     "Cuts every chart open until it is a disk, which is what flattening needs: by shortest paths "
     "between its boundary loops, along short cycles through its handles, and by a slit if the "
     "chart is closed. Charts that are disks already are left as they are.<br>"
-    "Charts are read from the face attribute <b>chart_id</b>; without it, each connected component "
-    "of the mesh is a chart. The cuts are added to <b>seam_edges</b>.<br>"
+    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
+    "coordinates, and without those each connected component of the mesh is a chart. The cuts are "
+    "added to <b>seam_edges</b>.<br>"
     "See:<br><i>Jeff Erickson, Sariel Har-Peled</i><br>"
     "<b>\"Optimally Cutting a Surface into a Disk\"</b><br>"
     "Discrete &amp; Computational Geometry 31, 2004, doi:10.1007/s00454-003-2948-z";
@@ -63,7 +64,7 @@ FilterOutput run_dcharts(const FilterInput& input, const DChartsOptions& options
 
 FilterOutput run_disks(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("cutting charts to disks", 1.0);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts_or_components(input), progress);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
@@ -75,8 +76,7 @@ FilterOutput run_disks(const FilterInput& input, const NoOptions&, Progress& pro
 }
 
 FilterOutput run_colorize(const FilterInput& input, const NoOptions&, Progress&) {
-    const ChartMap charts = !input.charts && input.uv ? charts_from_uv(input.mesh, *input.uv)
-                                                      : charts_or_components(input);
+    const ChartMap charts = find_charts(input);
     FilterOutput output;
     output.values = {{"charts_number", charts.count}};
     output.face_color = face_chart_colors(input.mesh, charts);

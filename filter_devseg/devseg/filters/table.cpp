@@ -14,9 +14,11 @@ const std::vector<FilterDeclaration>& filter_table() {
     return table;
 }
 
-ChartMap charts_or_components(const FilterInput& input) {
+ChartMap find_charts(const FilterInput& input) {
     if (input.charts)
         return *input.charts;
+    if (input.uv)
+        return charts_from_uv(input.mesh, *input.uv);
     return make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {}, false);
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "devseg/errors.h"
-#include "devseg/pack/outline_raster.h"
+#include "devseg/pack/sheet.h"
 
 namespace devseg {
 
@@ -16,7 +16,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr Index resolution = 512;      // cells along the side of a fully used square
 constexpr double optimistic_use = 0.9; // share of the square that no packing of charts exceeds
-constexpr double search_ratio = 1.01;  // the side is searched up to this factor
+constexpr double search_ratio = 1.004; // the side is searched up to this factor
+constexpr int strategies = 4;          // orders of the charts that are tried
 
 double area_of(const PackItem& item) {
     double twice = 0.0;
@@ -84,72 +85,24 @@ Placement best_box(const PackItem& item) {
 // One chart in one orientation.
 struct Pose {
     Placement placement; // corner of the image at the origin
-    BitImage image;
+    ChartCells cells;
 };
 
-struct Sheet {
-    explicit Sheet(Index side) : image(side, side), free_from(0) {}
+struct PosedSpot {
+    std::size_t pose = 0;
+    Spot spot;
+};
 
-    BitImage image;
-    Index free_from; // rows from here on are empty
-
-    bool collides(const BitImage& chart, Index x, Index y) const {
-        const Index word = x / 64;
-        const int shift = x % 64;
-        const Index last = std::min(chart.height, free_from - y);
-        for (Index r = 0; r < last; ++r) {
-            const std::uint64_t* used = image.row(y + r) + word;
-            const std::uint64_t* bits = chart.row(r);
-            std::uint64_t carry = 0;
-            for (Index w = 0; w < chart.words; ++w) {
-                const std::uint64_t low = (bits[w] << shift) | carry;
-                if ((used[w] & low) != 0)
-                    return true;
-                carry = shift == 0 ? 0 : bits[w] >> (64 - shift);
-            }
-            if (carry != 0 && (used[chart.words] & carry) != 0)
-                return true;
+// The place with the lowest top over all poses.
+std::optional<PosedSpot> find_spot(const Sheet& sheet, const std::vector<Pose>& poses,
+                                   Index height) {
+    std::optional<PosedSpot> best;
+    Index limit = height;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        if (const auto spot = sheet.find_lowest(poses[i].cells, limit)) {
+            best = PosedSpot{i, *spot};
+            limit = spot->y + poses[i].cells.height - 1;
         }
-        return false;
-    }
-    void occupy(const BitImage& chart, Index x, Index y) {
-        const Index word = x / 64;
-        const int shift = x % 64;
-        for (Index r = 0; r < chart.height; ++r) {
-            std::uint64_t* used = image.row(y + r) + word;
-            const std::uint64_t* bits = chart.row(r);
-            for (Index w = 0; w < chart.words; ++w) {
-                used[w] |= bits[w] << shift;
-                if (shift != 0 && (bits[w] >> (64 - shift)) != 0)
-                    used[w + 1] |= bits[w] >> (64 - shift);
-            }
-        }
-        free_from = std::max(free_from, y + chart.height);
-    }
-};
-
-struct Spot {
-    Index pose = 0;
-    Index x = 0;
-    Index y = 0;
-    Index top = std::numeric_limits<Index>::max(); // of the placed image
-};
-
-// The place with the lowest top, then the leftmost, over all poses.
-std::optional<Spot> find_spot(const Sheet& sheet, const std::vector<Pose>& poses) {
-    std::optional<Spot> best;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        const BitImage& chart = poses[i].image;
-        const Index limit = best ? best->top - 1 : sheet.image.height;
-        bool found = false;
-        for (Index y = 0; y + chart.height <= limit && !found; ++y)
-            for (Index x = 0; x + chart.width <= sheet.image.width; ++x)
-                if (!sheet.collides(chart, x, y)) {
-                    best = Spot{static_cast<Index>(i), x, y, y + chart.height};
-                    found = true;
-                    break;
-                }
-    }
     return best;
 }
 
@@ -160,8 +113,10 @@ public:
            Progress& progress)
         : progress_(progress) {
         double area = 0.0;
-        for (const PackItem& item : items)
-            area += area_of(item);
+        for (const PackItem& item : items) {
+            area_.push_back(area_of(item));
+            area += area_.back();
+        }
         const double side = std::sqrt(std::max(area, std::numeric_limits<double>::min()));
         cell_ = side / resolution;
         const double margin = 0.5 * options.padding * side * side_guess;
@@ -170,37 +125,22 @@ public:
             progress_.update(0.3 * static_cast<double>(poses_.size()) /
                              static_cast<double>(items.size()));
         }
-        order_.resize(items.size());
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        const auto size = [&](std::size_t i) {
-            const BitImage& image = poses_[i].front().image;
-            return std::max(image.width, image.height) + image.width + image.height;
-        };
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+        for (int strategy = 0; strategy < strategies; ++strategy)
+            orders_.push_back(make_order(strategy));
     }
 
     std::vector<Placement> run() {
-        // Grow until all fit, then halve the interval between too small and large enough.
-        double low = resolution / std::sqrt(optimistic_use);
-        double high = low;
-        std::vector<Placement> best = try_side(static_cast<Index>(high));
-        while (best.empty()) {
-            low = high;
+        double high = resolution / std::sqrt(optimistic_use);
+        while (!improve(high))
             high *= 1.1;
-            best = try_side(static_cast<Index>(std::ceil(high)));
+        // Shrink the square as long as some order of the charts still fits.
+        for (double step = 1.08; step > search_ratio;) {
+            if (improve(high / step))
+                high /= step;
+            else
+                step = std::sqrt(step);
         }
-        while (high > search_ratio * low) {
-            const double middle = std::sqrt(low * high);
-            std::vector<Placement> found = try_side(static_cast<Index>(std::ceil(middle)));
-            if (found.empty()) {
-                low = middle;
-            } else {
-                high = middle;
-                best = std::move(found);
-            }
-        }
-        return best;
+        return best_;
     }
 
 private:
@@ -208,48 +148,82 @@ private:
         const Placement base = allow_rotation ? best_box(item) : Placement{};
         std::vector<Pose> poses;
         for (int quarter = 0; quarter < (allow_rotation ? 4 : 1); ++quarter) {
-            Pose pose;
+            Placement placement;
             const double angle = 0.5 * pi * quarter;
             const double c = std::round(std::cos(angle));
             const double s = std::round(std::sin(angle));
-            pose.placement.cosine = c * base.cosine - s * base.sine;
-            pose.placement.sine = s * base.cosine + c * base.sine;
+            placement.cosine = c * base.cosine - s * base.sine;
+            placement.sine = s * base.cosine + c * base.sine;
             std::vector<Vec2> points;
             Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
             for (const Vec2& p : *item.points) {
-                points.push_back(pose.placement(p));
+                points.push_back(placement(p));
                 low = low.cwiseMin(points.back());
             }
-            pose.placement.offset = Vec2::Constant(margin) - low;
+            placement.offset = Vec2::Constant(margin) - low;
             for (Vec2& p : points)
-                p += pose.placement.offset;
-            pose.image = rasterize(*item.faces, points, cell_, margin);
-            poses.push_back(std::move(pose));
+                p += placement.offset;
+            poses.push_back({placement, ChartCells(rasterize(*item.faces, points, cell_, margin))});
         }
         return poses;
     }
 
-    // Empty when not all charts fit.
-    std::vector<Placement> try_side(Index side) {
-        Sheet sheet(side);
-        std::vector<Placement> placements(poses_.size());
-        for (const std::size_t i : order_) {
-            progress_.update(0.3);
-            const std::optional<Spot> spot = find_spot(sheet, poses_[i]);
-            if (!spot)
-                return {};
-            const Pose& pose = poses_[i][at(spot->pose)];
-            sheet.occupy(pose.image, spot->x, spot->y);
-            placements[i] = pose.placement;
-            placements[i].offset += cell_ * Vec2(spot->x, spot->y);
+    // Charts from the largest to the smallest, by one of several notions of size: which one packs
+    // best depends on the shapes.
+    std::vector<std::size_t> make_order(int strategy) const {
+        const auto size = [&](std::size_t i) {
+            const ChartCells& cells = poses_[i].front().cells;
+            const double longer = std::max(cells.width, cells.height);
+            const double shorter = std::min(cells.width, cells.height);
+            switch (strategy) {
+            case 0: return longer + 0.5 * shorter;
+            case 1: return longer * shorter;
+            case 2: return longer;
+            default: return area_[i];
+            }
+        };
+        std::vector<std::size_t> order(poses_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+        return order;
+    }
+
+    bool improve(double side) {
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
+            if (try_order(orders_[i], static_cast<Index>(std::ceil(side)))) {
+                // What worked is tried first the next time.
+                std::rotate(orders_.begin(), orders_.begin() + static_cast<std::ptrdiff_t>(i),
+                            orders_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+                return true;
+            }
         }
-        return placements;
+        return false;
+    }
+
+    bool try_order(const std::vector<std::size_t>& order, Index side) {
+        Sheet sheet(side, side);
+        std::vector<Placement> placements(poses_.size());
+        for (const std::size_t i : order) {
+            progress_.update(0.3);
+            const std::optional<PosedSpot> found = find_spot(sheet, poses_[i], side);
+            if (!found)
+                return false;
+            const Pose& pose = poses_[i][found->pose];
+            sheet.occupy(pose.cells, found->spot);
+            placements[i] = pose.placement;
+            placements[i].offset += cell_ * Vec2(found->spot.x, found->spot.y);
+        }
+        best_ = std::move(placements);
+        return true;
     }
 
     Progress& progress_;
     double cell_ = 0.0;
+    std::vector<double> area_; // of each chart
     std::vector<std::vector<Pose>> poses_;
-    std::vector<std::size_t> order_; // largest first
+    std::vector<std::vector<std::size_t>> orders_;
+    std::vector<Placement> best_;
 };
 
 } // namespace

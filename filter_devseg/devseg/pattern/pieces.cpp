@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
-#include <numeric>
 #include <sstream>
 
 #include "devseg/errors.h"
 #include "devseg/pattern/label_point.h"
+#include "devseg/pattern/outlines.h"
 
 namespace devseg {
 
@@ -25,19 +25,15 @@ constexpr double collapsed = 1e-6;
 // face that some atlas gave a chart of its own. On a sheet of a square metre it is 1 µm wide.
 constexpr double crumb = 1e-12;
 
-// Share of its squared perimeter that a hole must enclose. Less is a cut whose sides coincide,
-// such as the gate makes at edges with three faces: nothing to cut out there.
-constexpr double no_area = 1e-12;
-
 // A model thinner along y than this share of its size has no height to be scaled by.
 constexpr double no_extent = 1e-9;
+
+// A piece may lose this share of its area to folds before that is reported.
+constexpr double fold_tolerance = 1e-3;
 
 // Larger errors of a piece's lengths are reported. 'Charts: Flatten' keeps all areas; other
 // makers of texture coordinates often do not.
 constexpr double scale_tolerance = 0.01;
-
-// Distance of pieces that had to be moved, as a share of the layout's size.
-constexpr double shelf_gap = 0.02;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -92,6 +88,7 @@ void check_coordinates(const CornerUv& uv) {
 struct ChartAreas {
     std::vector<double> surface; // of each chart, internal units squared
     std::vector<double> plane;   // of each chart, signed, uv units squared
+    std::vector<double> covered; // the same, faces counted without sign
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
 
@@ -100,17 +97,27 @@ struct ChartAreas {
     bool is_crumb(std::size_t c) const {
         return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
     }
+    // Signed areas in the plane, 0 for crumbs.
+    std::vector<double> worth_cutting() const {
+        std::vector<double> result = plane;
+        for (std::size_t c = 0; c < result.size(); ++c)
+            if (is_crumb(c))
+                result[c] = 0.0;
+        return result;
+    }
 };
 
 ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts) {
     ChartAreas areas;
     areas.surface.assign(at(charts.count), 0.0);
     areas.plane.assign(at(charts.count), 0.0);
+    areas.covered.assign(at(charts.count), 0.0);
     areas.surface_total = mesh.total_area;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const double area = uv_area(uv, f);
         areas.surface[at(charts.chart[at(f)])] += mesh.face_areas[at(f)];
         areas.plane[at(charts.chart[at(f)])] += area;
+        areas.covered[at(charts.chart[at(f)])] += std::abs(area);
         areas.plane_total += std::abs(area);
     }
     if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
@@ -143,101 +150,6 @@ void check_charts(const ChartMap& charts, const ChartAreas& areas) {
                       faces);
 }
 
-double perimeter(const std::vector<Vec2>& points) {
-    double length = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        length += (points[(i + 1) % points.size()] - points[i]).norm();
-    return length;
-}
-
-// A fan of triangles from the first point: as exact for pieces that lie far from the origin.
-double signed_area(const std::vector<Vec2>& points) {
-    double twice = 0.0;
-    for (std::size_t i = 2; i < points.size(); ++i) {
-        const Vec2 p = points[i - 1] - points.front();
-        const Vec2 q = points[i] - points.front();
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
-    return 0.5 * twice;
-}
-
-// Corners of the texture coordinates along a boundary loop; `place` brings them to paper.
-template <class Place>
-PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
-                Place place) {
-    PiecePath path;
-    for (const Index h : loop) {
-        const Vec2 p = place(uv[at(surface.mesh_half_edge(h))]);
-        if (path.points.empty() || p != path.points.back())
-            path.points.push_back(p);
-    }
-    while (path.points.size() > 1 && path.points.back() == path.points.front())
-        path.points.pop_back();
-    path.area = signed_area(path.points);
-    return path;
-}
-
-void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
-    const auto outer = std::max_element(
-        paths.begin(), paths.end(),
-        [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
-    std::swap(*outer, paths.front());
-    piece.outer = std::move(paths.front());
-    piece.area = piece.outer.area;
-    for (const Vec2& p : piece.outer.points)
-        piece.box.extend(p);
-    for (std::size_t i = 1; i < paths.size(); ++i) {
-        const double length = perimeter(paths[i].points);
-        if (std::abs(paths[i].area) <= no_area * length * length)
-            continue;
-        piece.area += paths[i].area;
-        piece.holes.push_back(std::move(paths[i]));
-    }
-}
-
-void move(PatternPiece& piece, const Vec2& offset) {
-    const auto shift = [&](PiecePath& path) {
-        for (Vec2& p : path.points)
-            p += offset;
-    };
-    shift(piece.outer);
-    std::for_each(piece.holes.begin(), piece.holes.end(), shift);
-    piece.box.translate(offset);
-}
-
-Eigen::AlignedBox2d bounds(const std::vector<PatternPiece>& pieces) {
-    Eigen::AlignedBox2d box;
-    for (const PatternPiece& piece : pieces)
-        box.extend(piece.box);
-    return box;
-}
-
-// A piece that was turned over in its place may stick into its neighbours. Where even the boxes
-// keep clear it stays; the others go to rows above the layout.
-void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& turned) {
-    const Eigen::AlignedBox2d layout = bounds(pieces);
-    const double gap = shelf_gap * layout.sizes().maxCoeff();
-    std::vector<std::size_t> moved;
-    for (const std::size_t i : turned)
-        for (std::size_t j = 0; j < pieces.size(); ++j)
-            if (j != i && !pieces[i].box.intersection(pieces[j].box).isEmpty()) {
-                moved.push_back(i);
-                break;
-            }
-    Vec2 corner(layout.min().x(), layout.max().y() + gap);
-    double row_height = 0.0;
-    for (const std::size_t i : moved) {
-        const Vec2 size = pieces[i].box.sizes();
-        if (corner.x() > layout.min().x() && corner.x() + size.x() > layout.max().x()) {
-            corner = Vec2(layout.min().x(), corner.y() + row_height + gap);
-            row_height = 0.0;
-        }
-        move(pieces[i], corner - pieces[i].box.min());
-        corner.x() += size.x() + gap;
-        row_height = std::max(row_height, size.y());
-    }
-}
-
 // All names equally long, so that they sort: P01 … P12, or P001 … P120.
 void number_pieces(std::vector<PatternPiece>& pieces) {
     const std::size_t digits = std::max<std::size_t>(2, std::to_string(pieces.size()).size());
@@ -245,6 +157,20 @@ void number_pieces(std::vector<PatternPiece>& pieces) {
         const std::string ordinal = std::to_string(i + 1);
         pieces[i].name = 'P' + std::string(digits - ordinal.size(), '0') + ordinal;
     }
+}
+
+void note_folds(Pattern& pattern, const ChartAreas& areas) {
+    const auto is_folded = [&](const PatternPiece& piece) {
+        const double whole = areas.covered[at(piece.chart)];
+        return whole - std::abs(areas.plane[at(piece.chart)]) > fold_tolerance * whole;
+    };
+    const auto count = std::count_if(pattern.pieces.begin(), pattern.pieces.end(), is_folded);
+    if (count > 0)
+        pattern.notes.push_back(std::to_string(count) + " of " +
+                                std::to_string(pattern.pieces.size()) +
+                                (count == 1 ? " pieces folds" : " pieces fold") +
+                                " over in the texture coordinates: the outline does not enclose "
+                                "the whole area ('Charts: Flatten' folds nothing)");
 }
 
 void note_scale_errors(Pattern& pattern) {
@@ -260,45 +186,9 @@ void note_scale_errors(Pattern& pattern) {
                                 " % of the true ones ('Charts: Flatten' keeps the scale)");
 }
 
-// All pieces where the texture coordinates put them, up to a common shift.
-std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
-                                       const ChartMap& charts, const ChartAreas& areas,
-                                       double mm, Progress& progress) {
-    const double mm_per_uv = areas.scale() * mm;
-    const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
-    // A layout that is mirrored for the most part is mirrored as a whole, which keeps its pieces
-    // apart as they were; what is still mirrored then is turned over in its place.
-    const double balance = std::accumulate(areas.plane.begin(), areas.plane.end(), 0.0);
-    const double side = balance < 0.0 ? -1.0 : 1.0;
-    std::vector<PatternPiece> pieces;
-    std::vector<std::size_t> turned;
-    for (std::size_t c = 0; c < surfaces.size(); ++c) {
-        progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
-        if (areas.is_crumb(c) || surfaces[c].loops.empty())
-            continue;
-        const double mirror = areas.plane[c] < 0.0 ? -1.0 : 1.0;
-        std::vector<PiecePath> paths;
-        for (const std::vector<Index>& loop : surfaces[c].loops)
-            paths.push_back(trace(surfaces[c], loop, uv, [&](const Vec2& p) {
-                const Vec2 local = mm_per_uv * (p - uv.front());
-                return Vec2(mirror * local.x(), local.y());
-            }));
-        PatternPiece piece;
-        piece.chart = static_cast<Index>(c);
-        set_paths(piece, std::move(paths));
-        if (mirror != side) {
-            move(piece, Vec2(-2.0 * piece.box.center().x(), 0.0));
-            turned.push_back(pieces.size());
-        }
-        pieces.push_back(std::move(piece));
-    }
-    shelve(pieces, turned);
-    return pieces;
-}
-
 // The layout's lower left corner comes to the origin.
 void place_on_sheet(Pattern& pattern, const char* scale_name) {
-    const Eigen::AlignedBox2d box = bounds(pattern.pieces);
+    const Eigen::AlignedBox2d box = bounding_box(pattern.pieces);
     pattern.width = box.sizes().x();
     pattern.height = box.sizes().y();
     const double size = std::max(pattern.width, pattern.height);
@@ -308,7 +198,7 @@ void place_on_sheet(Pattern& pattern, const char* scale_name) {
                                number(smallest_layout_mm) + " to " + number(largest_layout_mm) +
                                " mm, found " + number(size) + " mm");
     for (PatternPiece& piece : pattern.pieces)
-        move(piece, -box.min());
+        move_piece(piece, -box.min());
 }
 
 void place_label(PatternPiece& piece) {
@@ -336,7 +226,8 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     progress.begin_phase("tracing outlines", 0.4);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
-    pattern.pieces = trace_pieces(mesh, uv, charts, areas, mm, progress);
+    pattern.pieces = trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale() * mm,
+                                  progress);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     progress.begin_phase("naming pieces", 0.4);
@@ -345,11 +236,11 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
         PatternPiece& piece = pattern.pieces[i];
         const std::size_t c = at(piece.chart);
         if (areas.surface[c] > 0.0)
-            piece.length_scale =
-                areas.scale() * std::sqrt(std::abs(areas.plane[c]) / areas.surface[c]);
+            piece.length_scale = areas.scale() * std::sqrt(areas.covered[c] / areas.surface[c]);
         place_label(piece);
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
     }
+    note_folds(pattern, areas);
     note_scale_errors(pattern);
     return pattern;
 }

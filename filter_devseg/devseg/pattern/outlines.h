@@ -1,0 +1,25 @@
+// The outlines of charts in the plane of their texture coordinates, as pieces on paper.
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/charts.h"
+#include "devseg/pattern/pieces.h"
+
+namespace devseg {
+
+/// One piece for each chart, without name and label, where the texture coordinates put it up to a
+/// common shift. `uv_areas` are the charts' signed areas: charts with 0 are left out, and negative
+/// ones are turned over. A layout that is mirrored for the most part is mirrored as a whole; other
+/// mirrored charts keep their place, or go to rows above the layout where they would touch others.
+std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
+                                       const ChartMap& charts,
+                                       const std::vector<double>& uv_areas, double mm_per_uv,
+                                       Progress& progress);
+
+/// Moves outlines and box.
+void move_piece(PatternPiece& piece, const Vec2& offset);
+
+Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces);
+
+} // namespace devseg

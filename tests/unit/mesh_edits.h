@@ -1,0 +1,43 @@
+// Changes of raw meshes, and random numbers that are the same everywhere.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "devseg/mesh/input_gate.h"
+
+namespace devseg::shapes {
+
+/// A fixed generator without the standard distributions, which differ between libraries.
+class Random {
+public:
+    explicit Random(std::uint32_t seed) : generator_(seed) {}
+    double uniform(double low, double high) { return low + (high - low) * generator_() / 4294967296.0; }
+    Index below(Index count) {
+        return static_cast<Index>(generator_() % static_cast<std::uint32_t>(count));
+    }
+    Vec3 direction(); // uniform on the unit sphere
+    template <class T>
+    void shuffle(std::vector<T>& items) {
+        for (std::size_t i = items.size(); i > 1; --i)
+            std::swap(items[i - 1], items[at(below(static_cast<Index>(i)))]);
+    }
+
+private:
+    std::mt19937 generator_;
+};
+
+RawMesh join(const RawMesh& a, const RawMesh& b);
+RawMesh moved(RawMesh mesh, double scale, const Vec3& offset);
+RawMesh turned_over(RawMesh mesh);
+/// Every face is turned over with probability ½.
+RawMesh with_random_orientations(RawMesh mesh, std::uint32_t seed);
+/// Moves every vertex by up to `amplitude` along each axis.
+RawMesh with_noise(RawMesh mesh, double amplitude, std::uint32_t seed);
+/// The same surface with its faces in another order: face i is face order[i] of `mesh`.
+RawMesh with_face_order(const RawMesh& mesh, const std::vector<Index>& order);
+std::vector<Index> random_order(std::size_t count, std::uint32_t seed);
+
+} // namespace devseg::shapes
