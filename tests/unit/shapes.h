@@ -35,7 +35,7 @@ RawMesh hemisphere(Index around, Index rings);
 /// A tube, closed at one end by an apex.
 RawMesh finger(Index around, Index along, double radius, double length);
 RawMesh torus(Index around, Index tube, double large = 2.0, double small = 1.0);
-RawMesh double_torus(); // a slab with two holes
+RawMesh double_torus();             // a slab with two holes
 RawMesh sphere(Index subdivisions); // icosphere of radius 1
 RawMesh cube(Index cells);          // of side 1, each face cells × cells squares
 RawMesh tetrahedron();

@@ -80,24 +80,28 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     progress.begin_phase("cutting charts to disks", 0.05);
     DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
     progress.begin_phase("flattening charts", 0.75);
-    std::vector<FlatChart> flat =
+    FlattenResult flattened =
         flatten_charts(input.mesh, cuts.charts, options.method, progress);
     progress.begin_phase("packing charts", 0.2);
     const Layout layout =
-        lay_out(input.mesh, flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
+        lay_out(input.mesh, flattened.flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
 
     FilterOutput output;
     int mended = 0;
+    int pushed = 0;
     bool converged = true;
     double energy = 0.0;
-    for (const FlatChart& chart : flat) {
+    for (const FlatChart& chart : flattened.flat) {
+        pushed += chart.pushed ? 1 : 0;
         mended += chart.mended ? 1 : 0;
         converged = converged && chart.converged;
         energy = std::max(energy, chart.energy);
     }
     output.values = {
-        {"charts_number", cuts.charts.count},
+        {"charts_number", flattened.charts.count},
         {"cut_charts_number", cuts.cut_charts},
+        {"overlap_cuts_number", flattened.overlap_cuts},
+        {"pushed_charts_number", pushed},
         {"mended_charts_number", mended},
         {"converged", converged},
         {"worst_chart_energy", energy},
@@ -108,9 +112,12 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     if (mended > 0)
         output.notes.push_back(std::to_string(mended) + " charts had flipped faces and were "
                                                         "flattened with Symmetric Dirichlet");
+    if (flattened.overlap_cuts > 0)
+        output.notes.push_back(std::to_string(flattened.overlap_cuts) +
+                               " cuts were made where parts of a chart lay on top of each other");
     note_unsettled(layout, output);
     output.uv = layout.uv;
-    output.charts = std::move(cuts.charts);
+    output.charts = std::move(flattened.charts);
     return output;
 }
 
@@ -165,6 +172,8 @@ FilterDeclaration flatten() {
         .writes(writes_charts | writes_uv)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut first")
+        .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
+        .result("pushed_charts_number", "charts whose parts were pushed apart instead")
         .result("mended_charts_number", "charts that needed the injective method")
         .result("converged", "whether all charts reached the tolerance")
         .result("worst_chart_energy", "largest symmetric Dirichlet energy of a chart, 1 for an "

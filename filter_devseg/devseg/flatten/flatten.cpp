@@ -1,18 +1,34 @@
 #include "devseg/flatten/flatten.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "devseg/cut/disks.h"
 #include "devseg/errors.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/overlaps.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
+#include "devseg/metrics/overlap.h"
 #include "devseg/parallel.h"
 
 namespace devseg {
 
 namespace {
+
+// Pushing apart: rounds, each stiffer than the one before.
+constexpr int push_rounds = 10;
+constexpr double first_stiffness = 100.0; // in units of the energy per chart area
+constexpr double stiffer = 2.0;
+constexpr double gap_share = 3e-4; // distance to leave between parts, of the chart's size
+// Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a cut
+// keeps the pattern truer than a deformation.
+constexpr double push_cost = 0.01;
+
+using Pairs = std::vector<std::pair<Index, Index>>;
 
 // LSCM where it is free of flips, as on all charts that are nearly developable; Tutte elsewhere.
 std::vector<Vec2> valid_start(const FlatteningProblem& problem, const std::vector<Vec2>& lscm) {
@@ -27,44 +43,143 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const std::vecto
     return uv;
 }
 
-void flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
-                 const Progress& progress) {
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+void apply_method(const FlatteningProblem& problem, FlattenMethod method, FlatChart& chart,
+                  const Progress& progress) {
     chart.uv = flatten_lscm(problem);
     const bool flips = count_flips(problem, chart.uv) > 0;
     chart.mended = method == FlattenMethod::lscm && flips;
-    if (method == FlattenMethod::symmetric_dirichlet || flips) {
-        SymmetricDirichletResult result = minimise_symmetric_dirichlet(
-            problem, valid_start(problem, chart.uv), SymmetricDirichletOptions{}, progress);
-        chart.uv = std::move(result.uv);
-        chart.converged = result.converged;
-        scale_to_area(problem, chart.uv);
+    if (method != FlattenMethod::symmetric_dirichlet && !flips)
+        return;
+    SymmetricDirichletResult result = minimise_symmetric_dirichlet(
+        problem, valid_start(problem, chart.uv), SymmetricDirichletOptions{}, progress);
+    chart.uv = std::move(result.uv);
+    chart.converged = result.converged;
+    scale_to_area(problem, chart.uv);
+}
+
+// The map with its overlapping parts pushed apart; nothing if that does not help, or costs too
+// much shape.
+std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
+                                            const FlatChart& chart, Pairs pairs, double tolerance,
+                                            const Progress& progress) {
+    const double before = symmetric_dirichlet_energy(problem, chart.uv);
+    std::vector<Vec2> uv = chart.uv;
+    ContactPenalty penalty;
+    penalty.stiffness = first_stiffness / problem.total_area;
+    penalty.gap = gap_share * std::sqrt(problem.total_area);
+    SymmetricDirichletOptions options;
+    options.max_iterations = 30;
+    for (int round = 0; round < push_rounds; ++round) {
+        std::vector<Contact> contacts = find_contacts(chart.surface, uv, pairs);
+        // Contacts of earlier rounds stay: parts that were pushed apart must not come back.
+        contacts.insert(contacts.end(), penalty.contacts.begin(), penalty.contacts.end());
+        std::sort(contacts.begin(), contacts.end());
+        contacts.erase(std::unique(contacts.begin(), contacts.end(),
+                                   [](const Contact& a, const Contact& b) {
+                                       return !(a < b) && !(b < a);
+                                   }),
+                       contacts.end());
+        penalty.contacts = std::move(contacts);
+        uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
+        scale_to_area(problem, uv);
+        if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
+            return std::nullopt;
+        pairs = overlapping_pairs(chart.surface, uv, tolerance);
+        if (pairs.empty())
+            return uv;
+        penalty.stiffness *= stiffer;
     }
+    return std::nullopt;
+}
+
+// Returns the mesh half-edges to cut where parts of the chart could not be kept apart.
+std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
+                               FlatChart& chart, const Progress& progress) {
+    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    apply_method(problem, method, chart, progress);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+    const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
+    if (pairs.empty())
+        return {};
+    if (auto apart = push_apart(problem, chart, pairs, tolerance, progress)) {
+        chart.uv = std::move(*apart);
+        chart.pushed = true;
+        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+        return {};
+    }
+    std::vector<Index> cut = separating_path(mesh, chart.surface, pairs);
+    for (Index& h : cut)
+        h = chart.surface.mesh_half_edge(h);
+    return cut;
+}
+
+// Flattens the charts with the given numbers; returns the half-edges to cut, per chart.
+std::vector<std::vector<Index>> flatten_some(const Mesh& mesh, FlattenMethod method,
+                                             std::vector<std::size_t> which,
+                                             std::vector<FlatChart>& flat, Progress& progress) {
+    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+    // The largest first, so that no core is left with a large chart at the end.
+    std::stable_sort(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
+        return flat[a].surface.face.size() > flat[b].surface.face.size();
+    });
+    std::vector<std::vector<Index>> cuts(flat.size());
+    parallel_for(
+        static_cast<int>(which.size()),
+        [&](int i) {
+            const std::size_t c = which[static_cast<std::size_t>(i)];
+            progress.check();
+            cuts[c] = flatten_one(mesh, method, tolerance, flat[c], progress);
+        },
+        progress);
+    return cuts;
+}
+
+// Cuts the charts as asked, and takes over the maps of those that stay as they are. Returns the
+// numbers of the others.
+std::vector<std::size_t> cut_apart(const Mesh& mesh,
+                                   const std::vector<std::vector<Index>>& cuts,
+                                   FlattenResult& result, Progress& progress) {
+    std::vector<Index> old_chart = result.charts.chart;
+    std::vector<std::uint8_t> seam = result.charts.seam;
+    for (const std::vector<Index>& cut : cuts) {
+        result.overlap_cuts += cut.empty() ? 0 : 1;
+        for (const Index h : cut)
+            seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
+    }
+    result.charts =
+        cut_charts_to_disks(mesh, make_chart_map(mesh, old_chart, seam, true), progress).charts;
+    std::vector<FlatChart> flat;
+    std::vector<std::size_t> open;
+    for (ChartSurface& surface : extract_charts(mesh, result.charts)) {
+        const std::size_t old = at(old_chart[at(surface.face.front())]);
+        if (cuts[old].empty()) {
+            flat.push_back(std::move(result.flat[old]));
+        } else {
+            open.push_back(flat.size());
+            flat.emplace_back();
+            flat.back().surface = std::move(surface);
+        }
+    }
+    result.flat = std::move(flat);
+    return open;
 }
 
 } // namespace
 
-std::vector<FlatChart> flatten_charts(const Mesh& mesh, const ChartMap& charts,
-                                      FlattenMethod method, Progress& progress) {
-    std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
-    std::vector<FlatChart> result(surfaces.size());
-    for (std::size_t c = 0; c < surfaces.size(); ++c)
-        result[c].surface = std::move(surfaces[c]);
-    // The largest first, so that no core is left with a large chart at the end.
-    std::vector<std::size_t> order(result.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return result[a].surface.face.size() > result[b].surface.face.size();
-    });
-    parallel_for(
-        static_cast<int>(order.size()),
-        [&](int i) {
-            FlatChart& chart = result[order[static_cast<std::size_t>(i)]];
-            progress.check();
-            flatten_one(mesh, method, chart, progress);
-        },
-        progress);
+FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
+                             Progress& progress) {
+    FlattenResult result;
+    result.charts = charts;
+    std::vector<std::size_t> open;
+    for (ChartSurface& surface : extract_charts(mesh, charts)) {
+        open.push_back(result.flat.size());
+        result.flat.emplace_back();
+        result.flat.back().surface = std::move(surface);
+    }
+    // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
+    while (!open.empty())
+        open = cut_apart(mesh, flatten_some(mesh, method, open, result.flat, progress), result,
+                         progress);
     return result;
 }
 

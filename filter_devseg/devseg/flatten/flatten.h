@@ -1,7 +1,7 @@
-// Flattening all charts of a segmentation, in parallel, each with its own area.
+// Flattening all charts of a segmentation, in parallel, each with its own area and without
+// flipped or overlapping faces.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "devseg/mesh/charts.h"
@@ -16,13 +16,22 @@ struct FlatChart {
     ChartSurface surface;
     std::vector<Vec2> uv; // #v, internal units of the mesh
     bool mended = false;  // the chosen method flipped faces: the injective one was used instead
+    bool pushed = false;  // parts lay on top of each other and were pushed apart
     bool converged = true;
-    double energy = 0.0;  // symmetric Dirichlet energy, 1 for an isometry
+    double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
 };
 
-/// Flattens every chart; all must be disks. The result does not depend on the number of threads.
-/// Throws NumericalFailure, naming the chart, where no map without flips could be found.
-std::vector<FlatChart> flatten_charts(const Mesh& mesh, const ChartMap& charts,
-                                      FlattenMethod method, Progress& progress);
+struct FlattenResult {
+    ChartMap charts; // the given charts, cut further where a part lay on top of another
+    std::vector<FlatChart> flat;
+    int overlap_cuts = 0; // cuts that were needed
+};
+
+/// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
+/// are pushed apart where that changes the shape little, and else cut apart along a short path. The
+/// result does not depend on the number of threads. Throws NumericalFailure, naming the chart's
+/// size, where no map without flips could be found.
+FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
+                             Progress& progress);
 
 } // namespace devseg

@@ -181,7 +181,8 @@ private:
 SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& start,
                                                       const SymmetricDirichletOptions& options,
-                                                      const Progress& progress) {
+                                                      const Progress& progress,
+                                                      const ContactPenalty& penalty) {
     if (count_flips(problem, start) > 0)
         throw NumericalFailure("expected a start without flipped faces");
     Positions x(problem.vertex_count, 2);
@@ -190,8 +191,16 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
 
     SymmetricDirichletResult result;
     QuasiNewton model(problem);
-    double energy = energy_of(problem, x);
-    Positions gradient = gradient_of(problem, x);
+    const auto value = [&](const Positions& y) {
+        return energy_of(problem, y) + penalty.energy(y);
+    };
+    const auto slope_of = [&](const Positions& y) {
+        Positions g = gradient_of(problem, y);
+        penalty.add_gradient(y, g);
+        return g;
+    };
+    double energy = value(x);
+    Positions gradient = slope_of(x);
     std::deque<double> recent{energy};
     while (result.iterations < options.max_iterations && !result.converged) {
         progress.check();
@@ -207,7 +216,7 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
         Positions next;
         while (step > smallest_step) {
             next = x + step * d;
-            next_energy = energy_of(problem, next);
+            next_energy = value(next);
             if (next_energy <= energy + sufficient_decrease * step * slope)
                 break;
             step *= 0.5;
@@ -220,7 +229,7 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
             model.forget();
             continue;
         }
-        const Positions next_gradient = gradient_of(problem, next);
+        const Positions next_gradient = slope_of(next);
         model.remember(next - x, next_gradient - gradient);
         x = next;
         gradient = next_gradient;
@@ -232,7 +241,7 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
             recent.pop_front();
         }
     }
-    result.energy = energy;
+    result.energy = energy_of(problem, x);
     result.uv.resize(at(problem.vertex_count));
     for (Index v = 0; v < problem.vertex_count; ++v)
         result.uv[at(v)] = x.row(v).transpose();

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "devseg/flatten/contacts.h"
 #include "devseg/flatten/rest_shape.h"
 #include "devseg/progress.h"
 
@@ -22,11 +23,13 @@ struct SymmetricDirichletResult {
 
 /// Minimises the symmetric Dirichlet energy from a start without flips. The line search stops
 /// before the first triangle would collapse, so every iterate is free of flips as well. Throws
-/// NumericalFailure when the start has flips, Cancelled.
+/// NumericalFailure when the start has flips, Cancelled. A penalty on contacts may be added; the
+/// energy in the result is then without it.
 SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& start,
                                                       const SymmetricDirichletOptions& options,
-                                                      const Progress& progress);
+                                                      const Progress& progress,
+                                                      const ContactPenalty& penalty = {});
 
 /// The energy of any map; infinite where a face is flipped or has no area.
 double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);

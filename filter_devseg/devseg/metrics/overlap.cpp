@@ -9,9 +9,11 @@ namespace devseg {
 
 namespace {
 
-// Neighbours that share an edge touch exactly; rounding of coordinates to 32 bit lets others
-// reach into each other by parts of 1e-7. Real overlaps are far above.
+// Neighbours that share an edge touch exactly; triangles that meet otherwise, as on both sides of
+// a closed slit, reach into each other by rounding.
 constexpr double touch_tolerance = 1e-6;
+// Each corner is off by up to one step of a 32-bit number in the layout; a few of them add up.
+constexpr double rounding_steps = 4.0;
 
 using Corners = std::array<Vec2, 3>;
 
@@ -45,8 +47,8 @@ bool separated_by_edges_of(const Corners& a, const Corners& b, double tolerance)
     return false;
 }
 
-bool overlap(const Corners& a, const Corners& b) {
-    const double tolerance = touch_tolerance * std::min(extent(a), extent(b));
+bool overlap(const Corners& a, const Corners& b, double least) {
+    const double tolerance = std::max(least, touch_tolerance * std::min(extent(a), extent(b)));
     return !separated_by_edges_of(a, b, tolerance) && !separated_by_edges_of(b, a, tolerance);
 }
 
@@ -115,25 +117,45 @@ private:
 
 } // namespace
 
-std::vector<std::uint8_t> find_overlapping_faces(const Mesh& mesh, const CornerUv& uv) {
-    std::vector<std::uint8_t> result(mesh.faces.size(), 0);
+std::vector<std::pair<Index, Index>> find_overlapping_pairs(const CornerUv& corners,
+                                                            double tolerance) {
+    std::vector<std::pair<Index, Index>> pairs;
     std::vector<Index> faces;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (std::abs(uv_area(uv, f)) > 0.0) // false for NaN as well
+    for (Index f = 0; f < static_cast<Index>(corners.size() / 3); ++f)
+        if (std::abs(uv_area(corners, f)) > 0.0) // false for NaN as well
             faces.push_back(f);
     if (faces.empty())
-        return result;
-    const Grid grid(uv, faces);
-    std::vector<Corners> corners;
+        return pairs;
+    const Grid grid(corners, faces);
+    std::vector<Corners> in_cell;
     for (Index c = 0; c < grid.cell_count(); ++c) {
-        corners.clear();
+        in_cell.clear();
         for (const Index* f = grid.first(c); f != grid.last(c); ++f)
-            corners.push_back(corners_of(uv, *f));
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            for (std::size_t j = i + 1; j < corners.size(); ++j)
-                if (grid.owner(corners[i], corners[j]) == c && overlap(corners[i], corners[j]))
-                    result[at(grid.first(c)[i])] = result[at(grid.first(c)[j])] = 1;
+            in_cell.push_back(corners_of(corners, *f));
+        for (std::size_t i = 0; i < in_cell.size(); ++i)
+            for (std::size_t j = i + 1; j < in_cell.size(); ++j)
+                if (grid.owner(in_cell[i], in_cell[j]) == c &&
+                    overlap(in_cell[i], in_cell[j], tolerance))
+                    pairs.emplace_back(std::minmax(grid.first(c)[i], grid.first(c)[j]));
     }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+double layout_tolerance(double extent) {
+    return rounding_steps * static_cast<double>(std::numeric_limits<float>::epsilon()) * extent;
+}
+
+std::vector<std::uint8_t> find_overlapping_faces(const CornerUv& uv) {
+    Vec2 low = Vec2::Zero();
+    Vec2 high = Vec2::Zero();
+    for (const Vec2& p : uv) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    std::vector<std::uint8_t> result(uv.size() / 3, 0);
+    for (const auto& [f, g] : find_overlapping_pairs(uv, layout_tolerance((high - low).maxCoeff())))
+        result[at(f)] = result[at(g)] = 1;
     return result;
 }
 

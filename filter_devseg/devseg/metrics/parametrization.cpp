@@ -151,7 +151,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         result.symmetric_dirichlet_energy = energy / weight;
         result.l2_shear = std::sqrt(shear / weight);
     }
-    for (const std::uint8_t overlapping : find_overlapping_faces(mesh, uv))
+    for (const std::uint8_t overlapping : find_overlapping_faces(uv))
         result.overlapping_faces_number += overlapping;
     result.seam_length = seam_length(mesh, charts);
     const double box = bounding_box_area(uv);

@@ -1,0 +1,186 @@
+#include "devseg/flatten/overlaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+
+#include "devseg/flatten/map_tools.h"
+#include "devseg/metrics/overlap.h"
+
+namespace devseg {
+
+namespace {
+
+struct Segment {
+    Vec2 a, b;
+    Index from, to; // vertices
+};
+
+std::vector<Segment> boundary_segments(const ChartSurface& surface, const std::vector<Vec2>& uv) {
+    std::vector<Segment> segments;
+    for (const std::vector<Index>& loop : surface.loops)
+        for (const Index h : loop)
+            segments.push_back({uv[at(surface.origin(h))], uv[at(surface.target(h))],
+                                surface.origin(h), surface.target(h)});
+    return segments;
+}
+
+int sign(double x) {
+    return x > 0.0 ? 1 : x < 0.0 ? -1 : 0;
+}
+
+// Segments that cross in a point inside both, or that touch with an end: anything but apart.
+bool cross(const Segment& s, const Segment& t) {
+    if (s.from == t.from || s.from == t.to || s.to == t.from || s.to == t.to) {
+        // Neighbours share a point anyway. They overlap only when one folds back onto the other.
+        const Vec2& common = s.to == t.from || s.to == t.to ? s.b : s.a;
+        const Vec2& p = &common == &s.b ? s.a : s.b;
+        const Vec2& q = t.from == s.to || t.from == s.from ? t.b : t.a;
+        return orientation(common, p, q) == 0.0 && (p - common).dot(q - common) > 0.0;
+    }
+    const int s1 = sign(orientation(s.a, s.b, t.a));
+    const int s2 = sign(orientation(s.a, s.b, t.b));
+    const int t1 = sign(orientation(t.a, t.b, s.a));
+    const int t2 = sign(orientation(t.a, t.b, s.b));
+    if (s1 == 0 && s2 == 0) { // on one line: do the boxes overlap?
+        const Vec2 low = s.a.cwiseMin(s.b).cwiseMax(t.a.cwiseMin(t.b));
+        const Vec2 high = s.a.cwiseMax(s.b).cwiseMin(t.a.cwiseMax(t.b));
+        return (high - low).minCoeff() >= 0.0;
+    }
+    return s1 * s2 <= 0 && t1 * t2 <= 0;
+}
+
+// Sweep over x with the segments that are active; boundaries are short compared with their charts.
+bool any_crossing(std::vector<Segment> segments) {
+    const auto low_x = [](const Segment& s) { return std::min(s.a.x(), s.b.x()); };
+    const auto high_x = [](const Segment& s) { return std::max(s.a.x(), s.b.x()); };
+    const auto low_y = [](const Segment& s) { return std::min(s.a.y(), s.b.y()); };
+    const auto high_y = [](const Segment& s) { return std::max(s.a.y(), s.b.y()); };
+    std::sort(segments.begin(), segments.end(),
+              [&](const Segment& s, const Segment& t) { return low_x(s) < low_x(t); });
+    std::vector<const Segment*> active;
+    for (const Segment& s : segments) {
+        active.erase(std::remove_if(active.begin(), active.end(),
+                                    [&](const Segment* t) { return high_x(*t) < low_x(s); }),
+                     active.end());
+        for (const Segment* t : active)
+            if (low_y(*t) <= high_y(s) && low_y(s) <= high_y(*t) && cross(s, *t))
+                return true;
+        active.push_back(&s);
+    }
+    return false;
+}
+
+// Faces that take part in an overlap, split between the two faces of the first pair: each goes to
+// the one from which it is reached first through such faces.
+std::vector<Index> two_sides(const ChartSurface& surface,
+                             const std::vector<std::pair<Index, Index>>& pairs) {
+    constexpr Index outside = -2;
+    constexpr Index open = -1;
+    std::vector<Index> side(surface.face.size(), outside);
+    for (const auto& [f, g] : pairs)
+        side[at(f)] = side[at(g)] = open;
+    std::queue<Index> queue;
+    side[at(pairs.front().first)] = 0;
+    side[at(pairs.front().second)] = 1;
+    queue.push(pairs.front().first);
+    queue.push(pairs.front().second);
+    while (!queue.empty()) {
+        const Index f = queue.front();
+        queue.pop();
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = surface.twin[at(h)];
+            if (twin >= 0 && side[at(twin / 3)] == open) {
+                side[at(twin / 3)] = side[at(f)];
+                queue.push(twin / 3);
+            }
+        }
+    }
+    return side;
+}
+
+} // namespace
+
+bool boundary_crosses_itself(const ChartSurface& surface, const std::vector<Vec2>& uv) {
+    return any_crossing(boundary_segments(surface, uv));
+}
+
+std::vector<std::pair<Index, Index>> overlapping_pairs(const ChartSurface& surface,
+                                                       const std::vector<Vec2>& uv,
+                                                       double tolerance) {
+    if (!boundary_crosses_itself(surface, uv))
+        return {};
+    CornerUv corners;
+    corners.reserve(3 * surface.corners.size());
+    for (const Triangle& t : surface.corners)
+        for (const Index v : t)
+            corners.push_back(uv[at(v)]);
+    return find_overlapping_pairs(corners, tolerance);
+}
+
+std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
+                                   const std::vector<std::pair<Index, Index>>& pairs) {
+    // The cut with the least length between two sets of faces of a disk, as the shortest way for a
+    // flow to be stopped: grow one side from its faces and let the cheapest border win. In a disk
+    // this least border is a shortest path between the two arcs of the boundary that lie between
+    // the sets; contracting each set keeps the path from running through it.
+    const std::vector<Index> side = two_sides(surface, pairs);
+    const Index n = surface.face_count();
+
+    // Maximum flow over the dual graph (Edmonds–Karp); capacities are edge lengths.
+    std::vector<double> flow(3 * at(n), 0.0);
+    const auto capacity = [&](Index h) { return mesh.edge_length(surface.mesh_half_edge(h)); };
+    std::vector<Index> reached_by(at(n));
+    double scale = 0.0;
+    for (Index h = 0; h < 3 * n; ++h)
+        scale = std::max(scale, capacity(h));
+    constexpr double saturated = 1e-12; // of the longest edge: less is rounding
+    constexpr Index unreached = -1;
+    constexpr Index source = -2;
+    while (true) {
+        std::fill(reached_by.begin(), reached_by.end(), unreached);
+        std::queue<Index> queue;
+        for (Index f = 0; f < n; ++f)
+            if (side[at(f)] == 0) {
+                reached_by[at(f)] = source;
+                queue.push(f);
+            }
+        Index sink = -1;
+        while (!queue.empty() && sink < 0) {
+            const Index f = queue.front();
+            queue.pop();
+            for (Index h = 3 * f; h < 3 * f + 3 && sink < 0; ++h) {
+                const Index twin = surface.twin[at(h)];
+                if (twin < 0 || reached_by[at(twin / 3)] != unreached ||
+                    capacity(h) - flow[at(h)] <= saturated * scale)
+                    continue;
+                reached_by[at(twin / 3)] = h;
+                if (side[at(twin / 3)] == 1)
+                    sink = twin / 3;
+                queue.push(twin / 3);
+            }
+        }
+        if (sink < 0)
+            break;
+        double bottleneck = std::numeric_limits<double>::max();
+        for (Index f = sink; reached_by[at(f)] != source; f = reached_by[at(f)] / 3)
+            bottleneck = std::min(bottleneck, capacity(reached_by[at(f)]) -
+                                                  flow[at(reached_by[at(f)])]);
+        for (Index f = sink; reached_by[at(f)] != source; f = reached_by[at(f)] / 3) {
+            flow[at(reached_by[at(f)])] += bottleneck;
+            flow[at(surface.twin[at(reached_by[at(f)])])] -= bottleneck;
+        }
+    }
+    std::vector<Index> path;
+    for (Index h = 0; h < 3 * n; ++h) {
+        const Index twin = surface.twin[at(h)];
+        if (twin >= 0 && reached_by[at(h / 3)] != unreached &&
+            reached_by[at(twin / 3)] == unreached)
+            path.push_back(h);
+    }
+    return path;
+}
+
+} // namespace devseg
