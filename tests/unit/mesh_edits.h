@@ -15,7 +15,7 @@ class Random {
 public:
     explicit Random(std::uint32_t seed) : generator_(seed) {}
     double uniform(double low, double high) {
-        return low + (high - low) * generator_() / 4294967296.0;
+        return low + (high - low) * static_cast<double>(generator_()) / 4294967296.0;
     }
     Index below(Index count) {
         return static_cast<Index>(generator_() % static_cast<std::uint32_t>(count));

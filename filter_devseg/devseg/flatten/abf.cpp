@@ -237,4 +237,36 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
     return step;
 }
 
+AbfResult flatten_abf(const FlatteningProblem& problem, const AbfOptions& options,
+                      const Progress& progress) {
+    AngleSystem system(problem, options);
+    Eigen::VectorXd angles = system.start();
+    AbfResult result;
+    while (result.iterations < options.max_iterations && !result.converged) {
+        progress.check();
+        const Eigen::VectorXd change = system.newton_step(angles).angles;
+        const double length = step_length(angles, change);
+        angles += length * change;
+        ++result.iterations;
+        result.residual = system.constraints(angles).lpNorm<Eigen::Infinity>();
+        if (getenv("ABF_DEBUG")) fprintf(stderr, "  it %d len %g change %g res %g E %g\n", result.iterations, length, change.lpNorm<Eigen::Infinity>(), result.residual, system.energy(angles));
+        result.converged = result.residual <= options.tolerance &&
+                           change.lpNorm<Eigen::Infinity>() <= options.tolerance;
+    }
+    result.energy = system.energy(angles);
+    progress.check();
+    // Coordinates [SLMB05, section 4]: least squares over triangles of these angles, which is a
+    // least squares conformal map of them, for that knows triangles by their cotangents only.
+    FlatteningProblem shaped = problem;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        Eigen::Vector3d angle = angles.segment<3>(static_cast<Eigen::Index>(3 * f));
+        angle *= pi / angle.sum();
+        for (std::size_t k = 0; k < 3; ++k)
+            shaped.cotangent[f][k] = cotangent(angle[static_cast<Eigen::Index>(next(next(k)))]);
+    }
+    result.uv = flatten_lscm(shaped);
+    result.flips = count_flips(problem, result.uv);
+    return result;
+}
+
 } // namespace devseg

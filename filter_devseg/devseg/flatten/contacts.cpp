@@ -12,11 +12,29 @@ namespace devseg {
 
 namespace {
 
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+// Where the point of the segment nearest to p lies: 0 at a, 1 at b.
+double nearest_parameter(const Vec2& p, const Vec2& a, const Vec2& b) {
     const Vec2 ab = b - a;
     const double length2 = ab.squaredNorm();
-    const double t = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-    return (p - a - t * ab).norm();
+    return length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+}
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    return (p - a - nearest_parameter(p, a, b) * (b - a)).norm();
+}
+
+Index next_on_boundary(const ChartSurface& surface, Index h) {
+    h = Mesh::next(h);
+    while (surface.twin[at(h)] >= 0)
+        h = Mesh::next(surface.twin[at(h)]);
+    return h;
+}
+
+Index previous_on_boundary(const ChartSurface& surface, Index h) {
+    h = Mesh::previous(h);
+    while (surface.twin[at(h)] >= 0)
+        h = Mesh::previous(surface.twin[at(h)]);
+    return h;
 }
 
 bool inside(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
@@ -77,33 +95,82 @@ SignedDistance signed_distance(const Contact& contact, const Eigen::MatrixX2d& x
     return d;
 }
 
+// Finds the contacts of overlapping pairs of faces.
+class ContactFinder {
+public:
+    ContactFinder(const ChartSurface& surface, const std::vector<Vec2>& uv)
+        : s_(surface), uv_(uv), leaving_(surface.vertex.size(), -1),
+          settled_(surface.vertex.size(), 0) {
+        for (const std::vector<Index>& loop : surface.loops)
+            for (const Index h : loop)
+                leaving_[at(surface.origin(h))] = h;
+    }
+
+    // Faces that overlap around a common boundary vertex: the surface turns by more than 360
+    // degrees there. Each neighbour on the boundary must get outside of the other one's edge.
+    void find_full_turn(Index f, Index g) {
+        for (const Index v : s_.corners[at(f)]) {
+            const Triangle& t = s_.corners[at(g)];
+            if (leaving_[at(v)] < 0 || (v != t[0] && v != t[1] && v != t[2]))
+                continue;
+            const Index out = leaving_[at(v)];
+            const Index in = previous_on_boundary(s_, out);
+            settled_[at(s_.origin(in))] = settled_[at(s_.target(out))] = 1;
+            add(s_.origin(in), out);
+            add(s_.target(out), in);
+        }
+    }
+
+    // Boundary vertices of f that lie on g leave across the nearest boundary edge.
+    void find_inside(Index f, Index g) {
+        const Triangle& t = s_.corners[at(g)];
+        for (const Index v : s_.corners[at(f)]) {
+            if (leaving_[at(v)] < 0 || settled_[at(v)] != 0 || v == t[0] || v == t[1] ||
+                v == t[2] || !tested_.emplace(v, g).second ||
+                !inside(uv_[at(v)], uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]))
+                continue;
+            const Index exit = nearest_exit(s_, uv_, v, g);
+            if (exit < 0)
+                continue;
+            add(v, exit);
+            // Past a corner that points inwards, the vertex must get outside of both its edges.
+            const double along = nearest_parameter(uv_[at(v)], uv_[at(s_.origin(exit))],
+                                                   uv_[at(s_.target(exit))]);
+            if (along <= 0.0)
+                add(v, previous_on_boundary(s_, exit));
+            if (along >= 1.0)
+                add(v, next_on_boundary(s_, exit));
+        }
+    }
+
+    std::vector<Contact> contacts() const { return {contacts_.begin(), contacts_.end()}; }
+
+private:
+    void add(Index v, Index h) {
+        if (s_.origin(h) != v && s_.target(h) != v)
+            contacts_.insert({v, s_.origin(h), s_.target(h)});
+    }
+
+    const ChartSurface& s_;
+    const std::vector<Vec2>& uv_;
+    std::vector<Index> leaving_; // #v: boundary half-edge from the vertex, −1 = inside
+    std::vector<std::uint8_t> settled_; // #v: 1 where a full turn says which way to go
+    std::set<std::pair<Index, Index>> tested_;
+    std::set<Contact> contacts_;
+};
+
 } // namespace
 
 std::vector<Contact> find_contacts(const ChartSurface& surface, const std::vector<Vec2>& uv,
                                    const std::vector<std::pair<Index, Index>>& pairs) {
-    std::vector<std::uint8_t> on_boundary(surface.vertex.size(), 0);
-    for (const std::vector<Index>& loop : surface.loops)
-        for (const Index h : loop)
-            on_boundary[at(surface.origin(h))] = 1;
-    std::set<std::pair<Index, Index>> tested; // (vertex, face that it lies on)
-    std::set<Contact> contacts;
-    const auto test = [&](Index f, Index g) {
-        const Triangle& t = surface.corners[at(g)];
-        for (const Index v : surface.corners[at(f)]) {
-            if (on_boundary[at(v)] == 0 || v == t[0] || v == t[1] || v == t[2] ||
-                !tested.emplace(v, g).second ||
-                !inside(uv[at(v)], uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]))
-                continue;
-            const Index exit = nearest_exit(surface, uv, v, g);
-            if (exit >= 0)
-                contacts.insert({v, surface.origin(exit), surface.target(exit)});
-        }
-    };
+    ContactFinder finder(surface, uv);
+    for (const auto& [f, g] : pairs)
+        finder.find_full_turn(f, g);
     for (const auto& [f, g] : pairs) {
-        test(f, g);
-        test(g, f);
+        finder.find_inside(f, g);
+        finder.find_inside(g, f);
     }
-    return {contacts.begin(), contacts.end()};
+    return finder.contacts();
 }
 
 double ContactPenalty::energy(const Eigen::MatrixX2d& x) const {

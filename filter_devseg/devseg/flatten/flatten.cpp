@@ -57,6 +57,18 @@ void apply_method(const FlatteningProblem& problem, FlattenMethod method, FlatCh
     scale_to_area(problem, chart.uv);
 }
 
+// Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
+// where a vertex has new ones.
+std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
+                                    std::vector<Contact> contacts) {
+    const std::size_t found = contacts.size();
+    for (const Contact& contact : old)
+        if (std::none_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(found),
+                         [&](const Contact& c) { return c.vertex == contact.vertex; }))
+            contacts.push_back(contact);
+    return contacts;
+}
+
 // The map with its overlapping parts pushed apart; nothing if that does not help, or costs too
 // much shape.
 std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
@@ -70,16 +82,7 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
     SymmetricDirichletOptions options;
     options.max_iterations = 30;
     for (int round = 0; round < push_rounds; ++round) {
-        std::vector<Contact> contacts = find_contacts(chart.surface, uv, pairs);
-        // Contacts of earlier rounds stay: parts that were pushed apart must not come back.
-        contacts.insert(contacts.end(), penalty.contacts.begin(), penalty.contacts.end());
-        std::sort(contacts.begin(), contacts.end());
-        contacts.erase(std::unique(contacts.begin(), contacts.end(),
-                                   [](const Contact& a, const Contact& b) {
-                                       return !(a < b) && !(b < a);
-                                   }),
-                       contacts.end());
-        penalty.contacts = std::move(contacts);
+        penalty.contacts = merge_contacts(penalty.contacts, find_contacts(chart.surface, uv, pairs));
         uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
         scale_to_area(problem, uv);
         if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
