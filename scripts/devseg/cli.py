@@ -222,7 +222,25 @@ def _measure_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> No
     for group in ("segmentation", "parametrization"):
         print(group)
         for name, value in result[group].items():
-            print(f"  {name:<28} {value:.6g}")
+            if not hasattr(value, "__len__"):
+                print(f"  {name:<28} {value:.6g}")
+    flat = result["parametrization"]
+    _print_table("chart", flat, first=1)
+    _print_table("seam", flat)
+
+
+def _print_table(prefix: str, measures: dict[str, Any], first: int | None = None) -> None:
+    """One row for each chart or seam; `first` numbers the rows from there."""
+    columns = {
+        name.removeprefix(f"{prefix}_"): value
+        for name, value in measures.items()
+        if name.startswith(f"{prefix}_") and hasattr(value, "__len__")
+    }
+    print(f"{prefix}s")
+    print("  " + " ".join(f"{name:>16}" for name in ([prefix] if first else []) + [*columns]))
+    for row, values in enumerate(zip(*columns.values(), strict=True)):
+        numbers = ([first + row] if first else []) + list(values)
+        print("  " + " ".join(f"{number:>16.6g}" for number in numbers))
 
 
 def _info_command(_: argparse.Namespace, __: argparse.ArgumentParser) -> None:

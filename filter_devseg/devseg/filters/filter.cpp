@@ -104,7 +104,7 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
                           "or load a mesh that has them");
     const GatedMesh gated = gate_mesh(host.geometry);
     const FilterInput input{gated.mesh, read_charts(host, gated),
-                            read_uv(host, gated, filter.needs_uv)};
+                            read_uv(host, gated, filter.needs_uv), gated.source_face};
     try {
         return map_back(gated, filter.run(input, values, progress));
     } catch (InvalidMesh& error) {

@@ -60,6 +60,7 @@ struct FilterInput {
     const Mesh& mesh;
     std::optional<ChartMap> charts; // from chart_id and seam_edges, if the mesh has them
     std::optional<CornerUv> uv;     // wedge texture coordinates, if the mesh has them
+    const std::vector<Index>& source_face; // #F: the host's number of each face, for results
 };
 
 struct FilterOutput {

@@ -24,6 +24,15 @@ constexpr const char* parametrization_help =
     "<b>\"Texture Mapping Progressive Meshes\"</b><br>"
     "SIGGRAPH, 2001, doi:10.1145/383259.383307";
 
+// One number of each record.
+template <class Record, class Number>
+std::vector<double> column(const std::vector<Record>& records, Number number) {
+    std::vector<double> values;
+    for (const Record& record : records)
+        values.push_back(static_cast<double>(number(record)));
+    return values;
+}
+
 FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("measuring charts", 1.0);
     const SegmentationMeasures m = measure_segmentation(input.mesh, find_charts(input));
@@ -55,6 +64,21 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
         {"overlapping_faces_number", m.overlapping_faces_number},
         {"seam_length", m.seam_length},
         {"packing_efficiency", m.packing_efficiency},
+        {"chart_area", column(m.charts, [](const ChartMeasures& c) { return c.area; })},
+        {"chart_l2_stretch", column(m.charts, [](const ChartMeasures& c) { return c.l2_stretch; })},
+        {"chart_extension", column(m.charts, [](const ChartMeasures& c) { return c.extension; })},
+        {"chart_compression",
+         column(m.charts, [](const ChartMeasures& c) { return c.compression; })},
+        {"chart_worst_face", column(m.charts, [&](const ChartMeasures& c) {
+             return c.worst_face < 0 ? -1.0 : double(input.source_face[at(c.worst_face)]);
+         })},
+        {"seam_chart_a", column(m.seams, [](const SeamMeasures& s) { return s.chart_a; })},
+        {"seam_chart_b", column(m.seams, [](const SeamMeasures& s) { return s.chart_b; })},
+        {"seam_length_a", column(m.seams, [](const SeamMeasures& s) { return s.length_a; })},
+        {"seam_length_b", column(m.seams, [](const SeamMeasures& s) { return s.length_b; })},
+        {"seam_mismatch", column(m.seams, [](const SeamMeasures& s) { return s.mismatch(); })},
+        {"seam_mismatch_percent",
+         column(m.seams, [](const SeamMeasures& s) { return s.mismatch_percent(); })},
     };
     return output;
 }
@@ -89,6 +113,19 @@ FilterDeclaration parametrization_measures() {
         .result("overlapping_faces_number", "faces that lie on another face in the plane")
         .result("seam_length", "length of all cut edges, each counted once, model units")
         .result("packing_efficiency", "covered share of the layout's bounding box, 0 to 1")
+        .result("chart_area", "of each chart: area on the surface, model units squared")
+        .result("chart_l2_stretch", "of each chart: root mean square stretch, no unit")
+        .result("chart_extension", "of each chart: how much longer a line gets at most when the "
+                                   "chart is laid flat, 0.05 = 5 %")
+        .result("chart_compression", "of each chart: how much shorter a line gets at most, "
+                                     "0.05 = 5 %")
+        .result("chart_worst_face", "of each chart: the face with the larger of the two")
+        .result("seam_chart_a", "of each pair of pieces that share a seam: the first piece")
+        .result("seam_chart_b", "the second piece; the same as the first for darts and slits")
+        .result("seam_length_a", "flat length of the seam in the first piece, model units")
+        .result("seam_length_b", "flat length of the seam in the second piece, model units")
+        .result("seam_mismatch", "first length minus second, model units")
+        .result("seam_mismatch_percent", "the same, percent of the mean length")
         .runs(run_parametrization);
 }
 

@@ -4,7 +4,8 @@
 //   [ZLS07]  R. Zayer, B. Lévy, H.-P. Seidel: Linear Angle Based Parameterization. SGP 2007.
 //            doi:10.2312/SGP/SGP07/135-141
 // Deviations from [SLMB05]: wheels are compared by logarithms as in [ZLS07], which has the same
-// solutions but does not lose small products; a step stops short of the first angle to vanish.
+// solutions but does not lose small products. A step stops short of the first angle to vanish, and
+// instead of another weight such an angle gets another Hessian, so that the energy stays the same.
 #include "devseg/flatten/abf.h"
 
 #include <algorithm>
@@ -23,6 +24,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double safe_step = 0.9; // share of the way to the first angle of 0 or π
+// Violation at which constraints count as met: far below what a flipped triangle needs, far above
+// rounding.
+constexpr double met = 1e-8;
+constexpr double shrunk = 0.5; // share of its target below which an angle is in danger
 using Block = Eigen::Matrix<double, 6, 3>;
 
 std::size_t next(std::size_t corner) {
@@ -40,17 +45,16 @@ double rest_angle(const FlatteningProblem& problem, std::size_t f, std::size_t c
 
 // What one face contributes. All quantities are of its three angles.
 struct Face {
-    Eigen::Vector3d inverse;    // Λ⁻¹, the inverse Hessian: β² / 2
-    double trace;               // of Λ⁻¹
-    Eigen::Matrix3d projected;  // Λ⁻¹ − Λ⁻¹ 1 1ᵀ Λ⁻¹ / trace: its sum of angles is eliminated
-    Block gradient;             // rows: vertex sums, then wheels of the corners 0, 1, 2
+    Eigen::Vector3d inverse;   // Λ⁻¹, the inverse Hessian
+    double trace;              // of Λ⁻¹
+    Eigen::Matrix3d projected; // Λ⁻¹ − Λ⁻¹ 1 1ᵀ Λ⁻¹ / trace: the sum of the angles is eliminated
+    Block gradient;            // rows: vertex sums, then wheels of the corners 0, 1, 2
 };
 
-Face face_terms(const double* target, const double* angle) {
+Face face_terms(const Eigen::Vector3d& inverse, const Eigen::Vector3d& angle) {
     Face face;
-    for (int c = 0; c < 3; ++c)
-        face.inverse[c] = 0.5 * target[c] * target[c];
-    face.trace = face.inverse.sum();
+    face.inverse = inverse;
+    face.trace = inverse.sum();
     for (int c = 0; c < 3; ++c)
         for (int d = 0; d < 3; ++d)
             face.projected(c, d) =
@@ -104,6 +108,7 @@ AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& opt
             const double ratio = inner_[v] >= 0 ? 2.0 * pi / sum[v] : 1.0;
             target_[static_cast<Eigen::Index>(3 * f + c)] = ratio * rest_angle(problem, f, c);
         }
+    inverse_ = 0.5 * target_.cwiseAbs2();
     order_unknowns();
 }
 
@@ -160,11 +165,18 @@ Eigen::VectorXd AngleSystem::constraints(const Eigen::VectorXd& angles) const {
     return values;
 }
 
-// [SLMB05, equations 9 to 12] with the multipliers of the last step left out: the energy is
-// quadratic, so the step does not depend on them.
+void AngleSystem::stiffen(const Eigen::VectorXd& angles) {
+    for (Eigen::Index i = 0; i < angles.size(); ++i)
+        if (angles[i] < shrunk * target_[i])
+            inverse_[i] = std::min(inverse_[i], 0.5 * angles[i] * angles[i]);
+}
+
+// [SLMB05, section 3] with the multipliers of the last step left out: constraints enter by their
+// gradients only, so the step does not depend on them.
 AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
     const Eigen::VectorXd values = constraints(angles);
+    const Eigen::VectorXd slope = 2.0 * (target_ - angles).array() / target_.array().square();
     Step step{Eigen::VectorXd(3 * faces), Eigen::VectorXd::Zero(faces + 2 * inner_count_)};
     const auto rows_of = [&](Eigen::Index f, std::array<Index, 6>& rows) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -183,11 +195,12 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
         }
     std::array<Index, 6> rows{};
     for (Eigen::Index f = 0; f < faces; ++f) {
-        const Face face = face_terms(&target_[3 * f], &angles[3 * f]);
-        const Eigen::Vector3d target = target_.segment<3>(3 * f);
-        // To the targets, and from there to a sum of π.
-        step.angles.segment<3>(3 * f) = target - angles.segment<3>(3 * f) +
-                                        (pi - target.sum()) / face.trace * face.inverse;
+        const Face face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
+        // Down the energy, and from there to a sum of π.
+        const Eigen::Vector3d descent = face.inverse.cwiseProduct(slope.segment<3>(3 * f));
+        step.multipliers[f] =
+            (angles.segment<3>(3 * f).sum() + descent.sum() - pi) / face.trace;
+        step.angles.segment<3>(3 * f) = descent - step.multipliers[f] * face.inverse;
         const Eigen::Matrix<double, 6, 1> push = face.gradient * step.angles.segment<3>(3 * f);
         const Eigen::Matrix<double, 6, 6> block =
             face.gradient * face.projected * face.gradient.transpose();
@@ -218,7 +231,7 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
                                    "singular system");
     }
     for (Eigen::Index f = 0; f < faces; ++f) {
-        const Face face = face_terms(&target_[3 * f], &angles[3 * f]);
+        const Face face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
         rows_of(f, rows);
         Eigen::Vector3d pull = Eigen::Vector3d::Zero();
         for (std::size_t i = 0; i < 6; ++i)
@@ -226,8 +239,7 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
                 pull += solution[rows[i]] *
                         face.gradient.row(static_cast<Eigen::Index>(i)).transpose();
         step.angles.segment<3>(3 * f) -= face.projected * pull;
-        const double target_sum = target_.segment<3>(3 * f).sum();
-        step.multipliers[f] = (target_sum - pi - face.inverse.dot(pull)) / face.trace;
+        step.multipliers[f] -= face.inverse.dot(pull) / face.trace;
     }
     for (std::size_t v = 0; v < row_.size(); ++v)
         if (row_[v] >= 0) {
@@ -247,11 +259,13 @@ AbfResult flatten_abf(const FlatteningProblem& problem, const AbfOptions& option
         const Eigen::VectorXd change = system.newton_step(angles).angles;
         const double length = step_length(angles, change);
         angles += length * change;
+        if (length < 1.0)
+            system.stiffen(angles);
         ++result.iterations;
         result.residual = system.constraints(angles).lpNorm<Eigen::Infinity>();
-        if (getenv("ABF_DEBUG")) fprintf(stderr, "  it %d len %g change %g res %g E %g\n", result.iterations, length, change.lpNorm<Eigen::Infinity>(), result.residual, system.energy(angles));
-        result.converged = result.residual <= options.tolerance &&
+        result.converged = length == 1.0 && result.residual <= met &&
                            change.lpNorm<Eigen::Infinity>() <= options.tolerance;
+        if (getenv("ABF_DEBUG")) fprintf(stderr, "  it %d len %g change %g res %g E %g\n", result.iterations, length, change.lpNorm<Eigen::Infinity>(), result.residual, system.energy(angles));
     }
     result.energy = system.energy(angles);
     progress.check();

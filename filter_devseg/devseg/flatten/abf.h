@@ -12,7 +12,7 @@ namespace devseg {
 
 struct AbfOptions {
     int max_iterations = 10;  // Newton steps at most
-    double tolerance = 1e-6;  // radians; stop when neither an angle moves nor a constraint is off by more
+    double tolerance = 1e-4;  // radians (0.006°); stop when no angle moves by more
     double min_angle = 0.052359877559829887; // radians (3°): smaller angles start from here
     double max_angle = 3.0543261909900763;   // radians (175°): larger angles start from here
 };
@@ -55,6 +55,9 @@ public:
     double energy(const Eigen::VectorXd& angles) const;
     /// Solves the reduced system of two unknowns for each inner vertex. Throws NumericalFailure.
     Step newton_step(const Eigen::VectorXd& angles);
+    /// From now on no angle is thought to be more flexible than its own size: for the steps after
+    /// one that had to be shortened because an angle would have vanished.
+    void stiffen(const Eigen::VectorXd& angles);
 
 private:
     struct Solver;
@@ -63,6 +66,7 @@ private:
     const FlatteningProblem& problem_;
     AbfOptions options_;
     Eigen::VectorXd target_;
+    Eigen::VectorXd inverse_;   // 3 #f: inverse of the energy's Hessian, β² / 2 unless stiffened
     std::vector<Index> inner_;  // #v: number among the inner vertices, −1 on the boundary
     std::vector<Index> row_;    // #v: its place in the reduced system, −1 on the boundary
     Index inner_count_ = 0;

@@ -7,97 +7,26 @@
 #include "devseg/flatten/symmetric_dirichlet.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
-#include <limits>
 
 #include <Eigen/SparseCholesky>
 
 #include "devseg/errors.h"
+#include "devseg/flatten/distortion.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/projected_newton.h"
 
 namespace devseg {
 
 namespace {
 
-using Positions = Eigen::MatrixX2d; // #v by 2
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t history = 6;          // pairs that L-BFGS remembers
 constexpr double sufficient_decrease = 1e-4; // Armijo's constant
 constexpr double safe_step = 0.8;  // share of the step at which the first triangle collapses
 constexpr double smallest_step = 1e-12;
 constexpr int stall_window = 10; // steps over which progress is judged
-
-Eigen::Matrix2d jacobian_of(const FlatteningProblem& problem, const Positions& x, std::size_t f) {
-    const Triangle& t = problem.faces[f];
-    Eigen::Matrix2d edges;
-    edges.col(0) = (x.row(t[1]) - x.row(t[0])).transpose();
-    edges.col(1) = (x.row(t[2]) - x.row(t[0])).transpose();
-    return edges * problem.inverse[f];
-}
-
-double energy_of(const FlatteningProblem& problem, const Positions& x) {
-    double sum = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian_of(problem, x, f);
-        const double det = j.determinant();
-        if (!(det > 0.0))
-            return infinity;
-        // |J⁻¹|² = |J|² / det² in the plane.
-        sum += problem.area[f] * j.squaredNorm() * (1.0 + 1.0 / (det * det));
-    }
-    return sum / (4.0 * problem.total_area);
-}
-
-Positions gradient_of(const FlatteningProblem& problem, const Positions& x) {
-    Positions gradient = Positions::Zero(x.rows(), 2);
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian_of(problem, x, f);
-        const double det = j.determinant();
-        Eigen::Matrix2d cofactor; // ∂ det / ∂ J
-        cofactor << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);
-        const Eigen::Matrix2d stress = (1.0 + 1.0 / (det * det)) * j -
-                                       (j.squaredNorm() / (det * det * det)) * cofactor;
-        const Eigen::Matrix2d force = (problem.area[f] / (2.0 * problem.total_area)) * stress *
-                                      problem.inverse[f].transpose();
-        const Triangle& t = problem.faces[f];
-        gradient.row(t[1]) += force.col(0).transpose();
-        gradient.row(t[2]) += force.col(1).transpose();
-        gradient.row(t[0]) -= (force.col(0) + force.col(1)).transpose();
-    }
-    return gradient;
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
-// Smallest t > 0 with a t² + b t + c = 0; infinity if there is none. c > 0.
-double first_root(double a, double b, double c) {
-    const double discriminant = b * b - 4.0 * a * c;
-    if (discriminant < 0.0)
-        return infinity;
-    const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
-    double best = infinity;
-    for (const double root : {a != 0.0 ? q / a : infinity, q != 0.0 ? c / q : infinity})
-        if (root > 0.0)
-            best = std::min(best, root);
-    return best;
-}
-
-// The step along the direction at which the first triangle has no area left.
-double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d) {
-    double step = infinity;
-    for (const Triangle& t : problem.faces) {
-        const Eigen::Vector2d p = (x.row(t[1]) - x.row(t[0])).transpose();
-        const Eigen::Vector2d q = (x.row(t[2]) - x.row(t[0])).transpose();
-        const Eigen::Vector2d dp = (d.row(t[1]) - d.row(t[0])).transpose();
-        const Eigen::Vector2d dq = (d.row(t[2]) - d.row(t[0])).transpose();
-        step = std::min(step, first_root(cross(dp, dq), cross(p, dq) + cross(dp, q), cross(p, q)));
-    }
-    return step;
-}
+constexpr double near_isometry = 1.2; // energy below which one factorization is enough
+constexpr double little_gain = 1e-3;  // share of the energy that a Newton step must gain
 
 // The cotangent Laplacian of the rest shape, made definite by a shift far below its own size: the
 // energy's Hessian at an isometry, up to a factor and the rotations.
@@ -176,6 +105,102 @@ private:
     std::deque<Pair> pairs_;
 };
 
+// A descent: the current map, its energy and gradient, penalty included.
+class Descent {
+public:
+    Descent(const FlatteningProblem& problem, const ContactPenalty& penalty, Positions start)
+        : problem_(problem), penalty_(penalty), x_(std::move(start)), energy_(value(x_)),
+          gradient_(slope(x_)) {}
+
+    const Positions& x() const { return x_; }
+    double energy() const { return energy_; }
+    const Positions& gradient() const { return gradient_; }
+
+    /// Goes along a descent direction as far as pays; false if there is no such step.
+    bool advance(const Positions& d) {
+        const double decrease = dot(gradient_, d);
+        if (!(decrease < 0.0))
+            return false;
+        double step = std::min(1.0, safe_step * collapse_step(problem_, x_, d));
+        for (; step > smallest_step; step *= 0.5) {
+            Positions next = x_ + step * d;
+            const double next_energy = value(next);
+            if (next_energy > energy_ + sufficient_decrease * step * decrease)
+                continue;
+            if (!(next_energy < energy_))
+                return false;
+            Positions next_gradient = slope(next);
+            step_ = next - x_;
+            change_ = next_gradient - gradient_;
+            x_ = std::move(next);
+            gradient_ = std::move(next_gradient);
+            energy_ = next_energy;
+            return true;
+        }
+        return false;
+    }
+    const Positions& last_step() const { return step_; }
+    const Positions& last_change() const { return change_; } // of the gradient
+
+private:
+    double value(const Positions& y) const {
+        return distortion(problem_, y) + penalty_.energy(y);
+    }
+    Positions slope(const Positions& y) const {
+        Positions g = distortion_gradient(problem_, y);
+        penalty_.add_gradient(y, g);
+        return g;
+    }
+
+    const FlatteningProblem& problem_;
+    const ContactPenalty& penalty_;
+    Positions x_;
+    double energy_;
+    Positions gradient_;
+    Positions step_;
+    Positions change_;
+};
+
+// Newton's method until the map is near enough to an isometry for the Laplacian to be a good model
+// of the Hessian, or until it gains little.
+void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
+              const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
+    if (descent.energy() < near_isometry)
+        return;
+    ProjectedNewton newton(problem);
+    while (result.iterations < options.max_iterations && descent.energy() > near_isometry) {
+        progress.check();
+        const double before = descent.energy();
+        if (!descent.advance(newton.direction(descent.x(), descent.gradient())))
+            return;
+        ++result.iterations;
+        if (before - descent.energy() < little_gain * before)
+            return;
+    }
+}
+
+void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
+            const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
+    QuasiNewton model(problem);
+    std::deque<double> recent{descent.energy()};
+    while (result.iterations < options.max_iterations && !result.converged) {
+        progress.check();
+        if (!descent.advance(model.direction(descent.gradient()))) {
+            result.converged = model.empty(); // then not even the plain gradient leads down
+            model.forget();
+            continue;
+        }
+        model.remember(descent.last_step(), descent.last_change());
+        ++result.iterations;
+        recent.push_back(descent.energy());
+        if (recent.size() > stall_window) {
+            result.converged =
+                recent.front() - descent.energy() < options.relative_tolerance * descent.energy();
+            recent.pop_front();
+        }
+    }
+}
+
 } // namespace
 
 SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& problem,
@@ -190,61 +215,13 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
         x.row(v) = start[at(v)].transpose();
 
     SymmetricDirichletResult result;
-    QuasiNewton model(problem);
-    const auto value = [&](const Positions& y) {
-        return energy_of(problem, y) + penalty.energy(y);
-    };
-    const auto slope_of = [&](const Positions& y) {
-        Positions g = gradient_of(problem, y);
-        penalty.add_gradient(y, g);
-        return g;
-    };
-    double energy = value(x);
-    Positions gradient = slope_of(x);
-    std::deque<double> recent{energy};
-    while (result.iterations < options.max_iterations && !result.converged) {
-        progress.check();
-        Positions d = model.direction(gradient);
-        double slope = dot(gradient, d);
-        if (!(slope < 0.0)) {
-            model.forget();
-            d = model.direction(gradient);
-            slope = dot(gradient, d);
-        }
-        double step = std::min(1.0, safe_step * collapse_step(problem, x, d));
-        double next_energy = infinity;
-        Positions next;
-        while (step > smallest_step) {
-            next = x + step * d;
-            next_energy = value(next);
-            if (next_energy <= energy + sufficient_decrease * step * slope)
-                break;
-            step *= 0.5;
-        }
-        if (!(next_energy < energy)) {
-            if (model.empty()) {
-                result.converged = true; // no descent along the preconditioned gradient is left
-                break;
-            }
-            model.forget();
-            continue;
-        }
-        const Positions next_gradient = slope_of(next);
-        model.remember(next - x, next_gradient - gradient);
-        x = next;
-        gradient = next_gradient;
-        energy = next_energy;
-        ++result.iterations;
-        recent.push_back(energy);
-        if (recent.size() > stall_window) {
-            result.converged = recent.front() - energy < options.relative_tolerance * energy;
-            recent.pop_front();
-        }
-    }
-    result.energy = energy_of(problem, x);
+    Descent descent(problem, penalty, std::move(x));
+    approach(problem, options, progress, descent, result);
+    polish(problem, options, progress, descent, result);
+    result.energy = distortion(problem, descent.x());
     result.uv.resize(at(problem.vertex_count));
     for (Index v = 0; v < problem.vertex_count; ++v)
-        result.uv[at(v)] = x.row(v).transpose();
+        result.uv[at(v)] = descent.x().row(v).transpose();
     return result;
 }
 
@@ -252,7 +229,7 @@ double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::v
     Positions x(problem.vertex_count, 2);
     for (Index v = 0; v < problem.vertex_count; ++v)
         x.row(v) = uv[at(v)].transpose();
-    return energy_of(problem, x);
+    return distortion(problem, x);
 }
 
 } // namespace devseg

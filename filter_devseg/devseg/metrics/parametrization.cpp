@@ -106,6 +106,45 @@ double bounding_box_area(const CornerUv& uv) {
     return (high - low).prod();
 }
 
+// Sums over faces, for the whole layout and for one chart.
+struct Sums {
+    double weight = 0.0;
+    double stretch = 0.0;
+    double energy = 0.0;
+    double shear = 0.0;
+
+    double l2_stretch() const { return weight > 0.0 ? std::sqrt(stretch / weight) : 0.0; }
+};
+
+// Adds one face with an area on both sides; `scale` is the chart's area ratio, surface to plane.
+void add_face(const Mesh& mesh, const CornerUv& uv, Index f, double scale, bool flipped,
+              ParametrizationMeasures& result, Sums& all, Sums& own, ChartMeasures& chart) {
+    const double area = mesh.face_areas[at(f)];
+    const auto [large, small] = singular_values(mesh, uv, f);
+    // Γ² and γ² after the chart's lengths in the plane are multiplied by √scale.
+    const double large2 = large * large / scale;
+    const double small2 = small * small / scale;
+    const double shear = squared_angle_change(mesh, uv, f);
+    for (Sums* sums : {&all, &own}) {
+        sums->weight += area;
+        sums->stretch += area * 0.5 * (large2 + small2);
+        sums->energy += area * 0.25 * (large2 + small2 + 1.0 / large2 + 1.0 / small2);
+        sums->shear += area * shear;
+    }
+    const double flat = std::abs(uv_area(uv, f));
+    result.max_area_change = std::max(result.max_area_change, std::abs(1.0 - flat * scale / area));
+    if (flipped)
+        return;
+    result.linf_stretch = std::max(result.linf_stretch, std::sqrt(large2));
+    const double extension = 1.0 / std::sqrt(small2) - 1.0;
+    const double compression = 1.0 - 1.0 / std::sqrt(large2);
+    if (chart.worst_face < 0 ||
+        std::max(extension, compression) > std::max(chart.extension, chart.compression))
+        chart.worst_face = f;
+    chart.extension = std::max(chart.extension, extension);
+    chart.compression = std::max(chart.compression, compression);
+}
+
 } // namespace
 
 ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv& uv) {
@@ -113,17 +152,15 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     const ChartAreas areas = sum_areas(mesh, uv, charts);
     ParametrizationMeasures result;
     result.charts_number = charts.count;
+    result.charts.resize(at(charts.count));
     for (const ChartSurface& surface : extract_charts(mesh, charts))
         result.disk_charts_number += surface.is_disk() ? 1 : 0;
 
-    double weight = 0.0;
-    double stretch = 0.0;
-    double energy = 0.0;
-    double shear = 0.0;
+    Sums all;
+    std::vector<Sums> own(at(charts.count));
     double covered = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const std::size_t c = at(charts.chart[at(f)]);
-        const double area = mesh.face_areas[at(f)];
         const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
         const bool flipped = !(sign * orientation(uv[at(3 * f)], uv[at(3 * f + 1)],
                                                   uv[at(3 * f + 2)]) > 0.0);
@@ -131,29 +168,22 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(uv_area(uv, f));
         covered += flat;
-        if (!has_area(mesh, f) || !(flat * scale > collapsed * area))
-            continue;
-        const auto [large, small] = singular_values(mesh, uv, f);
-        // Γ² and γ² after the chart's lengths in the plane are multiplied by √scale.
-        const double large2 = large * large / scale;
-        const double small2 = small * small / scale;
-        weight += area;
-        stretch += area * 0.5 * (large2 + small2);
-        energy += area * 0.25 * (large2 + small2 + 1.0 / large2 + 1.0 / small2);
-        shear += area * squared_angle_change(mesh, uv, f);
-        result.max_area_change =
-            std::max(result.max_area_change, std::abs(1.0 - flat * scale / area));
-        if (!flipped)
-            result.linf_stretch = std::max(result.linf_stretch, std::sqrt(large2));
+        if (has_area(mesh, f) && flat * scale > collapsed * mesh.face_areas[at(f)])
+            add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
     }
-    if (weight > 0.0) {
-        result.l2_stretch = std::sqrt(stretch / weight);
-        result.symmetric_dirichlet_energy = energy / weight;
-        result.l2_shear = std::sqrt(shear / weight);
+    result.l2_stretch = all.l2_stretch();
+    if (all.weight > 0.0) {
+        result.symmetric_dirichlet_energy = all.energy / all.weight;
+        result.l2_shear = std::sqrt(all.shear / all.weight);
+    }
+    for (std::size_t c = 0; c < result.charts.size(); ++c) {
+        result.charts[c].area = areas.surface[c] * mesh.unit_length * mesh.unit_length;
+        result.charts[c].l2_stretch = own[c].l2_stretch();
     }
     for (const std::uint8_t overlapping : find_overlapping_faces(uv))
         result.overlapping_faces_number += overlapping;
     result.seam_length = seam_length(mesh, charts);
+    result.seams = measure_seams(mesh, charts, uv);
     const double box = bounding_box_area(uv);
     result.packing_efficiency = box > 0.0 ? covered / box : 0.0;
     return result;

@@ -1,0 +1,25 @@
+// Newton's method with projected Hessians, for maps that are far from isometric.
+#pragma once
+
+#include <memory>
+
+#include "devseg/flatten/distortion.h"
+
+namespace devseg {
+
+/// Directions −H⁻¹ g for the symmetric Dirichlet energy, with H the sum of the faces' projected
+/// Hessians. Each direction costs a sparse factorization; the order of elimination is found once.
+class ProjectedNewton {
+public:
+    explicit ProjectedNewton(const FlatteningProblem& problem);
+    ~ProjectedNewton();
+
+    /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
+    Positions direction(const Positions& x, const Positions& gradient);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace devseg

@@ -1,0 +1,42 @@
+#include "devseg/metrics/seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace devseg {
+
+std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const ChartMap& charts,
+                                        const CornerUv& uv) {
+    double plane = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        plane += std::abs(uv_area(uv, f));
+    const double scale = plane > 0.0 ? std::sqrt(mesh.total_area / plane) * mesh.unit_length : 0.0;
+    const auto flat_length = [&](Index h) {
+        return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
+    };
+    std::map<std::pair<Index, Index>, SeamMeasures> seams;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (charts.seam[at(h)] == 0 || h > twin)
+            continue;
+        Index a = h; // the side in the chart with the lower number
+        Index b = twin;
+        if (charts.chart[at(a / 3)] > charts.chart[at(b / 3)])
+            std::swap(a, b);
+        const std::pair<Index, Index> key(charts.chart[at(a / 3)], charts.chart[at(b / 3)]);
+        SeamMeasures& seam = seams[key];
+        seam.chart_a = key.first;
+        seam.chart_b = key.second;
+        seam.surface_length += mesh.edge_length(h) * mesh.unit_length;
+        seam.length_a += flat_length(a);
+        seam.length_b += flat_length(b);
+    }
+    std::vector<SeamMeasures> result;
+    for (const auto& [key, seam] : seams)
+        result.push_back(seam);
+    return result;
+}
+
+} // namespace devseg
