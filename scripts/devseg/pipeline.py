@@ -117,7 +117,7 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
 def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Segments, flattens and packs the mesh; returns the measures."""
     with progress.stage("segment"):
-        session.apply(options.method.filter, **options.segmentation)
+        session.apply(options.method.filter, **_segmentation(session, options))
     with progress.stage("flatten"):
         session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
     with progress.stage("measure"):
@@ -125,6 +125,15 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
             "segmentation": session.apply(SEGMENTATION_MEASURES),
             "parametrization": session.apply(PARAMETRIZATION_MEASURES),
         }
+
+
+def _segmentation(session: Session, options: RunOptions) -> dict[str, Any]:
+    """Parameters of the segmentation filter; nobody asked for more charts than faces."""
+    parameters = dict(options.segmentation)
+    if "charts" in options.method.options and "charts_number" not in parameters:
+        default = session.meshes.filter_parameter_values(options.method.filter)["charts_number"]
+        parameters["charts_number"] = min(default, session.meshes.current_mesh().face_number())
+    return parameters
 
 
 def _write(session: Session, options: RunOptions, stem: Path, progress: Progress) -> dict[str, str]:

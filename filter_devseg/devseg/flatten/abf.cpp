@@ -27,7 +27,7 @@ constexpr double safe_step = 0.9; // share of the way to the first angle of 0 or
 // Violation at which constraints count as met: far below what a flipped triangle needs, far above
 // rounding.
 constexpr double met = 1e-8;
-constexpr double shrunk = 0.5; // share of its target below which an angle is in danger
+constexpr double shrunk = 0.25; // share of its target below which an angle is in danger
 using Block = Eigen::Matrix<double, 6, 3>;
 
 std::size_t next(std::size_t corner) {

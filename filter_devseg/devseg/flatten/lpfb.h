@@ -34,7 +34,7 @@ struct LpfbResult {
     std::vector<Vec2> uv;        // #v
     Index flips = 0;             // above 0 where the boundary crosses itself: the map is not valid
     ClosedBoundary boundary;     // how the boundary was closed
-    bool mean_value = false;     // inner vertices at mean-value instead of cotangent weights
+    Index mended = 0;            // inner vertices at mean-value instead of cotangent weights
 };
 
 /// The closed polygon with edge i of length lengths[i], from vertex i to i + 1, and inner angles as
@@ -44,10 +44,21 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
                               const std::vector<double>& targets, const LpfbOptions& options,
                               const Progress& progress);
 
+/// Angle sums at the vertices of the boundary, in its order, radians: of the faces as they are in
+/// space, or in a map (#v).
+std::vector<double> boundary_angles(const FlatteningProblem& problem);
+std::vector<double> boundary_angles(const FlatteningProblem& problem,
+                                    const std::vector<Vec2>& map);
+
 /// LPFB: the boundary from its lengths and its angles on the surface, inner vertices in balance.
-/// Neither scale nor boundary lengths are changed afterwards: the area may differ from the chart's
-/// own. Throws NumericalFailure, Cancelled.
+/// Neither scale nor boundary are changed afterwards: the area may differ from the chart's own.
+/// Throws NumericalFailure, Cancelled.
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& options,
                         const Progress& progress);
+
+/// The same with other angles (#boundary, radians) to stay near to. Those of a map without flips
+/// give the map's seams their lengths back, where the angles on the surface cross the boundary.
+LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<double>& targets,
+                        const LpfbOptions& options, const Progress& progress);
 
 } // namespace devseg

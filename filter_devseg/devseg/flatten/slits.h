@@ -1,0 +1,17 @@
+// Slits that close in the plane: their two sides must stay apart, or the cut is lost.
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/charts.h"
+
+namespace devseg {
+
+/// Where the two sides of a cut inside the chart come to lie closer than `gap` (a length in the
+/// plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture coordinates
+/// tell a cut only by a difference: without one, readers would see a chart with a hole instead of
+/// the disk that was flattened. A vertex stays where it is if moving it would flip a face.
+void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap,
+                       std::vector<Vec2>& uv);
+
+} // namespace devseg
