@@ -143,6 +143,7 @@ def _formats(text: str) -> tuple[str, ...]:
 
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """`devseg run`; parser reports wrong usage."""
+    from devseg.load import release
     from devseg.outputs import to_json
     from devseg.pipeline import RunOptions, run
 
@@ -167,6 +168,7 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         for warning in result["warnings"]:
             print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
         results.append(result)
+        release()
         if not args.json:
             print(_summary(result, args.out))
     if args.json:

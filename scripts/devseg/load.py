@@ -12,6 +12,16 @@ from devseg.errors import DevsegError, host_message
 # What pymeshlab itself reports about a mesh that it changed while loading.
 _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) degenerated faces")
 
+# pymeshlab's progress callback keeps a pointer to the log of some verbose MeshSet and uses it while
+# loading into later ones: none of them may die. Their meshes may, see release().
+_loggers: list[Any] = []
+
+
+def release() -> None:
+    """Frees the meshes of all files loaded so far."""
+    for meshes in _loggers:
+        meshes.clear()
+
 
 def load_mesh(path: Path) -> tuple[Any, list[str]]:
     """A MeshSet that holds the mesh of a file, and warnings about what the loader changed.
@@ -37,8 +47,12 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
         # Verbose, as only its log tells that vertices were dropped.
         with host.captured() as chatter:
             meshes = pymeshlab.MeshSet(True)
-            meshes.load_new_mesh(str(path))
-            meshes.set_verbosity(False)
+            _loggers.append(meshes)
+            try:
+                meshes.load_new_mesh(str(path))
+            finally:
+                # All plugins would go on logging to this MeshSet after its end.
+                meshes.set_verbosity(False)
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
     return meshes, _check(path, meshes, chatter.text)

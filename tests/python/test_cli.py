@@ -166,7 +166,7 @@ def test_json_is_all_there_is_on_stdout(obj: Callable, tmp_path: Path) -> None:
     parameters = result["parameters"]["compute_segmentation_dcharts_per_face"]
     assert parameters["charts_number"] == 3 and parameters["random_seed"] == 7
     assert set(result["versions"]) >= {"devseg", "pymeshlab", "python"}
-    assert set(result["seconds"]) >= {"load", "segment", "flatten", "pack", "svg", "ply"}
+    assert set(result["seconds"]) >= {"load", "segment", "flatten", "measure", "svg", "ply"}
     assert result["mesh"] == {"vertices": 624, "faces": 1152}
     assert result["outputs"]["svg"] == "mesh.svg"
     # A tube is developable: its pieces are isometric up to the floor of the numerics.

@@ -216,9 +216,20 @@ def test_bad_parameters_are_refused_before_anything_changes(
         np.testing.assert_array_equal(old, new)
 
 
-def test_filters_that_need_charts_say_so(meshset: Callable, pymeshlab: ModuleType) -> None:
-    with pytest.raises(pymeshlab.PyMeshLabException, match="expected"):
-        meshset(meshes.cube()).apply_filter(FLATTEN)
+def test_flattening_without_charts_cuts_each_component(meshset: Callable) -> None:
+    ms = meshset(meshes.cube())
+    result = ms.apply_filter(FLATTEN)
+    assert (result["charts_number"], result["cut_charts_number"]) == (1, 1)
+    flat = ms.apply_filter("get_parametrization_measures")
+    assert (flat["disk_charts_number"], flat["flipped_faces_number"]) == (1, 0)
+
+
+def test_texture_coordinates_are_needed_where_they_are_read(
+    meshset: Callable, pymeshlab: ModuleType
+) -> None:
+    for name in ("get_parametrization_measures", "apply_texcoord_chart_packing_per_wedge"):
+        with pytest.raises(pymeshlab.PyMeshLabException, match="expected wedge texture"):
+            meshset(meshes.cube()).apply_filter(name)
 
 
 def test_plugin_paths_exist() -> None:

@@ -52,9 +52,20 @@ ChartMap components_cut_to_disks(const Mesh& mesh) {
     return cut_charts_to_disks(mesh, components(mesh), progress).charts;
 }
 
-Disk::Disk(const RawMesh& raw)
-    : mesh(gated(raw)), charts(components_cut_to_disks(mesh)),
-      surface(extract_charts(mesh, charts).at(0)), problem(make_flattening_problem(mesh, surface)) {
+Disk::Disk(const RawMesh& raw) : Disk(raw, [](const Vec3&) { return false; }) {}
+
+Disk::Disk(const RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut)
+    : mesh(gated(raw)) {
+    std::vector<std::uint8_t> seam;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        seam.push_back(
+            cut(0.5 * (mesh.points[at(mesh.origin(h))] + mesh.points[at(mesh.target(h))])) ? 1 : 0);
+    const ChartMap whole =
+        make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
+    Progress progress;
+    charts = cut_charts_to_disks(mesh, whole, progress).charts;
+    surface = extract_charts(mesh, charts).at(0);
+    problem = make_flattening_problem(mesh, surface);
 }
 
 testing::AssertionResult is_valid(const Mesh& mesh) {

@@ -1,6 +1,8 @@
 // Ways into the core that many tests share, and validators that do not rely on it.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,8 @@ ChartMap components_cut_to_disks(const Mesh& mesh);
 /// A mesh that is one chart, opened to a disk where it is none.
 struct Disk {
     explicit Disk(const RawMesh& raw);
+    /// The edges whose middle (internal units) fulfils `cut` are cut first.
+    Disk(const RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut);
 
     Mesh mesh;
     ChartMap charts;

@@ -76,9 +76,13 @@ RawMesh capped_cylinder(Index around, Index along, double radius, double height)
 }
 
 RawMesh cone(Index around, Index along, double radius, double height) {
+    return frustum(around, along, radius, 0.0, height);
+}
+
+RawMesh frustum(Index around, Index along, double radius, double top, double height) {
     std::vector<Vec2> profile;
     for (Index i = 0; i <= along; ++i)
-        profile.emplace_back(radius * (along - i) / along, height * i / along);
+        profile.emplace_back((radius * (along - i) + top * i) / along, height * i / along);
     return revolve(profile, around);
 }
 

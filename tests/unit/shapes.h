@@ -30,6 +30,7 @@ RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed = fa
 RawMesh cylinder_tube(Index around, Index along, double radius = 1.0, double height = 2.0);
 RawMesh capped_cylinder(Index around, Index along, double radius = 1.0, double height = 2.0);
 RawMesh cone(Index around, Index along, double radius = 1.0, double height = 2.0); // no base
+RawMesh frustum(Index around, Index along, double radius, double top, double height);
 RawMesh annulus(Index around, Index rings, double inner, double outer);
 RawMesh hemisphere(Index around, Index rings);
 /// A tube, closed at one end by an apex.

@@ -14,11 +14,11 @@ struct ArapOptions {
 };
 
 struct ArapResult {
-    std::vector<Vec2> uv;   // #v
-    double energy = 0.0;    // Σ A ((σ₁ − 1)² + (σ₂ − 1)²) / Σ A [LZXGG08, equation 4]; 0 for isometry
+    std::vector<Vec2> uv; // #v
+    double energy = 0.0; // Σ A ((σ₁ − 1)² + (σ₂ − 1)²) / Σ A [LZXGG08, equation 4]; 0 for isometry
     int rounds = 0;
     bool converged = false;
-    Index flips = 0;        // rounds may turn faces over, and turn them back
+    Index flips = 0; // rounds may turn faces over, and turn them back
 };
 
 /// Minimises the as-rigid-as-possible energy from `start` (#v) by local and global steps; no round

@@ -79,8 +79,8 @@ Angles least_norm(const Eigen::Matrix3Xd& gradient, const Eigen::Vector3d& rhs) 
 
 // Least-norm steps on the linearised conditions; a step is halved until the conditions are less
 // violated, which a small enough one achieves wherever the gradients are independent.
-bool close_by_least_norm(const Eigen::VectorXd& lengths, Angles& theta, int max_rounds,
-                         int& rounds, const Progress& progress) {
+bool close_by_least_norm(const Eigen::VectorXd& lengths, Angles& theta, int max_rounds, int& rounds,
+                         const Progress& progress) {
     for (int k = 0; k < max_rounds; ++k) {
         progress.check();
         const Closure closure = closure_of(lengths, theta);
@@ -91,8 +91,8 @@ bool close_by_least_norm(const Eigen::VectorXd& lengths, Angles& theta, int max_
         if (!step.allFinite())
             return false;
         double share = 1.0;
-        while (share > smallest_step &&
-               !(closure_value(lengths, theta + share * step).norm() < (1.0 - 0.5 * share) * violation))
+        while (share > smallest_step && !(closure_value(lengths, theta + share * step).norm() <
+                                          (1.0 - 0.5 * share) * violation))
             share *= 0.5;
         if (share <= smallest_step)
             return false;
@@ -132,7 +132,8 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
     // The longest edge comes last: it is the one that takes up the rounding of all others.
     const std::size_t first =
         static_cast<std::size_t>(std::max_element(lengths.begin(), lengths.end()) -
-                                 lengths.begin()) + 1;
+                                 lengths.begin()) +
+        1;
     Eigen::VectorXd share(static_cast<Eigen::Index>(count));
     Angles target(share.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -242,8 +243,8 @@ public:
         for (Index i = 0; i < count; ++i)
             unit(rows[at(i)], i) = 1.0;
         const Eigen::MatrixXd z = solver_.solve(unit);
-        Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count, count);  // M Z
-        Eigen::MatrixX2d missing = Eigen::MatrixX2d::Zero(count, 2);   // r − M x
+        Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count, count); // M Z
+        Eigen::MatrixX2d missing = Eigen::MatrixX2d::Zero(count, 2);  // r − M x
         for (std::size_t f = 0; f < problem_.faces.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {
                 const Index i = slot_[at(problem_.faces[f][k])];

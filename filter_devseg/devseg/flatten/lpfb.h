@@ -10,8 +10,8 @@
 namespace devseg {
 
 struct LpfbOptions {
-    int max_rounds = 100;      // steps of each boundary solver at most
-    double tolerance = 1e-5;   // radians; the boundary is settled when no angle moves by more
+    int max_rounds = 100;    // steps of each boundary solver at most
+    double tolerance = 1e-5; // radians; the boundary is settled when no angle moves by more
 };
 
 /// Which solver closed the boundary, in the order in which they are tried.
@@ -27,14 +27,14 @@ struct ClosedBoundary {
     double closure = 0.0;       // length of the gap that is left / length of the boundary
     double deviation = 0.0;     // root mean square change of the angles, radians
     BoundarySolver solver = BoundarySolver::newton;
-    int rounds = 0;             // steps of all solvers together
+    int rounds = 0; // steps of all solvers together
 };
 
 struct LpfbResult {
-    std::vector<Vec2> uv;        // #v
-    Index flips = 0;             // above 0 where the boundary crosses itself: the map is not valid
-    ClosedBoundary boundary;     // how the boundary was closed
-    Index mended = 0;            // inner vertices at mean-value instead of cotangent weights
+    std::vector<Vec2> uv;    // #v
+    Index flips = 0;         // above 0 where the boundary crosses itself: the map is not valid
+    ClosedBoundary boundary; // how the boundary was closed
+    Index mended = 0;        // inner vertices at mean-value instead of cotangent weights
 };
 
 /// The closed polygon with edge i of length lengths[i], from vertex i to i + 1, and inner angles as
@@ -47,8 +47,7 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
 /// Angle sums at the vertices of the boundary, in its order, radians: of the faces as they are in
 /// space, or in a map (#v).
 std::vector<double> boundary_angles(const FlatteningProblem& problem);
-std::vector<double> boundary_angles(const FlatteningProblem& problem,
-                                    const std::vector<Vec2>& map);
+std::vector<double> boundary_angles(const FlatteningProblem& problem, const std::vector<Vec2>& map);
 
 /// LPFB: the boundary from its lengths and its angles on the surface, inner vertices in balance.
 /// Neither scale nor boundary are changed afterwards: the area may differ from the chart's own.
