@@ -23,7 +23,7 @@ from devseg.pipeline import RunOptions, Session, flatten_mesh
 from devseg.progress import Progress
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"
-STAGES = ("segment", "cut", "flatten", "pack")
+STAGES = ("segment", "flatten", "measure")
 COLUMNS = (
     ("charts", "charts", "{:d}"),
     ("disks", "disks", "{:d}"),

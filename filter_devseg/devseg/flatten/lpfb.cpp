@@ -21,9 +21,10 @@ namespace devseg {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-// A boundary counts as closed at this share of its length: what rounding leaves over a few
-// thousand edges.
-constexpr double closed = 1e-12;
+// A boundary counts as closed at this share of its length for each edge, but at most for the first
+// thousand: what rounding leaves.
+constexpr double closed = 1e-15;
+constexpr Eigen::Index few_edges = 1000;
 constexpr double smallest_step = 1e-6; // of the line search
 // Vertices that may be put at mean-value weights. On the charts of 22 models none was rescued for
 // which it took more than 28: there the boundary is at fault.
@@ -39,32 +40,16 @@ struct Closure {
     Eigen::Matrix3Xd gradient;
 };
 
-Eigen::Vector3d closure_value(const Eigen::VectorXd& lengths, const Angles& theta) {
-    const auto n = static_cast<double>(theta.size());
-    Eigen::Vector3d value((n - 2.0) * pi - theta.sum(), 0.0, 0.0);
-    double phi = 0.0;
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-        phi += pi - theta[i];
-        value[1] += lengths[i] * std::cos(phi);
-        value[2] += lengths[i] * std::sin(phi);
-    }
-    return value;
-}
-
 Closure closure_of(const Eigen::VectorXd& lengths, const Angles& theta) {
-    Closure closure;
-    const auto n = static_cast<double>(theta.size());
-    closure.value = Eigen::Vector3d((n - 2.0) * pi - theta.sum(), 0.0, 0.0);
-    closure.gradient.resize(3, theta.size());
-    closure.gradient.row(0).setConstant(-1.0);
+    Closure closure{Eigen::Vector3d::Zero(), Eigen::Matrix3Xd(3, theta.size())};
     double phi = 0.0;
     for (Eigen::Index i = 0; i < theta.size(); ++i) {
         phi += pi - theta[i];
-        closure.gradient(1, i) = lengths[i] * std::sin(phi);
-        closure.gradient(2, i) = -lengths[i] * std::cos(phi);
-        closure.value[1] -= closure.gradient(2, i);
-        closure.value[2] += closure.gradient(1, i);
+        const Vec2 edge = lengths[i] * Vec2(std::cos(phi), std::sin(phi));
+        closure.value.tail<2>() += edge;
+        closure.gradient.col(i) << -1.0, edge.y(), -edge.x();
     }
+    closure.value[0] = phi - 2.0 * pi;
     // An angle turns all later edges.
     for (Eigen::Index i = theta.size() - 1; i > 0; --i)
         closure.gradient.col(i - 1).tail<2>() += closure.gradient.col(i).tail<2>();
@@ -77,29 +62,28 @@ Angles least_norm(const Eigen::Matrix3Xd& gradient, const Eigen::Vector3d& rhs) 
     return gradient.transpose() * gram.completeOrthogonalDecomposition().solve(rhs);
 }
 
-// Least-norm steps on the linearised conditions; a step is halved until the conditions are less
-// violated, which a small enough one achieves wherever the gradients are independent.
+// Least-norm steps on the linearised conditions. A step is halved until the conditions are less
+// violated, which a small enough one achieves wherever their gradients are independent.
 bool close_by_least_norm(const Eigen::VectorXd& lengths, Angles& theta, int max_rounds, int& rounds,
                          const Progress& progress) {
-    for (int k = 0; k < max_rounds; ++k) {
+    const double enough = closed * static_cast<double>(std::max(few_edges, theta.size()));
+    Closure closure = closure_of(lengths, theta);
+    for (int k = 0; k < max_rounds && closure.value.norm() > enough; ++k, ++rounds) {
         progress.check();
-        const Closure closure = closure_of(lengths, theta);
         const double violation = closure.value.norm();
-        if (violation <= closed)
-            return true;
+        const Angles from = theta;
         const Angles step = -least_norm(closure.gradient, closure.value);
-        if (!step.allFinite())
-            return false;
-        double share = 1.0;
-        while (share > smallest_step && !(closure_value(lengths, theta + share * step).norm() <
-                                          (1.0 - 0.5 * share) * violation))
+        double share = 2.0;
+        do {
             share *= 0.5;
+            theta = from + share * step;
+            closure = closure_of(lengths, theta);
+        } while (share > smallest_step &&
+                 !(closure.value.norm() < (1.0 - 0.5 * share) * violation));
         if (share <= smallest_step)
             return false;
-        theta += share * step;
-        ++rounds;
     }
-    return false;
+    return closure.value.norm() <= enough;
 }
 
 // [Wan08]: Newton steps without second derivatives. The multipliers do not matter for the steps,
@@ -112,10 +96,10 @@ bool close_by_newton(const Eigen::VectorXd& lengths, const Angles& target, Angle
         const Angles back = target - theta;
         const Angles step =
             back - least_norm(closure.gradient, closure.gradient * back + closure.value);
-        if (!step.allFinite())
-            return false;
         theta += step;
         ++rounds;
+        if (!theta.allFinite())
+            return false;
         if (step.lpNorm<Eigen::Infinity>() <= options.tolerance)
             return close_by_least_norm(lengths, theta, options.max_rounds, rounds, progress);
     }
@@ -130,15 +114,15 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
     const std::size_t count = lengths.size();
     const double perimeter = std::accumulate(lengths.begin(), lengths.end(), 0.0);
     // The longest edge comes last: it is the one that takes up the rounding of all others.
-    const std::size_t first =
-        static_cast<std::size_t>(std::max_element(lengths.begin(), lengths.end()) -
-                                 lengths.begin()) +
-        1;
+    const auto longest = std::max_element(lengths.begin(), lengths.end()) - lengths.begin();
+    const auto turned = [&](Eigen::Index i) {
+        return static_cast<std::size_t>(longest + 1 + i) % count;
+    };
     Eigen::VectorXd share(static_cast<Eigen::Index>(count));
     Angles target(share.size());
-    for (std::size_t i = 0; i < count; ++i) {
-        share[static_cast<Eigen::Index>(i)] = lengths[(first + i) % count] / perimeter;
-        target[static_cast<Eigen::Index>(i)] = targets[(first + i) % count];
+    for (Eigen::Index i = 0; i < share.size(); ++i) {
+        share[i] = lengths[turned(i)] / perimeter;
+        target[i] = targets[turned(i)];
     }
     ClosedBoundary result;
     Angles theta = target;
@@ -154,48 +138,47 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
             theta = near;
         }
     }
-    result.closure = closure_value(share, theta).tail<2>().norm();
+    result.closure = closure_of(share, theta).value.tail<2>().norm();
     result.deviation = std::sqrt((theta - target).squaredNorm() / static_cast<double>(count));
     result.angles.resize(count);
     result.points.resize(count);
     Vec2 point = Vec2::Zero();
     double phi = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        phi += pi - theta[row];
-        result.angles[(first + i) % count] = theta[row];
-        result.points[(first + i) % count] = point;
-        point += lengths[(first + i) % count] * Vec2(std::cos(phi), std::sin(phi));
+    for (Eigen::Index i = 0; i < share.size(); ++i) {
+        phi += pi - theta[i];
+        result.angles[turned(i)] = theta[i];
+        result.points[turned(i)] = point;
+        point += lengths[turned(i)] * Vec2(std::cos(phi), std::sin(phi));
     }
     return result;
 }
 
-std::vector<double> boundary_angles(const FlatteningProblem& problem) {
-    std::vector<double> sum(at(problem.vertex_count), -1.0);
-    for (const Index v : problem.boundary)
-        sum[at(v)] = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        for (std::size_t c = 0; c < 3; ++c)
-            if (sum[at(problem.faces[f][c])] >= 0.0) // inner vertices stay at −1
-                sum[at(problem.faces[f][c])] += std::atan2(1.0, problem.cotangent[f][(c + 1) % 3]);
-    std::vector<double> angles;
-    for (const Index v : problem.boundary)
-        angles.push_back(sum[at(v)]);
-    return angles;
+namespace {
+
+Vec2 rest_corner(const FlatteningProblem& problem, std::size_t f, std::size_t c) {
+    return c == 0 ? Vec2(0.0, 0.0) : Vec2(problem.edges[f].col(c == 1 ? 0 : 1));
 }
+
+} // namespace
 
 std::vector<double> boundary_angles(const FlatteningProblem& problem,
                                     const std::vector<Vec2>& map) {
-    std::vector<double> sum(at(problem.vertex_count), 0.0);
-    for (const Triangle& t : problem.faces)
+    std::vector<Index> place(at(problem.vertex_count), -1);
+    for (std::size_t i = 0; i < problem.boundary.size(); ++i)
+        place[at(problem.boundary[i])] = static_cast<Index>(i);
+    std::vector<double> angles(problem.boundary.size(), 0.0);
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (std::size_t c = 0; c < 3; ++c) {
-            const Vec2 p = map[at(t[(c + 1) % 3])] - map[at(t[c])];
-            const Vec2 q = map[at(t[(c + 2) % 3])] - map[at(t[c])];
-            sum[at(t[c])] += std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
+            const Index i = place[at(problem.faces[f][c])];
+            if (i < 0)
+                continue;
+            const auto corner = [&](std::size_t k) {
+                return map.empty() ? rest_corner(problem, f, k) : map[at(problem.faces[f][k])];
+            };
+            const Vec2 p = corner((c + 1) % 3) - corner(c);
+            const Vec2 q = corner((c + 2) % 3) - corner(c);
+            angles[at(i)] += std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
         }
-    std::vector<double> angles;
-    for (const Index v : problem.boundary)
-        angles.push_back(sum[at(v)]);
     return angles;
 }
 
@@ -222,46 +205,45 @@ public:
     }
 
     // Puts the inner vertices of flipped faces at mean-value weights [Flo03]. Rows S of the system
-    // A x = b become M x = r. With Z = A⁻¹ restricted to the columns S, x + Z c meets all other
-    // rows for every c, and the new ones for (M Z) c = r − M x. Returns the number of rows.
+    // A x = b become M x = r. With Z the columns S of A⁻¹, x + Z c meets all other rows for every
+    // c, and the new ones for (M Z) c = r − M x. Returns the number of rows.
     Index mend(std::vector<Vec2>& uv) const {
-        std::vector<Index> row(at(unknowns_), -1);
-        std::vector<Index> rows; // unknowns
-        for (const Triangle& t : problem_.faces) {
-            if (orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0)
-                continue;
-            for (const Index v : t)
-                if (slot_[at(v)] >= 0 && row[at(slot_[at(v)])] < 0) {
-                    row[at(slot_[at(v)])] = static_cast<Index>(rows.size());
-                    rows.push_back(slot_[at(v)]);
-                }
-        }
+        std::vector<Index> row(slot_.size(), -1); // #v
+        std::vector<Index> rows;                  // unknowns
+        for (const Triangle& t : problem_.faces)
+            if (!(orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0))
+                for (const Index v : t)
+                    if (slot_[at(v)] >= 0 && row[at(v)] < 0) {
+                        row[at(v)] = static_cast<Index>(rows.size());
+                        rows.push_back(slot_[at(v)]);
+                    }
         const auto count = static_cast<Index>(rows.size());
         if (count == 0 || count > most_mended)
             return 0;
-        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknowns_, count);
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(unknowns_, count);
         for (Index i = 0; i < count; ++i)
-            unit(rows[at(i)], i) = 1.0;
-        const Eigen::MatrixXd z = solver_.solve(unit);
+            columns(rows[at(i)], i) = 1.0;
+        columns = Eigen::MatrixXd(solver_.solve(columns));            // Z
         Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count, count); // M Z
         Eigen::MatrixX2d missing = Eigen::MatrixX2d::Zero(count, 2);  // r − M x
         for (std::size_t f = 0; f < problem_.faces.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {
-                const Index i = slot_[at(problem_.faces[f][k])];
-                if (i < 0 || row[at(i)] < 0)
+                const Index v = problem_.faces[f][k];
+                if (row[at(v)] < 0)
                     continue;
                 const double half = half_tangent(problem_.cotangent[f][(k + 1) % 3]);
                 for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
-                    const Index j = problem_.faces[f][other];
-                    const double w = half / edge_length(f, k, other);
-                    missing.row(row[at(i)]) +=
-                        w * (uv[at(j)] - uv[at(problem_.faces[f][k])]).transpose();
-                    system.row(row[at(i)]) += w * z.row(i);
-                    if (slot_[at(j)] >= 0)
-                        system.row(row[at(i)]) -= w * z.row(slot_[at(j)]);
+                    const Index u = problem_.faces[f][other];
+                    const double w =
+                        half /
+                        (rest_corner(problem_, f, other) - rest_corner(problem_, f, k)).norm();
+                    missing.row(row[at(v)]) += w * (uv[at(u)] - uv[at(v)]).transpose();
+                    system.row(row[at(v)]) += w * columns.row(slot_[at(v)]);
+                    if (slot_[at(u)] >= 0)
+                        system.row(row[at(v)]) -= w * columns.row(slot_[at(u)]);
                 }
             }
-        const Eigen::MatrixX2d change = z * system.partialPivLu().solve(missing);
+        const Eigen::MatrixX2d change = columns * system.partialPivLu().solve(missing);
         if (!change.allFinite())
             return 0;
         for (std::size_t v = 0; v < uv.size(); ++v)
@@ -271,12 +253,6 @@ public:
     }
 
 private:
-    double edge_length(std::size_t f, std::size_t from, std::size_t to) const {
-        const Eigen::Matrix2d& edges = problem_.edges[f];
-        const std::array<Vec2, 3> corner = {Vec2::Zero(), edges.col(0), edges.col(1)};
-        return (corner[to] - corner[from]).norm();
-    }
-
     // The cotangent system; only its lower half is stored.
     void balance(std::vector<Vec2>& uv) {
         Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(unknowns_);
@@ -296,25 +272,22 @@ private:
                     diagonal[j] += w;
                 if (i >= 0 && j >= 0)
                     entries.emplace_back(std::max(i, j), std::min(i, j), -w);
-                else if (i >= 0)
-                    rhs.row(i) += w * uv[at(u)].transpose();
-                else if (j >= 0)
-                    rhs.row(j) += w * uv[at(v)].transpose();
+                else if (i >= 0 || j >= 0)
+                    rhs.row(std::max(i, j)) += w * uv[at(i >= 0 ? u : v)].transpose();
             }
         for (Index i = 0; i < unknowns_; ++i)
             entries.emplace_back(i, i, diagonal[i]);
         Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
-        Eigen::MatrixX2d solution;
         if (solver_.info() == Eigen::Success)
-            solution = solver_.solve(rhs);
-        if (solver_.info() != Eigen::Success || !solution.allFinite())
+            rhs = Eigen::MatrixX2d(solver_.solve(rhs));
+        if (solver_.info() != Eigen::Success || !rhs.allFinite())
             throw NumericalFailure("expected solvable equations for the inside of a chart, found a "
                                    "singular system");
         for (std::size_t v = 0; v < uv.size(); ++v)
             if (slot_[v] >= 0)
-                uv[v] = solution.row(slot_[v]).transpose();
+                uv[v] = rhs.row(slot_[v]).transpose();
     }
 
     const FlatteningProblem& problem_;

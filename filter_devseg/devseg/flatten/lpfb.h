@@ -44,10 +44,10 @@ ClosedBoundary close_boundary(const std::vector<double>& lengths,
                               const std::vector<double>& targets, const LpfbOptions& options,
                               const Progress& progress);
 
-/// Angle sums at the vertices of the boundary, in its order, radians: of the faces as they are in
-/// space, or in a map (#v).
-std::vector<double> boundary_angles(const FlatteningProblem& problem);
-std::vector<double> boundary_angles(const FlatteningProblem& problem, const std::vector<Vec2>& map);
+/// Angle sums at the vertices of the boundary, in its order, radians: in a map (#v), or in space if
+/// there is none.
+std::vector<double> boundary_angles(const FlatteningProblem& problem,
+                                    const std::vector<Vec2>& map = {});
 
 /// LPFB: the boundary from its lengths and its angles on the surface, inner vertices in balance.
 /// Neither scale nor boundary are changed afterwards: the area may differ from the chart's own.

@@ -1,11 +1,9 @@
 #include "devseg/flatten/overlaps.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <queue>
 
+#include "devseg/cut/min_cut.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/metrics/overlap.h"
 
@@ -75,16 +73,15 @@ bool any_crossing(std::vector<Segment> segments) {
 
 // Faces that take part in an overlap, split between the two faces of the first pair: each goes to
 // the one from which it is reached first through such faces.
-std::vector<Index> two_sides(const ChartSurface& surface,
-                             const std::vector<std::pair<Index, Index>>& pairs) {
-    constexpr Index outside = -2;
-    constexpr Index open = -1;
-    std::vector<Index> side(surface.face.size(), outside);
+std::vector<CutSide> two_sides(const ChartSurface& surface,
+                               const std::vector<std::pair<Index, Index>>& pairs) {
+    std::vector<CutSide> side(surface.face.size(), CutSide::open);
+    std::vector<std::uint8_t> takes_part(surface.face.size(), 0);
     for (const auto& [f, g] : pairs)
-        side[at(f)] = side[at(g)] = open;
+        takes_part[at(f)] = takes_part[at(g)] = 1;
     std::queue<Index> queue;
-    side[at(pairs.front().first)] = 0;
-    side[at(pairs.front().second)] = 1;
+    side[at(pairs.front().first)] = CutSide::source;
+    side[at(pairs.front().second)] = CutSide::sink;
     queue.push(pairs.front().first);
     queue.push(pairs.front().second);
     while (!queue.empty()) {
@@ -92,7 +89,8 @@ std::vector<Index> two_sides(const ChartSurface& surface,
         queue.pop();
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
             const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && side[at(twin / 3)] == open) {
+            if (twin >= 0 && takes_part[at(twin / 3)] != 0 &&
+                side[at(twin / 3)] == CutSide::open) {
                 side[at(twin / 3)] = side[at(f)];
                 queue.push(twin / 3);
             }
@@ -122,64 +120,18 @@ std::vector<std::pair<Index, Index>> overlapping_pairs(const ChartSurface& surfa
 
 std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
                                    const std::vector<std::pair<Index, Index>>& pairs) {
-    // The cut with the least length between two sets of faces of a disk, as the shortest way for a
-    // flow to be stopped: grow one side from its faces and let the cheapest border win. In a disk
-    // this least border is a shortest path between the two arcs of the boundary that lie between
-    // the sets; contracting each set keeps the path from running through it.
-    const std::vector<Index> side = two_sides(surface, pairs);
-    const Index n = surface.face_count();
-
-    // Maximum flow over the dual graph (Edmonds–Karp); capacities are edge lengths.
-    std::vector<double> flow(3 * at(n), 0.0);
-    const auto capacity = [&](Index h) { return mesh.edge_length(surface.mesh_half_edge(h)); };
-    std::vector<Index> reached_by(at(n));
-    double scale = 0.0;
-    for (Index h = 0; h < 3 * n; ++h)
-        scale = std::max(scale, capacity(h));
-    constexpr double saturated = 1e-12; // of the longest edge: less is rounding
-    constexpr Index unreached = -1;
-    constexpr Index source = -2;
-    while (true) {
-        std::fill(reached_by.begin(), reached_by.end(), unreached);
-        std::queue<Index> queue;
-        for (Index f = 0; f < n; ++f)
-            if (side[at(f)] == 0) {
-                reached_by[at(f)] = source;
-                queue.push(f);
-            }
-        Index sink = -1;
-        while (!queue.empty() && sink < 0) {
-            const Index f = queue.front();
-            queue.pop();
-            for (Index h = 3 * f; h < 3 * f + 3 && sink < 0; ++h) {
-                const Index twin = surface.twin[at(h)];
-                if (twin < 0 || reached_by[at(twin / 3)] != unreached ||
-                    capacity(h) - flow[at(h)] <= saturated * scale)
-                    continue;
-                reached_by[at(twin / 3)] = h;
-                if (side[at(twin / 3)] == 1)
-                    sink = twin / 3;
-                queue.push(twin / 3);
-            }
-        }
-        if (sink < 0)
-            break;
-        double bottleneck = std::numeric_limits<double>::max();
-        for (Index f = sink; reached_by[at(f)] != source; f = reached_by[at(f)] / 3)
-            bottleneck = std::min(bottleneck, capacity(reached_by[at(f)]) -
-                                                  flow[at(reached_by[at(f)])]);
-        for (Index f = sink; reached_by[at(f)] != source; f = reached_by[at(f)] / 3) {
-            flow[at(reached_by[at(f)])] += bottleneck;
-            flow[at(surface.twin[at(reached_by[at(f)])])] -= bottleneck;
-        }
-    }
+    // In a disk, the least border between two connected sets of faces is one path from boundary to
+    // boundary: the cut makes two disks.
+    MinCut cut(two_sides(surface, pairs));
+    for (Index h = 0; h < 3 * surface.face_count(); ++h)
+        if (surface.twin[at(h)] > h)
+            cut.link(h / 3, surface.twin[at(h)] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
+    const std::vector<CutSide> side = cut.solve();
     std::vector<Index> path;
-    for (Index h = 0; h < 3 * n; ++h) {
-        const Index twin = surface.twin[at(h)];
-        if (twin >= 0 && reached_by[at(h / 3)] != unreached &&
-            reached_by[at(twin / 3)] == unreached)
+    for (Index h = 0; h < 3 * surface.face_count(); ++h)
+        if (surface.twin[at(h)] >= 0 && side[at(h / 3)] == CutSide::source &&
+            side[at(surface.twin[at(h)] / 3)] == CutSide::sink)
             path.push_back(h);
-    }
     return path;
 }
 

@@ -1,0 +1,47 @@
+// The shortest cut that separates two sets of faces.
+//
+// References
+//   E. A. Dinic: Algorithm for Solution of a Problem of Maximum Flow in Networks with Power
+//   Estimation. Soviet Mathematics Doklady 11, 1970.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+enum class CutSide : std::uint8_t { open, source, sink };
+
+/// Decides every open node such that the links between the two sides have the least total weight
+/// (minimum cut by maximum flow). Nodes are faces or any other numbers 0 … n − 1.
+class MinCut {
+public:
+    explicit MinCut(std::vector<CutSide> sides) : sides_(std::move(sides)) {}
+
+    /// Two nodes that cost `weight` ≥ 0 to separate.
+    void link(Index a, Index b, double weight);
+
+    /// All sides; open nodes that no source reaches without a saturated link become sinks.
+    std::vector<CutSide> solve();
+
+private:
+    struct Arc {
+        Index to;
+        double capacity;
+    };
+    void build();
+    bool rank_nodes();
+    double push(Index node, double limit);
+
+    std::vector<CutSide> sides_;
+    std::vector<Arc> arcs_;    // arc i and arc i ^ 1 are a pair
+    std::vector<Index> begin_; // arcs of node v: order_[begin_[v]] …
+    std::vector<Index> order_;
+    std::vector<Index> rank_;
+    std::vector<Index> cursor_;
+    double saturated_ = 0.0; // a rest of capacity below this is rounding
+};
+
+} // namespace devseg
