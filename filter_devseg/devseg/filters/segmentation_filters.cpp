@@ -52,6 +52,7 @@ FilterOutput run_dcharts(const FilterInput& input, const DChartsOptions& options
     output.values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
+        {"straightened_borders_number", segmentation.straightened_borders},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
         {"seam_length", seam_length(input.mesh, cuts.charts)},
@@ -102,6 +103,9 @@ FilterDeclaration dcharts() {
         .real(&O::gamma, "gamma", "Weight of straight borders", 0.0, 10.0,
               "Exponent of the ratio of outer to inner edge length in the cost, without unit. "
               "Larger values make smoother borders.")
+        .boolean(&O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
+                 "Replace each border between two charts by the shortest one within the area that "
+                 "fits both.")
         .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                  "The rounds of growing and reseeding end here at the latest; usually fewer than "
                  "5 % of the faces change their chart long before.")
@@ -111,6 +115,7 @@ FilterDeclaration dcharts() {
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("hole_charts_number", "charts that were added where no other fitted")
+        .result("straightened_borders_number", "borders that were replaced by shorter ones")
         .result("rounds_number", "rounds of growing and reseeding")
         .result("converged", "whether fewer than 5 % of the faces changed in the last round")
         .result("seam_length", "length of all cut edges, model units")

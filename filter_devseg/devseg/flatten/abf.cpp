@@ -29,9 +29,6 @@ constexpr double shrunk = 0.25;   // share of its target below which an angle is
 // rounding.
 constexpr double met = 1e-8;
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 double cotangent(double angle) {
     return std::cos(angle) / std::sin(angle);
 }
@@ -69,10 +66,10 @@ Face face_terms(const Eigen::Vector3d& inverse, const Eigen::Vector3d& angle) {
 }
 
 // Unknowns of a face in the reduced system, in the order of Face::gradient; −1 on the boundary.
-std::array<Index, 6> unknowns_of(const Triangle& face, const std::vector<Index>& place) {
-    std::array<Index, 6> unknowns{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const Index p = place[at(face[c])];
+Eigen::Matrix<Index, 6, 1> unknowns_of(const Triangle& face, const std::vector<Index>& place) {
+    Eigen::Matrix<Index, 6, 1> unknowns;
+    for (Index c = 0; c < 3; ++c) {
+        const Index p = place[at(face[at(c)])];
         unknowns[c] = p < 0 ? -1 : 2 * p;
         unknowns[3 + c] = p < 0 ? -1 : 2 * p + 1;
     }
@@ -195,8 +192,7 @@ void AngleSystem::stiffen(const Eigen::VectorXd& angles) {
 // where P is Face::projected and p the step without μ₂. Leaves p and its μ₁ in `step`.
 void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
-    step.angles.resize(3 * faces);
-    step.multipliers.resize(faces + 2 * inner_count_);
+    step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + 2 * inner_count_)};
     const Eigen::VectorXd values = constraints(angles);
     Eigen::VectorXd& rhs = reduced_->rhs;
     rhs.resize(2 * inner_count_);
@@ -214,19 +210,17 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
         step.multipliers[f] = (values[f] + descent.segment<3>(3 * f).sum()) / face.trace;
         step.angles.segment<3>(3 * f) =
             descent.segment<3>(3 * f) - step.multipliers[f] * face.inverse;
-        const Vector6 push = face.gradient * step.angles.segment<3>(3 * f);
-        const Matrix6 block = face.gradient * face.projected * face.gradient.transpose();
+        const Eigen::Matrix<double, 6, 1> push = face.gradient * step.angles.segment<3>(3 * f);
+        const Eigen::Matrix<double, 6, 6> block =
+            face.gradient * face.projected * face.gradient.transpose();
         const auto unknowns = unknowns_of(problem_.faces[static_cast<std::size_t>(f)], place_);
         for (int i = 0; i < 6; ++i) {
-            const Index row = unknowns[static_cast<std::size_t>(i)];
-            if (row < 0)
+            if (unknowns[i] < 0)
                 continue;
-            rhs[row] += push[i];
-            for (int j = 0; j < 6; ++j) {
-                const Index column = unknowns[static_cast<std::size_t>(j)];
-                if (column >= 0 && column <= row)
-                    entries.emplace_back(row, column, block(i, j));
-            }
+            rhs[unknowns[i]] += push[i];
+            for (int j = 0; j < 6; ++j)
+                if (unknowns[j] >= 0 && unknowns[j] <= unknowns[i])
+                    entries.emplace_back(unknowns[i], unknowns[j], block(i, j));
         }
     }
     reduced_->matrix.resize(2 * inner_count_, 2 * inner_count_);
@@ -256,9 +250,8 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
         const auto unknowns = unknowns_of(problem_.faces[static_cast<std::size_t>(f)], place_);
         Eigen::Vector3d pull = Eigen::Vector3d::Zero(); // J₂ᵀ μ₂
         for (int i = 0; i < 6; ++i)
-            if (unknowns[static_cast<std::size_t>(i)] >= 0)
-                pull += solution[unknowns[static_cast<std::size_t>(i)]] *
-                        face.gradient.row(i).transpose();
+            if (unknowns[i] >= 0)
+                pull += solution[unknowns[i]] * face.gradient.row(i).transpose();
         step.angles.segment<3>(3 * f) -= face.projected * pull;
         step.multipliers[f] -= face.inverse.dot(pull) / face.trace;
     }

@@ -10,7 +10,7 @@
 namespace devseg {
 
 struct LpfbOptions {
-    int max_rounds = 100;    // steps of each boundary solver at most
+    int max_rounds = 50;     // steps of each boundary solver at most
     double tolerance = 1e-5; // radians; the boundary is settled when no angle moves by more
 };
 

@@ -9,6 +9,7 @@
 
 #include "devseg/errors.h"
 #include "devseg/mesh/charts.h"
+#include "devseg/segment/borders.h"
 #include "devseg/segment/growth.h"
 #include "devseg/segment/seeds.h"
 
@@ -405,7 +406,7 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options,
                               static_cast<std::uint32_t>(options.random_seed), progress))
         seeds.push_back(initial_seed(mesh, face));
 
-    progress.begin_phase("growing charts", 0.7);
+    progress.begin_phase("growing charts", 0.6);
     Growth growth(mesh, options);
     lloyd(mesh, options, growth, seeds, result, progress);
 
@@ -413,6 +414,12 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options,
     fill_holes(mesh, options, growth, seeds, result, progress);
 
     result.proxies = fit_proxies(mesh, result.chart, static_cast<Index>(seeds.size()));
+    if (options.straighten_boundaries) {
+        progress.begin_phase("straightening borders", 0.1);
+        result.straightened_borders = straighten_borders(
+            mesh, result.proxies, options.max_fitting_error, result.chart, progress);
+        result.proxies = fit_proxies(mesh, result.chart, static_cast<Index>(seeds.size()));
+    }
     result.fitting_error.resize(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         result.fitting_error[f] =

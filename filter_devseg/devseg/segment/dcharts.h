@@ -20,6 +20,7 @@ struct DChartsOptions {
     double alpha = 1.0;             // weight of developability, exponent of F
     double beta = 0.7;              // weight of roundness, exponent of C
     double gamma = 0.5;             // weight of straight boundaries, exponent of P
+    bool straighten_boundaries = true; // shortest borders within the fuzzy areas
     int max_iterations = 100;       // Lloyd rounds at most
     int random_seed = 0;            // 0: a start that does not depend on the order of the faces
 };
@@ -31,6 +32,7 @@ struct DChartsResult {
     int rounds = 0;                    // Lloyd rounds that were run
     bool converged = false;            // fewer than 5 % of the faces changed in the last round
     Index hole_charts = 0;             // charts that hole filling added
+    Index straightened_borders = 0;    // borders that were replaced by shorter ones
 };
 
 /// Throws InvalidParameter for options out of range (1 ≤ charts_number ≤ #F, F_max > 0,
