@@ -40,6 +40,9 @@ METHODS = {
 FLATTENINGS = {
     "symmetric-dirichlet": "Symmetric Dirichlet",
     "lscm": "LSCM",
+    "abf": "ABF++",
+    "arap": "ARAP",
+    "lpfb": "LPFB",
 }
 
 # The options of the command line that a method may take.

@@ -119,19 +119,20 @@ TEST(Flatten, TheMethodDecidesWhatIsKept) {
 }
 
 TEST(Flatten, ChartsOnWhichLscmFlipsAreMended) {
-    // Much surface behind a short boundary: the conformal map folds or shrinks to nothing.
-    RawMesh raw = shapes::sphere(3);
-    raw.faces.pop_back();
-    const Mesh mesh = checks::gated(shapes::with_noise(raw, 0.02, 4));
-    const ChartMap charts = checks::components(mesh);
-    const ChartSurface surface = extract_charts(mesh, charts).at(0);
-    ASSERT_TRUE(surface.is_disk());
-    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
-    const bool flips = checks::count_flips(problem.faces, flatten_lscm(problem)) > 0;
-    const FlattenResult r = flatten(mesh, charts, FlattenMethod::lscm);
-    expect_promises(mesh, charts, r);
-    EXPECT_EQ(r.flat.at(0).mended, flips);
-    EXPECT_FALSE(flatten(mesh, charts, FlattenMethod::symmetric_dirichlet).flat.at(0).mended);
+    for (const auto& [raw, expected] :
+         {std::pair(shapes::with_noise(shapes::grid(12, 12), 0.1, 4), true),
+          {shapes::finger(8, 60, 1.0, 47.0), true}, // shrinks below rounding
+          {shapes::hemisphere(20, 8), false}}) {
+        const Mesh mesh = checks::gated(raw);
+        const ChartMap charts = checks::components(mesh);
+        const FlatteningProblem problem =
+            make_flattening_problem(mesh, extract_charts(mesh, charts).at(0));
+        ASSERT_EQ(checks::count_flips(problem.faces, flatten_lscm(problem)) > 0, expected);
+        const FlattenResult r = flatten(mesh, charts, FlattenMethod::lscm);
+        expect_promises(mesh, charts, r);
+        EXPECT_EQ(r.flat.at(0).mended, expected);
+        EXPECT_FALSE(flatten(mesh, charts, FlattenMethod::symmetric_dirichlet).flat.at(0).mended);
+    }
 }
 
 TEST(Flatten, PartsThatWouldOverlapComeApart) {
@@ -185,17 +186,18 @@ TEST(Flatten, ChartsThatAreNoDisksAreRefused) {
 }
 
 TEST(Flatten, HardChartsEndInAMapOrAClearFailure) {
-    // A finger so long that distances in Tutte's map shrink below rounding.
-    const Mesh mesh = checks::gated(shapes::finger(8, 60, 1.0, 47.0));
-    const ChartMap charts = checks::components(mesh);
-    for (const FlattenMethod method : methods) {
-        try {
-            expect_promises(mesh, charts, flatten(mesh, charts, method));
-        } catch (const NumericalFailure& error) {
-            EXPECT_TRUE(checks::contains(error.what(), std::to_string(mesh.face_count())));
-            EXPECT_TRUE(checks::contains(error.what(), "without flipped faces"));
+    // Fingers so long that distances in Tutte's map shrink towards the end of all precision.
+    for (const Index rings : {60, 120, 400})
+        for (const FlattenMethod method : methods) {
+            const Mesh mesh = checks::gated(shapes::finger(6, rings, 1.0, rings));
+            const ChartMap charts = checks::components(mesh);
+            try {
+                expect_promises(mesh, charts, flatten(mesh, charts, method));
+            } catch (const NumericalFailure& error) {
+                EXPECT_TRUE(checks::contains(error.what(), std::to_string(mesh.face_count())));
+                EXPECT_TRUE(checks::contains(error.what(), "without flipped faces"));
+            }
         }
-    }
 }
 
 TEST(Flatten, Cancels) {

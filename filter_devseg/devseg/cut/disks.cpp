@@ -273,29 +273,34 @@ private:
     bool any_cut_ = false;
 };
 
-ChartSurface extract_again(const Mesh& mesh, const ChartMap& charts, const ChartSurface& surface) {
-    std::vector<Index> local_face(mesh.faces.size(), -1);
-    return extract_chart(mesh, charts, surface.face.data(),
-                         surface.face.data() + surface.face.size(), local_face);
-}
-
 } // namespace
+
+ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
+                         double* cut_length) {
+    double length = 0.0;
+    if (!surface.is_disk()) {
+        length += Cutter(mesh, surface, seam).run();
+        surface = extract_surface(mesh, std::move(surface.face), seam);
+    }
+    if (surface.loops.front().size() < 3) {
+        length += Cutter(mesh, surface, seam).lengthen();
+        surface = extract_surface(mesh, std::move(surface.face), seam);
+    }
+    if (cut_length != nullptr)
+        *cut_length += length;
+    return surface;
+}
 
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
     DiskCuts result;
     result.charts = charts;
-    const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
+    std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
-        const bool disk = surfaces[c].is_disk();
-        if (disk && surfaces[c].loops.front().size() > 2)
+        if (surfaces[c].is_disk() && surfaces[c].loops.front().size() > 2)
             continue;
         ++result.cut_charts;
-        if (!disk)
-            result.cut_length += Cutter(mesh, surfaces[c], result.charts.seam).run();
-        const ChartSurface cut = extract_again(mesh, result.charts, surfaces[c]);
-        if (cut.loops.front().size() < 3)
-            result.cut_length += Cutter(mesh, cut, result.charts.seam).lengthen();
+        cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
     }
     return result;
 }

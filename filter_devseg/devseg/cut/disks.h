@@ -17,6 +17,11 @@ struct DiskCuts {
     double cut_length = 0.0; // total length of the new cuts, internal units
 };
 
+/// Cuts one chart: marks the new seams in `seam` (3 #F) and returns the chart as a disk.
+/// `cut_length`, if given, is increased by the length of the new cuts.
+ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
+                         double* cut_length = nullptr);
+
 /// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop):
 /// shortest paths between boundary loops, short cycles through handles, and for a sphere a path
 /// between two far vertices. Charts that are disks are left as they are.

@@ -26,14 +26,27 @@ constexpr const char* flatten_help =
     "from existing texture coordinates, and without those each connected component of the mesh is "
     "a chart. Charts that are not disks are cut first. "
     "<b>Symmetric Dirichlet</b> keeps lengths as well as possible and never turns a face over; "
-    "<b>LSCM</b> keeps angles and changes lengths more. Charts on which LSCM turns faces over are "
-    "flattened with the other method, and counted.<br>"
+    "<b>ARAP</b> keeps lengths as well; <b>LSCM</b> and <b>ABF++</b> keep angles and change lengths "
+    "more; <b>LPFB</b> keeps the length of every boundary edge instead of the area, for sewing. "
+    "Charts on which a method turns faces over are flattened with Symmetric Dirichlet, and counted. "
+    "Parts of a chart that would lie on each other are pushed apart (Symmetric Dirichlet) or cut "
+    "apart along a short path, and counted too.<br>"
     "See:<br><i>Jason Smith, Scott Schaefer</i><br>"
     "<b>\"Bijective Parameterization with Free Boundaries\"</b><br>"
     "ACM Transactions on Graphics (SIGGRAPH), 2015, doi:10.1145/2766947<br>"
     "<i>Bruno Lévy, Sylvain Petitjean, Nicolas Ray, Jérome Maillot</i><br>"
     "<b>\"Least Squares Conformal Maps for Automatic Texture Atlas Generation\"</b><br>"
-    "ACM Transactions on Graphics (SIGGRAPH), 2002, doi:10.1145/566654.566590";
+    "ACM Transactions on Graphics (SIGGRAPH), 2002, doi:10.1145/566654.566590<br>"
+    "<i>Alla Sheffer, Bruno Lévy, Maxim Mogilnitsky, Alexander Bogomyakov</i><br>"
+    "<b>\"ABF++: Fast and Robust Angle Based Flattening\"</b><br>"
+    "ACM Transactions on Graphics 24(2), 2005, doi:10.1145/1061347.1061354<br>"
+    "<i>Ligang Liu, Lei Zhang, Yin Xu, Craig Gotsman, Steven J. Gortler</i><br>"
+    "<b>\"A Local/Global Approach to Mesh Parameterization\"</b><br>"
+    "Computer Graphics Forum (SGP), 2008, doi:10.1111/j.1467-8659.2008.01290.x<br>"
+    "<i>Charlie C. L. Wang</i><br>"
+    "<b>\"Computing Length-Preserved Free Boundary for Quasi-Developable Mesh Segmentation\"</b><br>"
+    "IEEE Transactions on Visualization and Computer Graphics 14(1), 2008, "
+    "doi:10.1109/TVCG.2007.1067";
 
 constexpr const char* pack_help =
     "Packs the charts of existing texture coordinates, whoever made them, into the unit square: "
@@ -163,9 +176,11 @@ FilterDeclaration flatten() {
     using O = FlattenOptions;
     return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
                       FilterCategory::texture, flatten_help)
-        .choice(&O::method, "method", "Method", {"Symmetric Dirichlet", "LSCM"},
+        .choice(&O::method, "method", "Method", {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
                 "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
-                "change of angles, faster.")
+                "change of angles, fast. ABF++: least change of angles, more even on curved "
+                "charts. ARAP: lengths, milder where they cannot be kept. LPFB: every boundary "
+                "edge keeps its length, so that both sides of a seam are equally long.")
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in model units.")

@@ -10,7 +10,7 @@ namespace devseg {
 
 struct ArapOptions {
     int max_rounds = 100;             // local and global steps at most
-    double relative_tolerance = 1e-5; // stop when a round gains less than this share of the energy
+    double relative_tolerance = 1e-4; // stop when a round gains less than this share of the energy
 };
 
 struct ArapResult {

@@ -1,12 +1,21 @@
+// References
+//   [Wang 2008] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
+//   Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
+//   doi:10.1109/TVCG.2007.1067
 #include "devseg/flatten/flatten.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "devseg/cut/disks.h"
 #include "devseg/errors.h"
+#include "devseg/flatten/abf.h"
+#include "devseg/flatten/arap.h"
+#include "devseg/flatten/lpfb.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/overlaps.h"
@@ -34,13 +43,25 @@ constexpr double push_cost = 0.01;
 // person or a cutter sees (0.015 mm on a sheet of 300 mm).
 constexpr double slit_gap = 5e-5;
 
+constexpr double lpfb_area_change = 0.1;
+constexpr double lpfb_stretch = 2.0;
+// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
+constexpr double harmonic_is_enough = 1.02;
+
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-// LSCM where it is free of flips, as on all charts that are nearly developable; Tutte elsewhere.
-std::vector<Vec2> valid_start(const FlatteningProblem& problem, const std::vector<Vec2>& lscm) {
-    if (count_flips(problem, lscm) == 0)
-        return lscm;
-    std::vector<Vec2> uv = flatten_tutte(problem);
+// The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; Tutte.
+std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& progress) {
+    std::vector<Vec2> uv = flatten_lscm(problem);
+    if (count_flips(problem, uv) == 0)
+        return uv;
+    try {
+        LpfbResult lpfb = flatten_lpfb(problem, LpfbOptions{}, progress);
+        if (lpfb.flips == 0)
+            return lpfb.uv;
+    } catch (const NumericalFailure&) { // no polygon has these lengths: Tutte needs none
+    }
+    uv = flatten_tutte(problem);
     if (count_flips(problem, uv) > 0)
         throw NumericalFailure("expected a map without flipped faces, found none for a chart of " +
                                std::to_string(problem.faces.size()) +
@@ -49,18 +70,96 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const std::vecto
     return uv;
 }
 
-void apply_method(const FlatteningProblem& problem, FlattenMethod method, FlatChart& chart,
-                  const Progress& progress) {
-    chart.uv = flatten_lscm(problem);
-    const bool flips = count_flips(problem, chart.uv) > 0;
-    chart.mended = method == FlattenMethod::lscm && flips;
-    if (method != FlattenMethod::symmetric_dirichlet && !flips)
-        return;
+void apply_symmetric_dirichlet(const FlatteningProblem& problem, FlatChart& chart,
+                               const Progress& progress) {
     SymmetricDirichletResult result = minimise_symmetric_dirichlet(
-        problem, valid_start(problem, chart.uv), SymmetricDirichletOptions{}, progress);
+        problem, valid_start(problem, progress), SymmetricDirichletOptions{}, progress);
     chart.uv = std::move(result.uv);
     chart.converged = result.converged;
     scale_to_area(problem, chart.uv);
+}
+
+// The LPFB map, with inner vertices moved towards an isometry where the harmonic ones leave
+// much to gain; infinite energy where it has flips.
+std::pair<double, std::vector<Vec2>> polish_lpfb(const FlatteningProblem& problem,
+                                                 LpfbResult lpfb, const Progress& progress) {
+    if (lpfb.flips > 0)
+        return {std::numeric_limits<double>::infinity(), {}};
+    double energy = symmetric_dirichlet_energy(problem, lpfb.uv);
+    if (energy > harmonic_is_enough) {
+        SymmetricDirichletOptions options;
+        options.fixed.assign(lpfb.uv.size(), 0);
+        for (const Index v : problem.boundary)
+            options.fixed[at(v)] = 1;
+        SymmetricDirichletResult result =
+            minimise_symmetric_dirichlet(problem, lpfb.uv, options, progress);
+        energy = result.energy;
+        lpfb.uv = std::move(result.uv);
+    }
+    return {energy, std::move(lpfb.uv)};
+}
+
+// [Wang 2008, section 5] takes a flattening that changes the area by at most 10 % and whose L2
+// stretch is at most 2.
+bool is_acceptable(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    return std::abs(map_area(problem, uv) / problem.total_area - 1.0) <= lpfb_area_change &&
+           l2_stretch(problem, uv) <= lpfb_stretch;
+}
+
+// Keeps the lengths of boundary edges. Where the angles on the surface give no acceptable map, or
+// one that lies on itself, those of the nearest isometric map are tried.
+bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
+                FlatChart& chart, const Progress& progress) {
+    auto own =
+        polish_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
+    if (std::isfinite(own.first) && is_acceptable(problem, own.second) &&
+        overlapping_pairs(chart.surface, own.second, tolerance).empty()) {
+        chart.uv = std::move(own.second);
+        return true;
+    }
+    apply_symmetric_dirichlet(problem, chart, progress);
+    open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
+    const std::vector<double> angles = boundary_angles(problem, chart.uv);
+    auto near =
+        polish_lpfb(problem, flatten_lpfb(problem, angles, LpfbOptions{}, progress), progress);
+    auto& better = near.first <= own.first ? near : own;
+    if (!std::isfinite(better.first))
+        return false;
+    chart.uv = std::move(better.second);
+    return true;
+}
+
+// The method's own map; false where it has flips or cannot be found.
+bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMethod method,
+                  double tolerance, FlatChart& chart, const Progress& progress) {
+    try {
+        switch (method) {
+        case FlattenMethod::symmetric_dirichlet:
+            apply_symmetric_dirichlet(problem, chart, progress);
+            return true;
+        case FlattenMethod::lscm: chart.uv = flatten_lscm(problem); break;
+        case FlattenMethod::abf: {
+            AbfResult result = flatten_abf(problem, AbfOptions{}, progress);
+            chart.uv = std::move(result.uv);
+            chart.converged = result.converged;
+            break;
+        }
+        case FlattenMethod::arap: {
+            ArapResult result =
+                minimise_arap(problem, valid_start(problem, progress), ArapOptions{}, progress);
+            chart.uv = std::move(result.uv);
+            chart.converged = result.converged;
+            scale_to_area(problem, chart.uv);
+            break;
+        }
+        case FlattenMethod::lpfb: return apply_lpfb(mesh, problem, tolerance, chart, progress);
+        }
+    } catch (const NumericalFailure&) {
+        if (method == FlattenMethod::symmetric_dirichlet)
+            throw; // there is nothing else to try
+        return false;
+    }
+    return count_flips(problem, chart.uv) == 0;
 }
 
 // Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
@@ -105,13 +204,20 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress) {
     const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    apply_method(problem, method, chart, progress);
+    if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
+        chart.mended = true;
+        apply_symmetric_dirichlet(problem, chart, progress);
+    }
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
     if (pairs.empty())
         return {};
-    if (auto apart = push_apart(problem, chart, pairs, tolerance, progress)) {
+    // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
+    // would not be theirs any more.
+    const bool may_push = method == FlattenMethod::symmetric_dirichlet || chart.mended;
+    if (auto apart = may_push ? push_apart(problem, chart, pairs, tolerance, progress)
+                              : std::nullopt) {
         chart.uv = std::move(*apart);
         open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
         chart.pushed = true;

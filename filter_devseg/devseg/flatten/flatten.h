@@ -9,9 +9,10 @@
 
 namespace devseg {
 
-enum class FlattenMethod { symmetric_dirichlet, lscm };
+enum class FlattenMethod { symmetric_dirichlet, lscm, abf, arap, lpfb };
 
-/// One chart in the plane: positively oriented, with its own 3D area, no face flipped.
+/// One chart in the plane: positively oriented, no face flipped, with its own 3D area (LPFB: with
+/// the lengths of its boundary edges instead).
 struct FlatChart {
     ChartSurface surface;
     std::vector<Vec2> uv; // #v, internal units of the mesh
@@ -28,8 +29,8 @@ struct FlattenResult {
 };
 
 /// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
-/// are pushed apart where that changes the shape little, and else cut apart along a short path. The
-/// result does not depend on the number of threads. Throws NumericalFailure, naming the chart's
+/// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
+/// else cut apart along a short path. The result does not depend on the number of threads. Throws NumericalFailure, naming the chart's
 /// size, where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
                              Progress& progress);

@@ -87,6 +87,18 @@ double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     return 0.5 * twice;
 }
 
+double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d j = jacobian(problem, uv, f);
+        const double det = j.determinant();
+        if (!(det > 0.0))
+            return std::numeric_limits<double>::infinity();
+        sum += 0.5 * problem.area[f] * j.squaredNorm() / (det * det);
+    }
+    return std::sqrt(sum / problem.total_area);
+}
+
 void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
     const double area = map_area(problem, uv);
     const double scale = area > 0.0 ? std::sqrt(problem.total_area / area) : 1.0;

@@ -1,6 +1,6 @@
 #include "devseg/flatten/projected_newton.h"
 
-#include <vector>
+#include <utility>
 
 #include <Eigen/SparseCholesky>
 
@@ -11,17 +11,20 @@ namespace devseg {
 namespace {
 // Rigid motions do not change the energy: this share of the mean diagonal keeps H definite.
 constexpr double shift_share = 1e-10;
+constexpr double locked = 1e10; // of the mean diagonal: the step of a vertex that stays vanishes
 } // namespace
 
 struct ProjectedNewton::State {
     const FlatteningProblem& problem;
+    std::vector<std::uint8_t> fixed;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     std::vector<Eigen::Triplet<double>> entries;
     bool analyzed = false;
 };
 
-ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem)
-    : state_(new State{problem, {}, {}, false}) {}
+ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem,
+                                 std::vector<std::uint8_t> fixed)
+    : state_(new State{problem, std::move(fixed), {}, {}, false}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
@@ -54,8 +57,10 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
             }
     }
     const Index unknowns = 2 * problem.vertex_count;
-    for (Index i = 0; i < unknowns; ++i)
-        entries.emplace_back(i, i, shift_share * trace / unknowns);
+    for (Index i = 0; i < unknowns; ++i) {
+        const bool stays = !state_->fixed.empty() && state_->fixed[at(i / 2)] != 0;
+        entries.emplace_back(i, i, (stays ? locked : shift_share) * trace / unknowns);
+    }
     Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
     matrix.setFromTriplets(entries.begin(), entries.end());
     if (!state_->analyzed)

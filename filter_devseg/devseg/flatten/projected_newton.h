@@ -1,7 +1,9 @@
 // Newton's method with projected Hessians, for maps that are far from isometric.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "devseg/flatten/distortion.h"
 
@@ -11,7 +13,8 @@ namespace devseg {
 /// Hessians. Each direction costs a sparse factorization; the order of elimination is found once.
 class ProjectedNewton {
 public:
-    explicit ProjectedNewton(const FlatteningProblem& problem);
+    /// Vertices that are marked in `fixed` (#v, may be empty) stay where they are.
+    ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed);
     ~ProjectedNewton();
 
     /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.

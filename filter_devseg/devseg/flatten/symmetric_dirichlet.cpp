@@ -25,6 +25,7 @@ constexpr double sufficient_decrease = 1e-4; // Armijo's constant
 constexpr double safe_step = 0.8;  // share of the step at which the first triangle collapses
 constexpr double smallest_step = 1e-12;
 constexpr int stall_window = 10; // steps over which progress is judged
+constexpr double locked = 1e20;  // stiffness of vertices that stay: their steps vanish
 constexpr double near_isometry = 1.2; // energy below which one factorization is enough
 constexpr double little_gain = 1e-3;  // share of the energy that a Newton step must gain
 
@@ -32,7 +33,7 @@ constexpr double little_gain = 1e-3;  // share of the energy that a Newton step 
 // energy's Hessian at an isometry, up to a factor and the rotations.
 class Preconditioner {
 public:
-    explicit Preconditioner(const FlatteningProblem& problem) {
+    Preconditioner(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed) {
         std::vector<Eigen::Triplet<double>> entries;
         entries.reserve(12 * problem.faces.size());
         const double scale = 0.5 / problem.total_area;
@@ -48,7 +49,7 @@ public:
             }
         const double shift = 1e-8 / problem.total_area;
         for (Index v = 0; v < problem.vertex_count; ++v)
-            entries.emplace_back(v, v, shift);
+            entries.emplace_back(v, v, fixed.empty() || fixed[at(v)] == 0 ? shift : locked);
         Eigen::SparseMatrix<double> matrix(problem.vertex_count, problem.vertex_count);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
@@ -68,7 +69,8 @@ double dot(const Positions& a, const Positions& b) {
 // Limited-memory BFGS with the preconditioner as initial inverse Hessian.
 class QuasiNewton {
 public:
-    explicit QuasiNewton(const FlatteningProblem& problem) : preconditioner_(problem) {}
+    QuasiNewton(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed)
+        : preconditioner_(problem, fixed) {}
 
     Positions direction(const Positions& gradient) const {
         Positions q = gradient;
@@ -108,16 +110,18 @@ private:
 // A descent: the current map, its energy and gradient, penalty included.
 class Descent {
 public:
-    Descent(const FlatteningProblem& problem, const ContactPenalty& penalty, Positions start)
-        : problem_(problem), penalty_(penalty), x_(std::move(start)), energy_(value(x_)),
-          gradient_(slope(x_)) {}
+    Descent(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed,
+            const ContactPenalty& penalty, Positions start)
+        : problem_(problem), fixed_(fixed), penalty_(penalty), x_(std::move(start)),
+          energy_(value(x_)), gradient_(slope(x_)) {}
 
     const Positions& x() const { return x_; }
     double energy() const { return energy_; }
     const Positions& gradient() const { return gradient_; }
 
     /// Goes along a descent direction as far as pays; false if there is no such step.
-    bool advance(const Positions& d) {
+    bool advance(Positions d) {
+        hold_fixed(d);
         const double decrease = dot(gradient_, d);
         if (!(decrease < 0.0))
             return false;
@@ -149,10 +153,17 @@ private:
     Positions slope(const Positions& y) const {
         Positions g = distortion_gradient(problem_, y);
         penalty_.add_gradient(y, g);
+        hold_fixed(g);
         return g;
+    }
+    void hold_fixed(Positions& rows) const {
+        for (std::size_t v = 0; v < fixed_.size(); ++v)
+            if (fixed_[v] != 0)
+                rows.row(static_cast<Eigen::Index>(v)).setZero();
     }
 
     const FlatteningProblem& problem_;
+    const std::vector<std::uint8_t>& fixed_;
     const ContactPenalty& penalty_;
     Positions x_;
     double energy_;
@@ -167,7 +178,7 @@ void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions&
               const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
     if (descent.energy() < near_isometry)
         return;
-    ProjectedNewton newton(problem);
+    ProjectedNewton newton(problem, options.fixed);
     while (result.iterations < options.max_iterations && descent.energy() > near_isometry) {
         progress.check();
         const double before = descent.energy();
@@ -181,7 +192,7 @@ void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions&
 
 void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
             const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
-    QuasiNewton model(problem);
+    QuasiNewton model(problem, options.fixed);
     std::deque<double> recent{descent.energy()};
     while (result.iterations < options.max_iterations && !result.converged) {
         progress.check();
@@ -215,7 +226,7 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
         x.row(v) = start[at(v)].transpose();
 
     SymmetricDirichletResult result;
-    Descent descent(problem, penalty, std::move(x));
+    Descent descent(problem, options.fixed, penalty, std::move(x));
     approach(problem, options, progress, descent, result);
     polish(problem, options, progress, descent, result);
     result.energy = distortion(problem, descent.x());

@@ -1,6 +1,7 @@
 // Isometric maps without flips: minimisers of the symmetric Dirichlet energy.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "devseg/flatten/contacts.h"
@@ -12,6 +13,7 @@ namespace devseg {
 struct SymmetricDirichletOptions {
     int max_iterations = 300;          // quasi-Newton steps at most
     double relative_tolerance = 1e-7; // stop when ten steps gain less than this share of the energy
+    std::vector<std::uint8_t> fixed; // #v: 1 for vertices that stay; empty = all are free
 };
 
 struct SymmetricDirichletResult {

@@ -85,10 +85,13 @@ ChartFaces group_faces(const ChartMap& charts) {
     return result;
 }
 
-ChartSurface extract_chart(const Mesh& mesh, const ChartMap& charts, const Index* first_face,
-                           const Index* last_face, std::vector<Index>& local_face) {
+namespace {
+
+// `local_face` is scratch of size #F, valid for the given faces.
+ChartSurface extract(const Mesh& mesh, std::vector<Index> faces,
+                     const std::vector<std::uint8_t>& seam, std::vector<Index>& local_face) {
     ChartSurface surface;
-    surface.face.assign(first_face, last_face);
+    surface.face = std::move(faces);
     for (Index f = 0; f < surface.face_count(); ++f)
         local_face[at(surface.face[at(f)])] = f;
     surface.twin.assign(3 * surface.face.size(), -1);
@@ -96,29 +99,35 @@ ChartSurface extract_chart(const Mesh& mesh, const ChartMap& charts, const Index
     for (Index h = 0; h < 3 * surface.face_count(); ++h) {
         const Index global = surface.mesh_half_edge(h);
         const Index opposite = mesh.twin[at(global)];
-        if (opposite < 0 || charts.seam[at(global)] != 0)
+        if (opposite < 0 || seam[at(global)] != 0)
             continue;
         surface.twin[at(h)] = 3 * local_face[at(opposite / 3)] + opposite % 3;
         ++inner_half_edges;
     }
     surface.edge_count = 3 * surface.face_count() - inner_half_edges / 2;
-    for (const Index f : surface.face)
-        local_face[at(f)] = -1;
     weld_corners(mesh, surface);
     trace_loops(surface);
     return surface;
 }
 
+} // namespace
+
+ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
+                             const std::vector<std::uint8_t>& seam) {
+    std::vector<Index> local_face(mesh.faces.size());
+    return extract(mesh, std::move(faces), seam, local_face);
+}
+
 std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts) {
     const ChartFaces groups = group_faces(charts);
-    std::vector<Index> local_face(mesh.faces.size(), -1);
+    std::vector<Index> local_face(mesh.faces.size());
     std::vector<ChartSurface> surfaces;
     surfaces.reserve(at(charts.count));
     for (Index c = 0; c < charts.count; ++c)
-        surfaces.push_back(extract_chart(mesh, charts,
-                                         groups.faces.data() + groups.begin[at(c)],
-                                         groups.faces.data() + groups.begin[at(c) + 1],
-                                         local_face));
+        surfaces.push_back(extract(mesh,
+                                   {groups.faces.begin() + groups.begin[at(c)],
+                                    groups.faces.begin() + groups.begin[at(c) + 1]},
+                                   charts.seam, local_face));
     return surfaces;
 }
 

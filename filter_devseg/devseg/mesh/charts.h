@@ -50,10 +50,10 @@ struct ChartSurface {
     Index mesh_half_edge(Index h) const { return 3 * face[at(h / 3)] + h % 3; }
 };
 
-/// `faces` must be the faces of one chart. `local_face` is scratch of size #F filled with −1,
-/// and is left so.
-ChartSurface extract_chart(const Mesh& mesh, const ChartMap& charts, const Index* first_face,
-                           const Index* last_face, std::vector<Index>& local_face);
+/// The given faces, cut open along the marked edges (`seam`, 3 #F): all edges between these faces and
+/// others must be marked.
+ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
+                             const std::vector<std::uint8_t>& seam);
 
 /// The same for each chart, in order of their labels.
 std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts);

@@ -1,7 +1,5 @@
 #include "devseg/metrics/seams.h"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -9,10 +7,7 @@ namespace devseg {
 
 std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const ChartMap& charts,
                                         const CornerUv& uv) {
-    double plane = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        plane += std::abs(uv_area(uv, f));
-    const double scale = plane > 0.0 ? std::sqrt(mesh.total_area / plane) * mesh.unit_length : 0.0;
+    const double scale = layout_scale(mesh, charts, uv) * mesh.unit_length;
     const auto flat_length = [&](Index h) {
         return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
     };

@@ -92,8 +92,7 @@ struct ChartAreas {
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
 
-    // Internal units for one unit of the texture coordinates.
-    double scale() const { return std::sqrt(surface_total / plane_total); }
+    double scale = 1.0;       // internal units for one unit of the texture coordinates
     bool is_crumb(std::size_t c) const {
         return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
     }
@@ -124,12 +123,13 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& 
         throw InvalidMesh(std::string("expected texture coordinates that cover an area, found ") +
                           (areas.plane_total > 0.0 ? "some that are too large to measure"
                                                    : "none") + remedy);
+    areas.scale = layout_scale(mesh, charts, uv);
     return areas;
 }
 
 // Charts without area in the plane cannot be cut; crumbs need not be.
 void check_charts(const ChartMap& charts, const ChartAreas& areas) {
-    const double scale = areas.scale();
+    const double scale = areas.scale;
     std::vector<std::uint8_t> is_bad(at(charts.count), 0);
     Index count = 0;
     for (std::size_t c = 0; c < is_bad.size(); ++c)
@@ -226,7 +226,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     progress.begin_phase("tracing outlines", 0.4);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
-    pattern.pieces = trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale() * mm,
+    pattern.pieces = trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale * mm,
                                   progress);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
@@ -236,7 +236,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
         PatternPiece& piece = pattern.pieces[i];
         const std::size_t c = at(piece.chart);
         if (areas.surface[c] > 0.0)
-            piece.length_scale = areas.scale() * std::sqrt(areas.covered[c] / areas.surface[c]);
+            piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
         place_label(piece);
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
     }
