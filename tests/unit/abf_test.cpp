@@ -65,7 +65,7 @@ Eigen::MatrixXd constraint_gradients(const FlatteningProblem& problem,
         if (number >= 0)
             number = count++;
     const auto faces = static_cast<Eigen::Index>(problem.faces.size());
-    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(faces + 2 * count, 3 * faces);
+    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(faces + count + count, 3 * faces);
     for (Eigen::Index f = 0; f < faces; ++f)
         for (Eigen::Index c = 0; c < 3; ++c) {
             const Eigen::Index next = 3 * f + (c + 1) % 3;

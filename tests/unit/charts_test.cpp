@@ -199,14 +199,20 @@ TEST(Charts, ASeamOnOneSideOfAnEdgeCountsForBoth) {
               make_chart_map(mesh, zeros(mesh), both, true).seam);
 }
 
-TEST(Charts, ScratchIsLeftAsItWas) {
-    const Mesh mesh = checks::gated(shapes::torus(6, 5));
-    const ChartMap charts = checks::components(mesh);
-    const ChartFaces groups = group_faces(charts);
-    std::vector<Index> scratch(mesh.faces.size(), -1);
-    extract_chart(mesh, charts, groups.faces.data(), groups.faces.data() + groups.faces.size(),
-                  scratch);
-    EXPECT_EQ(scratch, std::vector<Index>(mesh.faces.size(), -1));
+TEST(Charts, OneSurfaceIsTheSameAsAmongAll) {
+    const Mesh mesh = checks::gated(shapes::sphere(2));
+    std::vector<Index> labels;
+    for (const Vec3& centre : mesh.face_centers)
+        labels.push_back((centre.x() > 0.1 ? 1 : 0) + (centre.y() > -0.2 ? 2 : 0));
+    const ChartMap charts = make_chart_map(mesh, labels, {}, false);
+    for (const ChartSurface& expected : extract_charts(mesh, charts)) {
+        const ChartSurface surface = extract_surface(mesh, expected.face, charts.seam);
+        EXPECT_EQ(surface.corners, expected.corners);
+        EXPECT_EQ(surface.vertex, expected.vertex);
+        EXPECT_EQ(surface.twin, expected.twin);
+        EXPECT_EQ(surface.loops, expected.loops);
+        EXPECT_EQ(surface.edge_count, expected.edge_count);
+    }
 }
 
 CornerUv uv_of(const Mesh& mesh) {

@@ -59,6 +59,16 @@ Index count_flips(const std::vector<Triangle>& faces, const std::vector<Vec2>& u
 using Corners = std::array<Vec2, 3>;
 double common_area(const Corners& a, const Corners& b);
 
+/// x as a 32-bit number. Through memory: some compilers (GCC 12.2 at -O2) drop conversions of two
+/// neighbouring numbers to float and back.
+inline double single(double x) {
+    const volatile float stored = static_cast<float>(x);
+    return static_cast<double>(stored);
+}
+inline Vec2 single(const Vec2& p) {
+    return Vec2(single(p.x()), single(p.y()));
+}
+
 testing::AssertionResult contains(const std::string& text, const std::string& part);
 
 /// The message of the error that `call` throws; a failure if it throws none or another one.

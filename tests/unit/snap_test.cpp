@@ -13,16 +13,9 @@ namespace {
 
 using shapes::Random;
 
-// Through memory: some compilers (GCC 12.2 at -O2) drop conversions of two neighbouring numbers to
-// float and back, and nothing is rounded.
-double single(double x) {
-    const volatile float stored = static_cast<float>(x);
-    return static_cast<double>(stored);
-}
-
 std::vector<Vec2> rounded(std::vector<Vec2> uv) {
     for (Vec2& p : uv)
-        p = Vec2(single(p.x()), single(p.y()));
+        p = checks::single(p);
     return uv;
 }
 

@@ -158,7 +158,7 @@ double AngleSystem::energy(const Eigen::VectorXd& angles) const {
 
 Eigen::VectorXd AngleSystem::constraints(const Eigen::VectorXd& angles) const {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
-    Eigen::VectorXd values(faces + 2 * inner_count_);
+    Eigen::VectorXd values(faces + inner_count_ + inner_count_);
     values.head(faces).setConstant(-pi);
     values.segment(faces, inner_count_).setConstant(-2.0 * pi);
     values.tail(inner_count_).setZero();
@@ -192,7 +192,7 @@ void AngleSystem::stiffen(const Eigen::VectorXd& angles) {
 // where P is Face::projected and p the step without μ₂. Leaves p and its μ₁ in `step`.
 void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
-    step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + 2 * inner_count_)};
+    step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + inner_count_ + inner_count_)};
     const Eigen::VectorXd values = constraints(angles);
     Eigen::VectorXd& rhs = reduced_->rhs;
     rhs.resize(2 * inner_count_);

@@ -4,6 +4,8 @@
 //             doi:10.1111/j.1467-8659.2008.01290.x
 #include "devseg/flatten/arap.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/SparseCholesky>

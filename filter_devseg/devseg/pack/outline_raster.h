@@ -1,34 +1,45 @@
-// Charts as bit images: which cells of a grid a placed chart may touch.
+// Charts as images on a grid: the cells that a chart, with half of the padding around it, touches.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
+#include "devseg/pack/outline.h"
 
 namespace devseg {
 
-/// A bit image; row y has `words` words, bit x of a row is (word[x / 64] >> x % 64) & 1.
-struct BitImage {
-    Index width = 0;  // cells
-    Index height = 0; // cells
-    Index words = 0;  // of each row
-    std::vector<std::uint64_t> bits;
-
-    BitImage() = default;
-    BitImage(Index w, Index h)
-        : width(w), height(h), words((w + 63) / 64),
-          bits(static_cast<std::size_t>(words) * static_cast<std::size_t>(h), 0) {}
-    std::uint64_t* row(Index y) { return bits.data() + static_cast<std::ptrdiff_t>(y) * words; }
-    const std::uint64_t* row(Index y) const {
-        return bits.data() + static_cast<std::ptrdiff_t>(y) * words;
-    }
+/// Cells first … last − 1 of one row.
+struct CellRun {
+    Index row = 0;
+    Index first = 0;
+    Index last = 0;
 };
 
-/// All cells that come closer than `margin` to a triangle (and a few more: the image is
-/// conservative). Triangles lie in the quarter plane x ≥ margin, y ≥ margin; coordinates are in
-/// units of length, `cell` is the width of a cell.
-BitImage rasterize(const std::vector<Triangle>& faces, const std::vector<Vec2>& points,
-                   double cell, double margin);
+struct WeightedRun {
+    CellRun cells;
+    Index weight = 1;
+};
+
+/// One chart in one orientation.
+struct ChartCells {
+    Index width = 0;     // cells
+    Index height = 0;    // cells
+    Index count = 0;     // set cells
+    double cosine = 1.0; // the rotation
+    double sine = 0.0;
+    Vec2 offset = Vec2::Zero(); // the translation after it that puts the chart on the image
+    std::vector<CellRun> runs;  // row by row, from left to right
+
+    /// What it costs others to lie on this chart: nested runs whose weights add up to about the
+    /// distance from the outline, so that a way out of an overlap is downhill.
+    std::vector<WeightedRun> obstacle;
+};
+
+/// All cells that touch the chart, turned by `angle` and grown by `margin` on all sides (and a few
+/// more: the image is conservative). The image is as small as possible; the obstacle is flat.
+ChartCells rasterize(const Outline& outline, double angle, double cell, double margin);
+
+/// The image on cells `factor` times as wide: the cells of which at least half is covered.
+/// Faithful on average, not conservative.
+ChartCells coarsen(const ChartCells& fine, Index factor);
 
 } // namespace devseg

@@ -13,6 +13,9 @@ namespace devseg {
 
 namespace {
 
+constexpr int smoothing_rounds = 4;
+constexpr double crease_cosine = 0.7; // of 45 degrees: sharper edges are features, not noise
+
 bool is_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
     const Index twin = mesh.twin[at(h)];
     return twin >= 0 && chart[at(h / 3)] != chart[at(twin / 3)];
@@ -93,13 +96,34 @@ std::vector<BorderSegment> find_border_segments(const Mesh& mesh,
 
 namespace {
 
+// Normals averaged over neighbours, but not across creases: single faces of a scan lean far to one
+// side, and would leave holes in the fuzzy area that the border has to wind around.
+std::vector<Vec3> smooth_normals(const Mesh& mesh) {
+    std::vector<Vec3> normals = mesh.face_normals;
+    for (int round = 0; round < smoothing_rounds; ++round) {
+        std::vector<Vec3> next(normals.size());
+        for (Index f = 0; f < mesh.face_count(); ++f) {
+            Vec3 sum = mesh.face_areas[at(f)] * normals[at(f)];
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh.twin[at(h)];
+                if (twin >= 0 && mesh.face_normals[at(f)].dot(mesh.face_normals[at(twin / 3)]) >
+                                     crease_cosine)
+                    sum += mesh.face_areas[at(twin / 3)] * normals[at(twin / 3)];
+            }
+            next[at(f)] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : normals[at(f)];
+        }
+        normals = std::move(next);
+    }
+    return normals;
+}
+
 // Straightens one border after the other. The scratch arrays are for the whole mesh and are put
 // back after each border, so that the cost follows the borders and not the mesh.
 class Straightener {
 public:
     Straightener(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
                  double max_fitting_error, std::vector<Index>& chart)
-        : mesh_(mesh), proxies_(proxies), max_fitting_error_(max_fitting_error), chart_(chart),
+        : mesh_(mesh), normals_(smooth_normals(mesh)), proxies_(proxies), max_fitting_error_(max_fitting_error), chart_(chart),
           fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
           distance_(mesh.points.size(), std::numeric_limits<double>::infinity()),
           arrival_(mesh.points.size(), -1), new_border_(mesh.twin.size(), 0),
@@ -158,7 +182,7 @@ private:
         }
     }
     bool fits(Index f, Index c) const {
-        return proxies_[at(c)].fitting_error(mesh_.face_normals[at(f)]) < max_fitting_error_;
+        return proxies_[at(c)].fitting_error(normals_[at(f)]) < max_fitting_error_;
     }
 
     // A vertex that a new border may pass: no other chart, no boundary and no other border of the
@@ -405,6 +429,7 @@ private:
     static constexpr std::uint8_t closed = 2;
 
     const Mesh& mesh_;
+    std::vector<Vec3> normals_; // #F
     const std::vector<ConicProxy>& proxies_;
     double max_fitting_error_;
     std::vector<Index>& chart_;

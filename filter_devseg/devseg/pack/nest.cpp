@@ -1,0 +1,214 @@
+#include "devseg/pack/nest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "devseg/parallel.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+// The coarse grid. Values are the best of those measured on the charts of 22 public meshes.
+constexpr double coarse_cells = 96.0; // along the square's side
+constexpr double most_coarse_cells = 512.0;
+constexpr double usual_charts = 20.0; // more charts are given more cells, by the square root
+constexpr Index supersampling = 4;    // cells that decide on one coarse cell, to a side
+constexpr int orientations = 32;
+constexpr int few_orientations = 8;           // of very many charts
+constexpr std::size_t many_charts = 40;       // from here on moves are short
+constexpr std::size_t very_many_charts = 250; // from here on the search begins on shelves
+constexpr double start_growth = 1.15;         // the first square, in sides of the guess
+constexpr double coarse_growth = 1.05;        // while the first square is too small
+constexpr double coarse_step = 0.04;          // first attempt at shrinking, as a share of the side
+constexpr double first_work = 3.0e8;          // operations to separate charts in the first square
+constexpr double coarse_work = 1.9e9;         // and in smaller and smaller squares
+constexpr double most_work_factor = 2.0;      // more for many charts, up to this factor
+constexpr int no_failure_limit = 1000;        // beyond what the work allows
+constexpr SeparationOptions coarse_moves{0, 8, 100};
+constexpr SeparationOptions many_moves{12, 4, 100};
+
+// The fine grid.
+constexpr double fine_cells = 768.0;
+constexpr double most_fine_cells = 3072.0;
+constexpr double fine_turn = 1.5 * pi / 180.0;
+constexpr int fine_turns = 2; // to each side
+constexpr double fine_growth = 1.005;
+constexpr double fine_step = 0.01;
+constexpr double fine_first_work = 5.0e7;
+constexpr double fine_work = 3.0e8;
+constexpr int fine_failures = 6;
+constexpr SeparationOptions fine_moves{7, 2 * fine_turns + 1, 40};
+
+// The distance to keep is a share of a side that is only known afterwards. The fine search assumes
+// one that is larger than the coarse square by this factor, and starts again if it was too small.
+constexpr double padding_reserve = 1.02;
+constexpr double padding_step = 1.1;
+
+// Charts from the largest box to the smallest.
+std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
+    std::vector<std::size_t> order(poses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const ChartCells& p = poses[a].front();
+        const ChartCells& q = poses[b].front();
+        return p.width * p.height > q.width * q.height;
+    });
+    return order;
+}
+
+std::vector<std::size_t> by_height(const std::vector<ChartPoses>& poses) {
+    std::vector<std::size_t> order(poses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return poses[a].front().height > poses[b].front().height;
+    });
+    return order;
+}
+
+Frame frame_of(double side, double aspect) {
+    return {static_cast<Index>(side), std::max(Index{1}, static_cast<Index>(side * aspect))};
+}
+
+// A square that shrinks as long as the charts can be separated.
+class Shrinking {
+public:
+    Shrinking(const std::vector<ChartPoses>& poses, double aspect, const SeparationOptions& options,
+              std::uint64_t seed, const Progress& progress)
+        : poses_(poses), aspect_(aspect), options_(options), separation_(poses, seed, progress) {}
+
+    Layout layout;
+    Index side = 0; // cells; of the frame's width
+
+    // Finds a first feasible square, from `start` cells upwards. An empty layout is made anew.
+    void grow(double start, double factor, double work) {
+        for (int attempt = 0;; ++attempt, start *= factor) {
+            const Frame frame = frame_of(start, aspect_);
+            // Shelves are the last resort: they succeed as soon as the frame is large enough.
+            const bool shelves = poses_.size() > very_many_charts && layout.empty();
+            if (shelves || attempt >= patient_attempts) {
+                layout = separation_.fill_shelves(by_height(poses_), frame);
+                factor = shelf_growth;
+            } else if (layout.empty()) {
+                layout = separation_.insert_all(by_size(poses_), frame, options_);
+            }
+            if (layout.empty())
+                continue;
+            auto budget = static_cast<std::int64_t>(work);
+            if (separation_.run(layout, frame, options_, budget)) {
+                side = frame.width;
+                return;
+            }
+        }
+    }
+
+    void shrink(double step, double work, int failures) {
+        auto budget = static_cast<std::int64_t>(work);
+        while (budget > 0 && failures > 0) {
+            const Index next = side - std::max(Index{1}, static_cast<Index>(side * step));
+            if (!separation_.fits(frame_of(next, aspect_)) && side - next == 1)
+                return;
+            if (separation_.run(layout, frame_of(next, aspect_), options_, budget)) {
+                side = next;
+            } else {
+                step *= 0.5;
+                --failures;
+            }
+        }
+    }
+
+private:
+    static constexpr int patient_attempts = 8;
+    static constexpr double shelf_growth = 1.05;
+
+    const std::vector<ChartPoses>& poses_;
+    double aspect_;
+    SeparationOptions options_;
+    Separation separation_;
+};
+
+// The same layout on a finer grid, where charts may turn a little.
+std::vector<ChartPoses> refine(const NestProblem& problem, Layout& layout, double cell,
+                               double margin) {
+    std::vector<ChartPoses> poses(layout.size());
+    const int turns = problem.allow_rotation ? fine_turns : 0;
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        const ChartCells& coarse = problem.poses[i][layout[i].pose];
+        for (int k = -turns; k <= turns; ++k)
+            poses[i].push_back(rasterize(problem.outlines[i],
+                                         std::atan2(coarse.sine, coarse.cosine) + k * fine_turn,
+                                         cell, margin));
+        layout[i].pose = static_cast<std::size_t>(turns);
+        layout[i].x = static_cast<Index>(layout[i].x * problem.cell / cell);
+        layout[i].y = static_cast<Index>(layout[i].y * problem.cell / cell);
+    }
+    return poses;
+}
+
+} // namespace
+
+void prepare(NestProblem& problem, Progress& progress) {
+    const std::size_t n = problem.outlines.size();
+    const double crowd = std::max(1.0, static_cast<double>(n) / usual_charts);
+    problem.cell = problem.side / std::min(most_coarse_cells, coarse_cells * std::sqrt(crowd));
+    const int turns = !problem.allow_rotation ? 1
+                      : n <= very_many_charts ? orientations
+                                              : few_orientations;
+    problem.poses.resize(problem.outlines.size());
+    const double margin = 0.5 * problem.padding * problem.side;
+    parallel_for(
+        static_cast<int>(n),
+        [&](int i) {
+            const Outline& outline = problem.outlines[at(i)];
+            const double base = problem.allow_rotation ? best_box_angle(outline) : 0.0;
+            for (int k = 0; k < turns; ++k)
+                problem.poses[at(i)].push_back(
+                    coarsen(rasterize(outline, base + 2.0 * pi * k / turns,
+                                      problem.cell / supersampling, margin),
+                            supersampling));
+        },
+        progress);
+}
+
+std::vector<Placement> nest(const NestProblem& problem, double aspect, std::uint64_t seed,
+                            const Progress& progress) {
+    const std::size_t n = problem.outlines.size();
+    const double crowd = std::max(1.0, static_cast<double>(n) / usual_charts);
+    const double work_factor = std::min(crowd / 10.0, most_work_factor);
+    const double longer = std::max(1.0, aspect); // side of the frame, in widths
+
+    Shrinking coarse(problem.poses, aspect, n > many_charts ? many_moves : coarse_moves, seed,
+                     progress);
+    coarse.grow(start_growth * problem.side / problem.cell / std::sqrt(aspect), coarse_growth,
+                first_work);
+    coarse.shrink(coarse_step, coarse_work * std::max(1.0, work_factor), no_failure_limit);
+
+    const double side = coarse.side * problem.cell;
+    const double cells = std::min(most_fine_cells, fine_cells * std::sqrt(crowd));
+    const double cell = side / cells;
+    for (double assumed = padding_reserve * side * longer;; assumed *= padding_step) {
+        Layout layout = coarse.layout;
+        const std::vector<ChartPoses> poses =
+            refine(problem, layout, cell, 0.5 * problem.padding * assumed);
+        Shrinking fine(poses, aspect, fine_moves, seed, progress);
+        fine.layout = std::move(layout);
+        fine.grow(cells, fine_growth, fine_first_work * crowd);
+        if (cell * fine.side * longer > assumed)
+            continue;
+        fine.shrink(fine_step, fine_work * std::max(1.0, work_factor), fine_failures);
+        std::vector<Placement> placements(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Spot& spot = fine.layout[i];
+            const ChartCells& c = poses[i][spot.pose];
+            placements[i].cosine = c.cosine;
+            placements[i].sine = c.sine;
+            placements[i].offset = c.offset + cell * Vec2(spot.x, spot.y);
+        }
+        return placements;
+    }
+}
+
+} // namespace devseg

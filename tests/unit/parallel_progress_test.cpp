@@ -1,0 +1,241 @@
+#include <atomic>
+#include <chrono>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "devseg/errors.h"
+#include "devseg/parallel.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class ParallelFor : public testing::Test {
+protected:
+    void TearDown() override { set_thread_limit(0); }
+};
+
+TEST_F(ParallelFor, RunsEveryIndexOnce) {
+    for (const int threads : {0, 1, 2, 7})
+        for (const int count : {0, 1, 2, 3, 100, 5000}) {
+            set_thread_limit(threads);
+            std::vector<std::atomic<int>> runs(static_cast<std::size_t>(count));
+            Progress progress;
+            parallel_for(
+                count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; }, progress);
+            for (const std::atomic<int>& n : runs)
+                ASSERT_EQ(n, 1);
+        }
+}
+
+TEST_F(ParallelFor, StartsTheLowestIndexFirst) {
+    set_thread_limit(1);
+    std::vector<int> order;
+    Progress progress;
+    parallel_for(
+        50, [&](int i) { order.push_back(i); }, progress);
+    for (int i = 0; i < 50; ++i)
+        EXPECT_EQ(order.at(static_cast<std::size_t>(i)), i);
+}
+
+TEST_F(ParallelFor, UsesNoMoreThreadsThanAllowed) {
+    for (const int threads : {1, 2, 3}) {
+        set_thread_limit(threads);
+        std::atomic<int> running{0};
+        std::atomic<int> most{0};
+        Progress progress;
+        parallel_for(
+            40,
+            [&](int) {
+                const int now = ++running;
+                for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+                }
+                std::this_thread::sleep_for(std::chrono::microseconds(300));
+                --running;
+            },
+            progress);
+        EXPECT_LE(most, threads);
+        EXPECT_GE(most, 1);
+    }
+}
+
+TEST_F(ParallelFor, ThrowsWhatTheLowestFailingIndexThrew) {
+    for (const int threads : {1, 2, 4}) {
+        set_thread_limit(threads);
+        for (int run = 0; run < 200; ++run) {
+            Progress progress;
+            try {
+                parallel_for(
+                    60,
+                    [&](int i) {
+                        if (i == 20) // the lower one fails later
+                            std::this_thread::sleep_for(std::chrono::microseconds(200));
+                        if (i == 20 || i == 21 || i > 40)
+                            throw InvalidParameter(std::to_string(i));
+                    },
+                    progress);
+                FAIL() << "no exception";
+            } catch (const InvalidParameter& error) {
+                ASSERT_STREQ(error.what(), "20");
+            }
+        }
+    }
+}
+
+// Index 0 must be reported, however the threads are scheduled.
+TEST_F(ParallelFor, ReportsTheLowestIndexWhenAllFail) {
+    set_thread_limit(8);
+    for (int run = 0; run < 300; ++run) {
+        Progress progress;
+        try {
+            parallel_for(
+                8, [](int i) { throw InvalidParameter(std::to_string(i)); }, progress);
+            FAIL() << "no exception";
+        } catch (const InvalidParameter& error) {
+            ASSERT_STREQ(error.what(), "0") << "run " << run;
+        }
+    }
+}
+
+TEST_F(ParallelFor, StopsAfterAFailure) {
+    set_thread_limit(2);
+    std::atomic<int> started{0};
+    Progress progress;
+    EXPECT_THROW(parallel_for(
+                     100000,
+                     [&](int i) {
+                         ++started;
+                         if (i == 10)
+                             throw InvalidParameter("ten");
+                         std::this_thread::sleep_for(std::chrono::microseconds(20));
+                     },
+                     progress),
+                 InvalidParameter);
+    EXPECT_LT(started, 50000);
+}
+
+TEST_F(ParallelFor, CancelsWithinATenthOfASecondWhenTasksPoll) {
+    for (const int threads : {1, 2, 4}) {
+        set_thread_limit(threads);
+        std::atomic<bool> stop{false};
+        Progress progress([&](double, const char*) { return !stop.load(); });
+        std::thread user([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            stop = true;
+        });
+        Clock::time_point asked;
+        std::thread clock([&] {
+            while (!stop)
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+            asked = Clock::now();
+        });
+        EXPECT_THROW(parallel_for(
+                         4,
+                         [&](int) { // longer than anyone would wait
+                             const auto end = Clock::now() + std::chrono::seconds(20);
+                             while (!progress.cancelled() && Clock::now() < end)
+                                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                         },
+                         progress),
+                     Cancelled);
+        const auto ended = Clock::now();
+        user.join();
+        clock.join();
+        EXPECT_LT(ended - asked, std::chrono::milliseconds(100)) << threads;
+        EXPECT_TRUE(progress.cancelled());
+    }
+}
+
+TEST_F(ParallelFor, ReportsProgressFromTheCallingThreadOnly) {
+    set_thread_limit(2);
+    std::set<std::thread::id> callers;
+    std::vector<double> fractions;
+    Progress progress([&](double fraction, const char*) {
+        callers.insert(std::this_thread::get_id());
+        fractions.push_back(fraction);
+        return true;
+    });
+    progress.begin_phase("work", 1.0);
+    parallel_for(
+        50, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(4)); }, progress);
+    EXPECT_EQ(callers, std::set<std::thread::id>{std::this_thread::get_id()});
+    EXPECT_GE(fractions.size(), 3U);
+    EXPECT_GT(fractions.back(), 0.5);
+}
+
+TEST_F(ParallelFor, PassesOnWhatTheHostsCallbackThrows) {
+    Progress progress([](double, const char*) -> bool { throw std::runtime_error("the host"); });
+    std::atomic<int> done{0};
+    EXPECT_THROW(parallel_for(
+                     3, [&](int) { ++done; }, progress),
+                 std::runtime_error);
+    EXPECT_LE(done, 3);
+}
+
+TEST(Progress, FractionsNeverGoBackAndPhasesAddUp) {
+    std::vector<std::pair<double, std::string>> calls;
+    Progress progress([&](double fraction, const char* phase) {
+        calls.emplace_back(fraction, phase);
+        return true;
+    });
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(25)); };
+    progress.begin_phase("first", 0.25);
+    wait();
+    progress.update(0.5);
+    wait();
+    progress.update(0.2); // a worse guess than before
+    progress.begin_phase("second", 0.5);
+    wait();
+    progress.update(1.0);
+    progress.begin_phase("third", 5.0); // more than is left
+    wait();
+    progress.update(7.0);
+    const std::vector<std::pair<double, std::string>> expected = {
+        {0.0, "first"},   {0.125, "first"}, {0.125, "first"}, {0.25, "second"},
+        {0.75, "second"}, {0.75, "third"},  {1.0, "third"}};
+    EXPECT_EQ(calls, expected);
+}
+
+TEST(Progress, CallsAreNotMoreFrequentThanAHostCanShow) {
+    int calls = 0;
+    Progress progress([&](double, const char*) { return ++calls > 0; });
+    progress.begin_phase("work", 1.0);
+    const auto end = Clock::now() + std::chrono::milliseconds(110);
+    while (Clock::now() < end)
+        progress.update(0.5);
+    EXPECT_GE(calls, 2);
+    EXPECT_LE(calls, 7);
+}
+
+TEST(Progress, OnceCancelledItStaysCancelled) {
+    int calls = 0;
+    Progress progress([&](double, const char*) {
+        ++calls;
+        return false;
+    });
+    EXPECT_FALSE(progress.cancelled());
+    EXPECT_NO_THROW(progress.check());
+    EXPECT_THROW(progress.begin_phase("work", 1.0), Cancelled);
+    EXPECT_TRUE(progress.cancelled());
+    EXPECT_THROW(progress.check(), Cancelled);
+    EXPECT_THROW(progress.update(0.5), Cancelled);
+    EXPECT_THROW(progress.begin_phase("more", 1.0), Cancelled);
+    EXPECT_EQ(calls, 1); // the host is not asked again
+}
+
+TEST(Progress, WithoutAHostThereIsNothingToCancel) {
+    Progress progress;
+    progress.begin_phase("work", 1.0);
+    progress.update(1.0);
+    progress.check();
+    EXPECT_FALSE(progress.cancelled());
+}
+
+} // namespace
+} // namespace devseg
