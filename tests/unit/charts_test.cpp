@@ -34,8 +34,8 @@ std::vector<std::uint8_t> seams_where(const Mesh& mesh, Cut cut) {
 // A grid of 8 × 8 over [−½, ½]² internal units: edges along x = 0.
 std::vector<std::uint8_t> slit(const Mesh& mesh, double from, double to) {
     return seams_where(mesh, [&](const Vec3& middle, const Vec3& direction) {
-        return std::abs(direction.x()) < 1e-9 && std::abs(middle.x()) < 1e-9 &&
-               middle.y() > from && middle.y() < to;
+        return std::abs(direction.x()) < 1e-9 && std::abs(middle.x()) < 1e-9 && middle.y() > from &&
+               middle.y() < to;
     });
 }
 
@@ -227,7 +227,7 @@ TEST(ChartsFromUv, CoordinatesThatAgreeAreNoSeams) {
     const Mesh mesh = checks::gated(shapes::grid(6, 6));
     CornerUv uv = uv_of(mesh);
     EXPECT_EQ(charts_from_uv(mesh, uv).count, 1);
-    const double size = std::sqrt(2.0); // of the layout, which is [−½, ½]²
+    const double size = std::sqrt(2.0);  // of the layout, which is [−½, ½]²
     uv[at(3 * 20)].x() += 0.9e-6 * size; // within the rounding of writers
     const auto seams = [&] {
         const ChartMap charts = charts_from_uv(mesh, uv);

@@ -41,9 +41,9 @@ std::vector<Sample> cone_normals(const Vec3& axis, double angle, double span, in
     std::vector<Sample> samples;
     for (int i = 0; i < count; ++i) {
         const double t = random.uniform(0.0, span);
-        samples.push_back({random.uniform(0.1, 2.0),
-                           std::cos(angle) * axis +
-                               std::sin(angle) * (std::cos(t) * u + std::sin(t) * v)});
+        samples.push_back(
+            {random.uniform(0.1, 2.0),
+             std::cos(angle) * axis + std::sin(angle) * (std::cos(t) * u + std::sin(t) * v)});
     }
     return samples;
 }
@@ -67,8 +67,8 @@ TEST(FitConic, APlaneTakesItsNormal) {
         const Vec3 normal = random.direction();
         std::vector<Sample> samples;
         for (int i = 0; i < 20; ++i) // as rounding leaves it
-            samples.push_back({random.uniform(0.1, 2.0),
-                               (normal + 1e-8 * random.direction()).normalized()});
+            samples.push_back(
+                {random.uniform(0.1, 2.0), (normal + 1e-8 * random.direction()).normalized()});
         const ConicProxy proxy = fit_conic(moments_of(samples));
         EXPECT_LT((proxy.axis - normal).norm(), 1e-7);
         EXPECT_NEAR(proxy.cos_angle, 1.0, 1e-12);
@@ -143,7 +143,8 @@ TEST(FitConic, AreasAreWeightsOnly) {
 }
 
 TEST(FitConic, WithoutAreaTheProxyIsStillUsable) {
-    for (const ConicProxy& proxy : {fit_conic(NormalMoments{}), fit_conic(moments_of({{0.0, Vec3::UnitX()}}))}) {
+    for (const ConicProxy& proxy :
+         {fit_conic(NormalMoments{}), fit_conic(moments_of({{0.0, Vec3::UnitX()}}))}) {
         EXPECT_NEAR(proxy.axis.norm(), 1.0, 1e-12);
         EXPECT_TRUE(std::abs(proxy.cos_angle) <= 1.0);
     }

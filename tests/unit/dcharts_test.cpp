@@ -69,10 +69,15 @@ double largest_error(const DChartsResult& r) {
 }
 
 TEST(DCharts, KeepsItsPromisesOnManyShapes) {
-    const std::vector<RawMesh> all = {
-        shapes::grid(9, 7),          shapes::sphere(3),         noisy_torus(),
-        shapes::double_torus(),      shapes::cube(4),           shapes::tetrahedron(),
-        shapes::moebius_strip(30, 3), shapes::plate_with_handle(), shapes::finger(12, 20, 1.0, 9.0)};
+    const std::vector<RawMesh> all = {shapes::grid(9, 7),
+                                      shapes::sphere(3),
+                                      noisy_torus(),
+                                      shapes::double_torus(),
+                                      shapes::cube(4),
+                                      shapes::tetrahedron(),
+                                      shapes::moebius_strip(30, 3),
+                                      shapes::plate_with_handle(),
+                                      shapes::finger(12, 20, 1.0, 9.0)};
     for (std::size_t i = 0; i < all.size(); ++i) {
         SCOPED_TRACE("shape " + std::to_string(i));
         const Mesh mesh = checks::gated(all[i]);
@@ -213,9 +218,9 @@ TEST(DCharts, SizeAndPlaceDoNotMatter) {
     const RawMesh raw = noisy_torus();
     const std::vector<Index> expected = segment(checks::gated(raw), charts(7)).chart;
     for (const double scale : {1e-9, 1e9})
-        EXPECT_EQ(segment(checks::gated(shapes::moved(raw, scale, Vec3(scale, 0, 0))), charts(7))
-                      .chart,
-                  expected);
+        EXPECT_EQ(
+            segment(checks::gated(shapes::moved(raw, scale, Vec3(scale, 0, 0))), charts(7)).chart,
+            expected);
 }
 
 TEST(DCharts, WeightsOfZeroAndTenAreAccepted) {

@@ -40,8 +40,8 @@ TEST(CutLength, AnAnnulusIsCutAlongTheShortestPathBetweenItsLoops) {
         std::fill(distance.begin(), distance.begin() + 16, 0.0);
         for (std::size_t round = 0; round < mesh.points.size(); ++round)
             for (Index h = 0; h < mesh.half_edge_count(); ++h)
-                for (const auto& [a, b] : {std::pair(mesh.origin(h), mesh.target(h)),
-                                           {mesh.target(h), mesh.origin(h)}})
+                for (const auto& [a, b] :
+                     {std::pair(mesh.origin(h), mesh.target(h)), {mesh.target(h), mesh.origin(h)}})
                     distance[at(b)] =
                         std::min(distance[at(b)], distance[at(a)] + mesh.edge_length(h));
         const double shortest = *std::min_element(distance.begin() + 80, distance.end());
@@ -119,8 +119,10 @@ double shortest_cut(const Mesh& mesh, Index around, Index tube) {
 }
 
 TEST(CutLength, ATorusIsCutNearlyAsShortAsCanBe) {
-    for (const auto& [around, tube, large, small] :
-         {std::tuple(24, 12, 2.0, 1.0), {16, 16, 3.0, 1.0}, {20, 8, 5.0, 0.5}, {12, 20, 2.0, 1.5}}) {
+    for (const auto& [around, tube, large, small] : {std::tuple(24, 12, 2.0, 1.0),
+                                                     {16, 16, 3.0, 1.0},
+                                                     {20, 8, 5.0, 0.5},
+                                                     {12, 20, 2.0, 1.5}}) {
         const Mesh mesh = checks::gated(shapes::torus(around, tube, large, small));
         const double shortest = shortest_cut(mesh, around, tube);
         const double found = cut(mesh).cut_length;

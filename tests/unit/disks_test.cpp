@@ -53,12 +53,20 @@ void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts
 }
 
 TEST(CutToDisks, EveryShapeBecomesADisk) {
-    std::vector<RawMesh> all = {
-        shapes::torus(12, 8),         shapes::double_torus(),          shapes::annulus(12, 3, 1, 2),
-        shapes::sphere(0),            shapes::sphere(3),               shapes::tetrahedron(),
-        shapes::cube(3),              shapes::cylinder_tube(10, 6),    shapes::moebius_strip(24, 3),
-        shapes::moebius_strip(9),     shapes::plate_with_handle(),     shapes::torus(3, 3),
-        shapes::cylinder_tube(3, 1),  shapes::capped_cylinder(8, 3)};
+    std::vector<RawMesh> all = {shapes::torus(12, 8),
+                                shapes::double_torus(),
+                                shapes::annulus(12, 3, 1, 2),
+                                shapes::sphere(0),
+                                shapes::sphere(3),
+                                shapes::tetrahedron(),
+                                shapes::cube(3),
+                                shapes::cylinder_tube(10, 6),
+                                shapes::moebius_strip(24, 3),
+                                shapes::moebius_strip(9),
+                                shapes::plate_with_handle(),
+                                shapes::torus(3, 3),
+                                shapes::cylinder_tube(3, 1),
+                                shapes::capped_cylinder(8, 3)};
     for (const Index holes : {1, 2, 5, 9}) {
         all.push_back(shapes::plate(shapes::mask_with_holes(holes)));
         all.push_back(shapes::slab(shapes::mask_with_holes(holes)));
@@ -94,8 +102,8 @@ TEST(CutToDisks, RandomChartsOnRandomSurfaces) {
         for (std::string& row : mask)
             for (char& cell : row)
                 cell = random.below(5) == 0 ? '.' : '#';
-        const Mesh mesh = checks::gated(
-            shapes::with_noise(seed % 2 == 0 ? shapes::slab(mask) : shapes::plate(mask), 0.1, seed));
+        const Mesh mesh = checks::gated(shapes::with_noise(
+            seed % 2 == 0 ? shapes::slab(mask) : shapes::plate(mask), 0.1, seed));
         std::vector<Index> labels;
         for (const Vec3& centre : mesh.face_centers)
             labels.push_back(static_cast<Index>(std::floor(3.0 * centre.x() + centre.z())));

@@ -1,5 +1,4 @@
-// The rules that every declared filter keeps; see docs/architecture.md.
-#include <algorithm>
+// The rules that the declaration of every filter keeps.
 #include <cctype>
 #include <limits>
 #include <regex>
@@ -9,8 +8,6 @@
 
 #include "devseg/filters/filter.h"
 #include "unit/checks.h"
-#include "unit/mesh_edits.h"
-#include "unit/shapes.h"
 
 namespace devseg {
 namespace {
@@ -55,10 +52,9 @@ TEST(FilterTable, HelpHasTwoPartsAndMethodsNameTheirSource) {
         EXPECT_GE(filter.help.size(), 100U);
         EXPECT_TRUE(contains(filter.help, "<br>"));
         EXPECT_EQ(filter.help.find("  "), std::string::npos);
-        const bool is_method =
-            std::regex_search(filter.python_name,
-                              std::regex("^(compute_(segmentation|texcoord|seams)_|"
-                                         "get_parametrization_)"));
+        const bool is_method = std::regex_search(
+            filter.python_name, std::regex("^(compute_(segmentation|texcoord|seams)_|"
+                                           "get_parametrization_)"));
         if (is_method || filter.help.find("See:") != std::string::npos) {
             EXPECT_TRUE(std::regex_search(filter.help, reference)) << filter.help;
         }
@@ -130,187 +126,6 @@ TEST(FilterTable, ResultsAreDescribed) {
             EXPECT_TRUE(is_snake_case(r.name));
             EXPECT_GE(r.meaning.size(), 6U);
         }
-    }
-}
-
-// A mesh with everything that filters read: a noisy torus, segmented and flattened.
-HostMesh prepared() {
-    HostMesh host;
-    host.geometry = shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4);
-    Progress progress;
-    const auto run = [&](const char* name) {
-        for (const FilterDeclaration& filter : filter_table())
-            if (filter.menu_name == name)
-                return run_filter(filter, host, {}, progress);
-        throw std::logic_error("no such filter");
-    };
-    const HostResult flat = run("Charts: Flatten");
-    host.wedge_uv = flat.wedge_uv;
-    const HostResult segmented = run("Segmentation: D-Charts");
-    host.chart_id.assign(segmented.chart_id.begin(), segmented.chart_id.end());
-    host.seam_edges.assign(segmented.seam_edges.begin(), segmented.seam_edges.end());
-    return host;
-}
-
-HostResult run(const FilterDeclaration& filter, const HostMesh& host, const ParameterValues& values) {
-    Progress progress;
-    return run_filter(filter, host, values, progress);
-}
-
-TEST(FilterTable, FiltersReturnAndWriteWhatTheyDeclare) {
-    const HostMesh host = prepared();
-    const std::size_t faces = host.geometry.faces.size();
-    for (const FilterDeclaration& filter : filter_table()) {
-        SCOPED_TRACE(filter.menu_name);
-        const HostResult r = run(filter, host, {});
-        std::vector<std::string> declared;
-        std::vector<std::string> returned;
-        for (const ResultField& field : filter.results)
-            declared.push_back(field.name);
-        for (const auto& [name, value] : r.values) {
-            returned.push_back(name);
-            const bool is_count = name.size() > 7 && name.substr(name.size() - 7) == "_number";
-            EXPECT_EQ(is_count, std::holds_alternative<int>(value)) << name;
-        }
-        EXPECT_EQ(returned, declared);
-        const auto expect_written = [&](unsigned what, std::size_t size) {
-            EXPECT_EQ(size, (filter.writes & what) != 0 ? faces : 0U) << what;
-        };
-        expect_written(writes_charts, r.chart_id.size());
-        expect_written(writes_charts, r.seam_edges.size());
-        expect_written(writes_quality, r.face_quality.size());
-        expect_written(writes_color, r.face_color.size());
-        expect_written(writes_uv, r.wedge_uv.size());
-    }
-}
-
-bool same(const HostResult& a, const HostResult& b) {
-    return a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
-           a.face_quality == b.face_quality && a.face_color == b.face_color &&
-           a.wedge_uv == b.wedge_uv;
-}
-
-TEST(FilterTable, TheSameInputGivesTheSameResult) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        const HostResult a = run(filter, host, {});
-        const HostResult b = run(filter, host, {});
-        EXPECT_TRUE(same(a, b)) << filter.menu_name;
-        EXPECT_EQ(a.values, b.values) << filter.menu_name;
-    }
-}
-
-TEST(FilterTable, DefaultsAreTheDeclaredOnes) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        ParameterValues all;
-        for (const Parameter& p : filter.parameters)
-            all[p.name] = p.default_value;
-        EXPECT_TRUE(same(run(filter, host, {}), run(filter, host, all))) << filter.menu_name;
-    }
-}
-
-// Another value in the range, as different as can be.
-ParameterValue other_value(const Parameter& p) {
-    const double now = number(p.default_value);
-    switch (p.kind) {
-    case ParameterKind::boolean: return now == 0.0;
-    case ParameterKind::choice: return now == 0.0 ? 1 : 0;
-    case ParameterKind::integer: return static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum);
-    case ParameterKind::real: break;
-    }
-    return p.maximum;
-}
-
-TEST(FilterTable, EveryParameterChangesTheResult) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        const HostResult plain = run(filter, host, {});
-        for (const Parameter& p : filter.parameters)
-            EXPECT_FALSE(same(plain, run(filter, host, {{p.name, other_value(p)}})))
-                << filter.menu_name << ", " << p.name;
-    }
-}
-
-TEST(FilterTable, NumbersOutOfRangeAreRefusedByName) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table())
-        for (const Parameter& p : filter.parameters) {
-            if (p.kind != ParameterKind::integer && p.kind != ParameterKind::real)
-                continue;
-            SCOPED_TRACE(filter.menu_name + ", " + p.name);
-            const auto refused = [&](const ParameterValue& value) {
-                const std::string text = checks::error_of<InvalidParameter>(
-                    [&] { run(filter, host, {{p.name, value}}); });
-                EXPECT_EQ(text.rfind(p.name + ": expected ", 0), 0U) << text;
-                EXPECT_TRUE(contains(text, "found "));
-            };
-            if (p.kind == ParameterKind::integer) {
-                refused(static_cast<int>(p.minimum) - 1);
-                if (p.maximum < 1e6) {
-                    refused(static_cast<int>(p.maximum) + 1);
-                }
-            } else {
-                refused(p.minimum - 1.0);
-                refused(p.maximum + 1.0);
-                refused(std::numeric_limits<double>::quiet_NaN());
-            }
-        }
-}
-
-TEST(FilterTable, DISABLED_ChoicesOutOfRangeAreRefused) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table())
-        for (const Parameter& p : filter.parameters) {
-            if (p.kind != ParameterKind::choice)
-                continue;
-            for (const int value : {-1, static_cast<int>(p.choices.size())})
-                EXPECT_THROW(run(filter, host, {{p.name, value}}), InvalidParameter)
-                    << filter.menu_name << ", " << p.name << ' ' << value;
-        }
-}
-
-TEST(FilterTable, FiltersOnTextureCoordinatesAskForThem) {
-    HostMesh host;
-    host.geometry = shapes::sphere(1);
-    for (const FilterDeclaration& filter : filter_table()) {
-        if (!filter.needs_uv) {
-            EXPECT_NO_THROW(run(filter, host, {})) << filter.menu_name;
-            continue;
-        }
-        const std::string text =
-            checks::error_of<InvalidMesh>([&] { run(filter, host, {}); });
-        EXPECT_TRUE(contains(text, "expected wedge texture coordinates, found none"));
-        EXPECT_TRUE(contains(text, "Charts: Flatten"));
-    }
-}
-
-TEST(FilterTable, EveryFilterCanBeCancelled) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        int calls = 0;
-        Progress progress([&](double, const char*) { return ++calls < 1; });
-        try {
-            run_filter(filter, host, {}, progress);
-            EXPECT_EQ(calls, 0) << filter.menu_name; // over before the host could be asked
-        } catch (const Cancelled&) {
-            EXPECT_EQ(calls, 1);
-        }
-    }
-}
-
-TEST(FilterTable, ProgressNeverGoesBackAndPhasesHaveNames) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        double last = 0.0;
-        Progress progress([&](double fraction, const char* phase) {
-            EXPECT_GE(fraction, last);
-            EXPECT_LE(fraction, 1.0);
-            last = fraction;
-            EXPECT_NE(std::string(phase), "") << filter.menu_name;
-            return true;
-        });
-        run_filter(filter, host, {}, progress);
     }
 }
 

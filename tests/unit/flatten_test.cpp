@@ -178,11 +178,11 @@ TEST(Flatten, SizeAndPlaceDoNotMatter) {
 
 TEST(Flatten, ChartsThatAreNoDisksAreRefused) {
     const Mesh mesh = checks::gated(shapes::torus(8, 6));
-    EXPECT_TRUE(checks::contains(
-        checks::error_of<NumericalFailure>([&] {
-            flatten(mesh, checks::components(mesh), FlattenMethod::symmetric_dirichlet);
-        }),
-        "Charts: Cut to Disks"));
+    EXPECT_TRUE(checks::contains(checks::error_of<NumericalFailure>([&] {
+                                     flatten(mesh, checks::components(mesh),
+                                             FlattenMethod::symmetric_dirichlet);
+                                 }),
+                                 "Charts: Cut to Disks"));
 }
 
 TEST(Flatten, HardChartsEndInAMapOrAClearFailure) {
@@ -202,8 +202,7 @@ TEST(Flatten, HardChartsEndInAMapOrAClearFailure) {
 
 // A tube that is closed at one end is a disk, and so it is not cut; it should still be flattened.
 TEST(Flatten, DISABLED_LongClosedTubesAreFlattened) {
-    const Mesh mesh =
-        checks::gated(shapes::with_noise(shapes::finger(6, 60, 1.0, 60.0), 0.02, 3));
+    const Mesh mesh = checks::gated(shapes::with_noise(shapes::finger(6, 60, 1.0, 60.0), 0.02, 3));
     const ChartMap charts = checks::components_cut_to_disks(mesh);
     expect_promises(mesh, charts, flatten(mesh, charts, FlattenMethod::symmetric_dirichlet));
 }

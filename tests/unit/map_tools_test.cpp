@@ -27,8 +27,8 @@ struct LatticePoint {
 };
 
 int exact_sign(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
-    const Wide determinant = static_cast<Wide>(b.x - a.x) * (c.y - a.y) -
-                             static_cast<Wide>(b.y - a.y) * (c.x - a.x);
+    const Wide determinant =
+        static_cast<Wide>(b.x - a.x) * (c.y - a.y) - static_cast<Wide>(b.y - a.y) * (c.x - a.x);
     return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
 }
 
@@ -208,9 +208,9 @@ TEST(RestShape, TheBoundaryRunsCounterclockwiseOnceAround) {
 
 TEST(RestShape, FacesWithoutAreaStayFinite) {
     RawMesh raw = shapes::grid(4, 4);
-    raw.points[6] = raw.points[7];                      // two corners coincide
+    raw.points[6] = raw.points[7];                            // two corners coincide
     raw.points[11] = 0.5 * (raw.points[10] + raw.points[12]); // already so: on a line
-    raw.points[16] = raw.points[17] = raw.points[18];   // three do
+    raw.points[16] = raw.points[17] = raw.points[18];         // three do
     const Disk disk(raw);
     for (std::size_t f = 0; f < disk.problem.faces.size(); ++f) {
         EXPECT_GT(disk.problem.area[f], 0.0);

@@ -30,9 +30,9 @@ CornerUv soup(Random& random, int count, double size, bool slivers) {
         const double thin = slivers && random.below(3) == 0 ? 1e-3 : 1.0;
         const double turn = random.uniform(0.0, 2.0 * pi);
         for (int k = 0; k < 3; ++k) // any orientation
-            uv.push_back(centre + Eigen::Rotation2Dd(turn) *
-                                      Vec2(size * random.uniform(-1.0, 1.0),
-                                           thin * size * random.uniform(-1.0, 1.0)));
+            uv.push_back(centre +
+                         Eigen::Rotation2Dd(turn) * Vec2(size * random.uniform(-1.0, 1.0),
+                                                         thin * size * random.uniform(-1.0, 1.0)));
     }
     return uv;
 }
@@ -124,7 +124,8 @@ TEST(OverlappingPairs, PlaneTriangulationsHaveNone) {
             CornerUv scaled = uv;
             for (Vec2& p : scaled)
                 p = checks::single(scale * p); // as hosts store them
-            EXPECT_EQ(find_overlapping_faces(scaled), std::vector<std::uint8_t>(raw.faces.size(), 0));
+            EXPECT_EQ(find_overlapping_faces(scaled),
+                      std::vector<std::uint8_t>(raw.faces.size(), 0));
         }
     }
 }

@@ -51,8 +51,8 @@ Shape star(Random& random, double size) {
     shape.points.push_back(Vec2(random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0)));
     for (Index i = 0; i < corners; ++i) {
         const double t = 2.0 * pi * i / corners;
-        shape.points.push_back(shape.points[0] + size * random.uniform(0.3, 1.0) *
-                                                     Vec2(std::cos(t), std::sin(t)));
+        shape.points.push_back(shape.points[0] +
+                               size * random.uniform(0.3, 1.0) * Vec2(std::cos(t), std::sin(t)));
         shape.faces.push_back({0, 1 + i, 1 + (i + 1) % corners});
     }
     return shape;
@@ -164,8 +164,8 @@ TEST(Pack, ATurnedRectangleIsPutUpright) {
     for (Vec2& p : shape.points)
         p = turn * p;
     EXPECT_NEAR(pack({shape}, PackOptions{0.0, true}).side, 3.0, 1e-9);
-    EXPECT_NEAR(pack({shape}, PackOptions{0.0, false}).side,
-                3.0 * (std::cos(0.6) + std::sin(0.6)), 1e-9);
+    EXPECT_NEAR(pack({shape}, PackOptions{0.0, false}).side, 3.0 * (std::cos(0.6) + std::sin(0.6)),
+                1e-9);
 }
 
 TEST(Pack, OneChartFillsTheSquareUpToThePadding) {
@@ -203,7 +203,8 @@ TEST(Pack, RandomStarsUseMostOfTheSquare) {
 }
 
 TEST(Pack, AHoleIsUsedBySmallerCharts) {
-    const std::vector<Shape> shapes = {rectangle(2.0, 2.0), ring(3.0, 4.0, 48), rectangle(3.0, 0.9)};
+    const std::vector<Shape> shapes = {rectangle(2.0, 2.0), ring(3.0, 4.0, 48),
+                                       rectangle(3.0, 0.9)};
     const PackOptions options{0.005, true};
     const PackResult r = pack(shapes, options);
     expect_promises(shapes, options, r);

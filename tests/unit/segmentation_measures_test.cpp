@@ -94,10 +94,11 @@ TEST(SegmentationMeasures, CurvatureOfBothSignsAddsUp) {
 
 TEST(SegmentationMeasures, DevelopableChartsHaveNoErrorOfTheirOwn) {
     const Mesh mesh = checks::gated(shapes::capped_cylinder(24, 5));
-    const SegmentationMeasures parts = measure(mesh, labels_of(mesh, [&](const Vec3& c) {
-        const double half = 1.0 / mesh.unit_length; // of the height
-        return std::abs(c.z()) < half - 1e-9 ? 0 : c.z() > 0.0 ? 1 : 2;
-    }));
+    const SegmentationMeasures parts =
+        measure(mesh, labels_of(mesh, [&](const Vec3& c) {
+                    const double half = 1.0 / mesh.unit_length; // of the height
+                    return std::abs(c.z()) < half - 1e-9 ? 0 : c.z() > 0.0 ? 1 : 2;
+                }));
     EXPECT_EQ(parts.charts_number, 3);
     EXPECT_EQ(parts.disk_charts_number, 2); // the tube is none
     EXPECT_LT(parts.max_fitting_error, 1e-12);

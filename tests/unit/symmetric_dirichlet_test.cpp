@@ -35,12 +35,9 @@ double energy_from_stretches(const Disk& disk, const std::vector<Vec2>& uv) {
 }
 
 std::vector<RawMesh> curved() {
-    return {shapes::hemisphere(16, 7),
-            shapes::with_noise(shapes::grid(9, 9), 0.04, 3),
-            shapes::torus(14, 9),
-            shapes::plate_with_handle(),
-            shapes::sphere(2),
-            shapes::finger(10, 12, 1.0, 6.0)};
+    return {shapes::hemisphere(16, 7), shapes::with_noise(shapes::grid(9, 9), 0.04, 3),
+            shapes::torus(14, 9),      shapes::plate_with_handle(),
+            shapes::sphere(2),         shapes::finger(10, 12, 1.0, 6.0)};
 }
 
 std::vector<Vec2> identity(const Disk& disk) {
@@ -70,10 +67,12 @@ TEST(SymmetricDirichlet, EnergyIsInfiniteForFlipsAndFacesWithoutArea) {
     std::vector<Vec2> uv = identity(disk);
     for (Vec2& p : uv)
         p.x() = -p.x();
-    EXPECT_EQ(symmetric_dirichlet_energy(disk.problem, uv), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(symmetric_dirichlet_energy(disk.problem, uv),
+              std::numeric_limits<double>::infinity());
     for (Vec2& p : uv)
         p.x() = 0.0;
-    EXPECT_EQ(symmetric_dirichlet_energy(disk.problem, uv), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(symmetric_dirichlet_energy(disk.problem, uv),
+              std::numeric_limits<double>::infinity());
 }
 
 TEST(SymmetricDirichlet, DevelopablesBecomeIsometricFromAnyStart) {
@@ -206,16 +205,17 @@ TEST(SymmetricDirichlet, RefusesAStartWithFlips) {
     const Disk disk(shapes::grid(4, 4));
     std::vector<Vec2> uv = identity(disk);
     uv.at(0) = uv.at(12);
-    EXPECT_TRUE(checks::contains(
-        checks::error_of<NumericalFailure>([&] { minimise(disk, uv); }), "without flipped faces"));
+    EXPECT_TRUE(checks::contains(checks::error_of<NumericalFailure>([&] { minimise(disk, uv); }),
+                                 "without flipped faces"));
 }
 
 TEST(SymmetricDirichlet, Cancels) {
     const Disk disk(shapes::sphere(3));
     Progress progress([](double, const char*) { return false; });
     EXPECT_THROW(progress.update(0.0), Cancelled);
-    EXPECT_THROW(minimise_symmetric_dirichlet(disk.problem, flatten_tutte(disk.problem), {}, progress),
-                 Cancelled);
+    EXPECT_THROW(
+        minimise_symmetric_dirichlet(disk.problem, flatten_tutte(disk.problem), {}, progress),
+        Cancelled);
 }
 
 } // namespace

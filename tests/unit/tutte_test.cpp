@@ -24,8 +24,8 @@ std::pair<Vec2, double> circle(const Disk& disk, const std::vector<Vec2>& uv) {
     const Vec2& r = uv[at(b[2 * b.size() / 3])];
     Eigen::Matrix2d system;
     system << 2.0 * (q - p).transpose(), 2.0 * (r - p).transpose();
-    const Vec2 centre =
-        system.inverse() * Vec2(q.squaredNorm() - p.squaredNorm(), r.squaredNorm() - p.squaredNorm());
+    const Vec2 centre = system.inverse() *
+                        Vec2(q.squaredNorm() - p.squaredNorm(), r.squaredNorm() - p.squaredNorm());
     return {centre, (p - centre).norm()};
 }
 
@@ -100,7 +100,7 @@ TEST(Tutte, HardChartsDoNotFlip) {
     std::vector<RawMesh> hard;
     hard.push_back(shapes::grid(400, 1, 400.0, 1.0)); // long strips
     hard.push_back(shapes::grid(300, 3, 300.0, 1.0));
-    hard.push_back(shapes::grid(30, 30, 1.0, 1e-5));  // needles
+    hard.push_back(shapes::grid(30, 30, 1.0, 1e-5)); // needles
     hard.push_back(shapes::grid(30, 30, 1.0, 1e-9));
     hard.push_back(shapes::finger(12, 20, 1.0, 10.0)); // much surface behind a short boundary
     hard.push_back(shapes::hemisphere(40, 40));
@@ -115,7 +115,8 @@ TEST(Tutte, HardChartsDoNotFlip) {
     for (Vec3& p : unbalanced.points)
         p.y() = std::exp2(-24.0 * p.y());
     hard.push_back(unbalanced);
-    hard.push_back(shapes::revolve({{1.0, 0.0}, {1e-7, 1.0}, {0.0, 1.0 + 1e-7}}, 50)); // a needle tip
+    hard.push_back(
+        shapes::revolve({{1.0, 0.0}, {1e-7, 1.0}, {0.0, 1.0 + 1e-7}}, 50)); // a needle tip
     for (std::size_t i = 0; i < hard.size(); ++i) {
         const Disk disk(hard[i]);
         EXPECT_EQ(checks::count_flips(disk.problem.faces, flatten_tutte(disk.problem)), 0)

@@ -70,8 +70,8 @@ Eigen::Matrix<Index, 6, 1> unknowns_of(const Triangle& face, const std::vector<I
     Eigen::Matrix<Index, 6, 1> unknowns;
     for (Index c = 0; c < 3; ++c) {
         const Index p = place[at(face[at(c)])];
-        unknowns[c] = p < 0 ? -1 : 2 * p;
-        unknowns[3 + c] = p < 0 ? -1 : 2 * p + 1;
+        unknowns[c] = p;
+        unknowns[3 + c] = p < 0 ? -1 : p + 1;
     }
     return unknowns;
 }
@@ -142,7 +142,7 @@ void AngleSystem::order_unknowns() {
     Eigen::AMDOrdering<int>()(graph, order);
     std::vector<Index> place_of(at(inner_count_));
     for (Index p = 0; p < inner_count_; ++p)
-        place_of[at(order.indices()[p])] = p;
+        place_of[at(order.indices()[p])] = 2 * p;
     for (Index& p : place_)
         if (p >= 0)
             p = place_of[at(p)];
@@ -195,11 +195,11 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + inner_count_ + inner_count_)};
     const Eigen::VectorXd values = constraints(angles);
     Eigen::VectorXd& rhs = reduced_->rhs;
-    rhs.resize(2 * inner_count_);
+    rhs.resize(inner_count_ + inner_count_);
     for (std::size_t v = 0; v < place_.size(); ++v)
         if (place_[v] >= 0) {
-            rhs[2 * place_[v]] = values[faces + inner_[v]];
-            rhs[2 * place_[v] + 1] = values[faces + inner_count_ + inner_[v]];
+            rhs[place_[v]] = values[faces + inner_[v]];
+            rhs[place_[v] + 1] = values[faces + inner_count_ + inner_[v]];
         }
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(21 * problem_.faces.size());
@@ -223,7 +223,7 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
                     entries.emplace_back(unknowns[i], unknowns[j], block(i, j));
         }
     }
-    reduced_->matrix.resize(2 * inner_count_, 2 * inner_count_);
+    reduced_->matrix.resize(rhs.size(), rhs.size());
     reduced_->matrix.setFromTriplets(entries.begin(), entries.end());
 }
 
@@ -257,8 +257,8 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
     }
     for (std::size_t v = 0; v < place_.size(); ++v)
         if (place_[v] >= 0) {
-            step.multipliers[faces + inner_[v]] = solution[2 * place_[v]];
-            step.multipliers[faces + inner_count_ + inner_[v]] = solution[2 * place_[v] + 1];
+            step.multipliers[faces + inner_[v]] = solution[place_[v]];
+            step.multipliers[faces + inner_count_ + inner_[v]] = solution[place_[v] + 1];
         }
     return step;
 }

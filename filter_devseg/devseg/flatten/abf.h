@@ -70,7 +70,7 @@ private:
     Eigen::VectorXd target_;
     Eigen::VectorXd inverse_;  // 3 #f: inverse of the energy's Hessian, β² / 2 unless stiffened
     std::vector<Index> inner_; // #v: number among the inner vertices, −1 on the boundary
-    std::vector<Index> place_; // #v: its place in the reduced system, −1 on the boundary
+    std::vector<Index> place_; // #v: its first unknown in the reduced system, −1 on the boundary
     Index inner_count_ = 0;
     std::unique_ptr<Reduced> reduced_;
 };

@@ -43,6 +43,9 @@ constexpr double push_cost = 0.01;
 // person or a cutter sees (0.015 mm on a sheet of 300 mm).
 constexpr double slit_gap = 5e-5;
 
+// A face that keeps less of its area has collapsed.
+constexpr double collapsed = 1e-5;
+
 constexpr double lpfb_area_change = 0.1;
 constexpr double lpfb_stretch = 2.0;
 // Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
@@ -159,7 +162,9 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
             throw; // there is nothing else to try
         return false;
     }
-    return count_flips(problem, chart.uv) == 0;
+    // Conformal maps of strongly curved charts can shrink faces until 32-bit coordinates flip them.
+    return count_flips(problem, chart.uv) == 0 &&
+           least_area_ratio(problem, chart.uv) > collapsed;
 }
 
 // Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except

@@ -1,5 +1,6 @@
 #include "devseg/flatten/map_tools.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -97,6 +98,13 @@ double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv)
         sum += 0.5 * problem.area[f] * j.squaredNorm() / (det * det);
     }
     return std::sqrt(sum / problem.total_area);
+}
+
+double least_area_ratio(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        least = std::min(least, jacobian(problem, uv, f).determinant());
+    return least;
 }
 
 void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv) {

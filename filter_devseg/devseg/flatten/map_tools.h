@@ -31,6 +31,9 @@ double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 /// map from the plane to the surface, as it is (not scaled); infinite where a face is flipped.
 double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
+/// Least area of a face in the plane over its area on the surface; negative where one is flipped.
+double least_area_ratio(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
 /// Scales the map so that its area is the chart's own, and moves its centre to the origin.
 void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv);
 

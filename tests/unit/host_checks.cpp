@@ -1,0 +1,76 @@
+#include "unit/host_checks.h"
+
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace devseg::checks {
+
+HostResult run(const std::string& menu_name, const HostMesh& host, const ParameterValues& values) {
+    Progress progress;
+    for (const FilterDeclaration& filter : filter_table())
+        if (filter.menu_name == menu_name)
+            return run_filter(filter, host, values, progress);
+    throw std::logic_error("no such filter");
+}
+
+double value(const HostResult& result, const std::string& name) {
+    for (const auto& [key, v] : result.values)
+        if (key == name)
+            return std::holds_alternative<int>(v) ? std::get<int>(v) : std::get<double>(v);
+    ADD_FAILURE() << "no value " << name;
+    return 0.0;
+}
+
+HostMesh host_of(const RawMesh& raw) {
+    HostMesh host;
+    host.geometry = raw;
+    return host;
+}
+
+void take_charts(HostMesh& host, const HostResult& result) {
+    host.chart_id.assign(result.chart_id.begin(), result.chart_id.end());
+    host.seam_edges.assign(result.seam_edges.begin(), result.seam_edges.end());
+}
+
+Edges edges_of(const RawMesh& raw) {
+    Edges edges;
+    for (std::size_t f = 0; f < raw.faces.size(); ++f)
+        for (std::size_t e = 0; e < 3; ++e)
+            edges[{raw.faces[f][e], raw.faces[f][(e + 1) % 3]}].emplace_back(f,
+                                                                             static_cast<int>(e));
+    return edges;
+}
+
+void expect_agreement(const RawMesh& raw, const HostResult& result) {
+    ASSERT_EQ(result.chart_id.size(), raw.faces.size());
+    ASSERT_EQ(result.seam_edges.size(), raw.faces.size());
+    for (const auto& [ends, faces] : edges_of(raw)) {
+        const auto bit = [&](std::size_t i) {
+            return result.seam_edges[faces[i].first] >> faces[i].second & 1;
+        };
+        if (faces.size() == 1) {
+            ASSERT_EQ(bit(0), 0) << "the mesh's own border is no seam";
+        } else if (faces.size() == 2) {
+            ASSERT_EQ(bit(0), bit(1));
+            if (result.chart_id[faces[0].first] != result.chart_id[faces[1].first]) {
+                ASSERT_EQ(bit(0), 1);
+            }
+        }
+    }
+}
+
+double signed_area(const std::array<Vec2, 3>& triangle) {
+    const Vec2 p = triangle[1] - triangle[0];
+    const Vec2 q = triangle[2] - triangle[0];
+    return 0.5 * (p.x() * q.y() - p.y() * q.x());
+}
+
+double area_on_surface(const RawMesh& raw, std::size_t face) {
+    const Triangle& t = raw.faces[face];
+    return 0.5 * (raw.points[at(t[1])] - raw.points[at(t[0])])
+                     .cross(raw.points[at(t[2])] - raw.points[at(t[0])])
+                     .norm();
+}
+
+} // namespace devseg::checks

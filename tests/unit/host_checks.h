@@ -1,0 +1,31 @@
+// A small host for the tests of filters: it runs them by name and looks at meshes as a host does.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "devseg/filters/filter.h"
+
+namespace devseg::checks {
+
+HostResult run(const std::string& menu_name, const HostMesh& host,
+               const ParameterValues& values = {});
+double value(const HostResult& result, const std::string& name);
+
+HostMesh host_of(const RawMesh& raw);
+void take_charts(HostMesh& host, const HostResult& result);
+
+/// All (face, edge) at each edge, by the host's vertices.
+using Edges = std::map<std::set<Index>, std::vector<std::pair<std::size_t, int>>>;
+Edges edges_of(const RawMesh& raw);
+
+/// On every inner edge both faces agree about the seam, which lies between any two charts.
+void expect_agreement(const RawMesh& raw, const HostResult& result);
+
+double signed_area(const std::array<Vec2, 3>& triangle);
+double area_on_surface(const RawMesh& raw, std::size_t face);
+
+} // namespace devseg::checks
