@@ -1,11 +1,11 @@
 // Every filter of the table, run on one mesh: it does what its declaration says.
 #include <limits>
-#include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "devseg/filters/filter.h"
 #include "unit/checks.h"
+#include "unit/host_checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
@@ -22,25 +22,16 @@ double number(const ParameterValue& value) {
     return std::get<double>(value);
 }
 
-// A mesh with everything that filters read: a noisy torus, segmented and flattened.
+// A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
+// that it is packed at once.
 HostMesh prepared() {
-    HostMesh host;
-    host.geometry = shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4);
-    Progress progress;
-    const auto run = [&](const char* name) {
-        for (const FilterDeclaration& filter : filter_table())
-            if (filter.menu_name == name)
-                return run_filter(filter, host, {}, progress);
-        throw std::logic_error("no such filter");
-    };
-    const HostResult flat = run("Charts: Flatten");
+    HostMesh host = checks::host_of(shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4));
+    const HostResult flat = checks::run("Charts: Flatten", host);
+    checks::take_charts(host, flat);
     host.wedge_uv = flat.wedge_uv;
     for (std::array<Vec2, 3>& corners : host.wedge_uv)
         for (Vec2& p : corners)
             p = Eigen::Rotation2Dd(0.5) * p; // no box stands upright
-    const HostResult segmented = run("Segmentation: D-Charts");
-    host.chart_id.assign(segmented.chart_id.begin(), segmented.chart_id.end());
-    host.seam_edges.assign(segmented.seam_edges.begin(), segmented.seam_edges.end());
     return host;
 }
 

@@ -20,7 +20,10 @@ bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, I
 }
 
 double rounded(double x) {
-    return static_cast<double>(static_cast<float>(x));
+    // Volatile, because GCC 12 at -O3 drops the two conversions for the last element of an odd
+    // number when it turns the loop over a map into vector instructions.
+    const volatile float single = static_cast<float>(x);
+    return static_cast<double>(single);
 }
 
 // Faces of each vertex: [begin[v], begin[v + 1]).
