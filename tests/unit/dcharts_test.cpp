@@ -210,7 +210,7 @@ TEST(DCharts, TheOrderOfFacesDoesNotMatterToGrowing) {
     expect_same_charts_in_any_face_order(options);
 }
 
-TEST(DCharts, DISABLED_TheOrderOfFacesDoesNotMatter) {
+TEST(DCharts, TheOrderOfFacesDoesNotMatter) {
     expect_same_charts_in_any_face_order(charts(9));
 }
 

@@ -147,7 +147,7 @@ TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
         }
 }
 
-TEST(DeclaredFilters, DISABLED_ChoicesOutOfRangeAreRefused) {
+TEST(DeclaredFilters, ChoicesOutOfRangeAreRefused) {
     const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filter_table())
         for (const Parameter& p : filter.parameters) {

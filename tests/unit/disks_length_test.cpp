@@ -55,7 +55,7 @@ TEST(CutLength, PlatesWithHolesAreCutAlongAShortestTree) {
         EXPECT_NEAR(cut_length(shapes::plate(shapes::mask_with_holes(holes))), holes, 1e-9);
 }
 
-TEST(CutLength, DISABLED_HolesNearEachOtherAreCutToEachOther) {
+TEST(CutLength, HolesNearEachOtherAreCutToEachOther) {
     // Three holes in a chain, one cell apart and three cells from the border.
     shapes::Mask mask(9, std::string(11, '#'));
     for (const std::size_t x : {3U, 5U, 7U})

@@ -5,6 +5,9 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <utility>
+
+#include "devseg/cut/join_loops.h"
 
 namespace devseg {
 
@@ -12,83 +15,32 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Shortest paths from the root, along edges; every boundary loop counts as one point.
+// Shortest paths along edges to the only boundary loop, or to a root where there is none.
 struct PathForest {
-    std::vector<double> distance; // #v: from the root, over the edges of the chart
-    std::vector<Index> toward;    // #v: half-edge whose origin is the vertex, one step to the root;
-                                  // −1 at the root and where the path goes on along a boundary
-    std::vector<Index> loop_exit; // #loops: vertex where the path leaves the loop, −1 = root
-    std::vector<Index> loop_of;   // #v: boundary loop of the vertex, −1 = inside
-};
-
-// Outgoing half-edges of each vertex and, for boundary vertices, the incoming boundary half-edge:
-// enough to visit every edge at the vertex.
-class VertexEdges {
-public:
-    explicit VertexEdges(const ChartSurface& s) : begin_(at(s.vertex_count()) + 1, 0) {
-        const Index half_edges = 3 * s.face_count();
-        const auto each = [&](auto visit) {
-            for (Index h = 0; h < half_edges; ++h) {
-                visit(s.origin(h), h);
-                if (s.twin[at(h)] < 0)
-                    visit(s.target(h), h);
-            }
-        };
-        each([&](Index v, Index) { ++begin_[at(v) + 1]; });
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        edges_.resize(at(begin_.back()));
-        std::vector<Index> cursor(begin_.begin(), begin_.end() - 1);
-        each([&](Index v, Index h) { edges_[at(cursor[at(v)]++)] = h; });
-    }
-    const Index* first(Index v) const { return edges_.data() + begin_[at(v)]; }
-    const Index* last(Index v) const { return edges_.data() + begin_[at(v) + 1]; }
-
-private:
-    std::vector<Index> begin_;
-    std::vector<Index> edges_;
+    std::vector<double> distance; // #v
+    std::vector<Index> toward;    // #v: half-edge from the vertex, one step nearer; −1 at the end
 };
 
 double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
-double loop_length(const Mesh& mesh, const ChartSurface& s, const std::vector<Index>& loop) {
-    double sum = 0.0;
-    for (const Index h : loop)
-        sum += edge_length(mesh, s, h);
-    return sum;
-}
-
-// Dijkstra from the longest boundary loop, or from `root` where there is no boundary.
 PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
                       Index root) {
     PathForest forest;
     forest.distance.assign(s.vertex.size(), infinity);
     forest.toward.assign(s.vertex.size(), -1);
-    forest.loop_exit.assign(s.loops.size(), -1);
-    forest.loop_of.assign(s.vertex.size(), -1);
-    for (std::size_t l = 0; l < s.loops.size(); ++l)
-        for (const Index h : s.loops[l])
-            forest.loop_of[at(s.origin(h))] = static_cast<Index>(l);
-
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    const auto reach_loop = [&](Index loop, double d) {
-        for (const Index h : s.loops[at(loop)]) {
-            forest.distance[at(s.origin(h))] = d;
-            queue.emplace(d, s.origin(h));
-        }
+    const auto start_at = [&](Index v) {
+        forest.distance[at(v)] = 0.0;
+        queue.emplace(0.0, v);
     };
-    if (s.loops.empty()) {
-        forest.distance[at(root)] = 0.0;
-        queue.emplace(0.0, root);
-    } else {
-        std::size_t longest = 0;
-        for (std::size_t l = 1; l < s.loops.size(); ++l)
-            if (loop_length(mesh, s, s.loops[l]) > loop_length(mesh, s, s.loops[longest]))
-                longest = l;
-        reach_loop(static_cast<Index>(longest), 0.0);
-    }
+    if (s.loops.empty())
+        start_at(root);
+    else
+        for (const Index h : s.loops.front())
+            start_at(s.origin(h));
     while (!queue.empty()) {
         const auto [d, v] = queue.top();
         queue.pop();
@@ -96,22 +48,11 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
             continue;
         for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
             if (s.twin[at(*e)] < 0)
-                continue; // the boundary is walked for free already
+                continue;
             const Index w = s.target(*e);
             const double through = d + edge_length(mesh, s, *e);
-            if (!(through < forest.distance[at(w)]))
-                continue;
-            const Index back = s.twin[at(*e)];
-            const Index loop = forest.loop_of[at(w)];
-            if (loop >= 0) {
-                // All vertices of a loop are one point; the first to arrive is the exit.
-                if (forest.loop_exit[at(loop)] >= 0)
-                    forest.toward[at(forest.loop_exit[at(loop)])] = -1;
-                forest.loop_exit[at(loop)] = w;
-                forest.toward[at(w)] = back;
-                reach_loop(loop, through);
-            } else {
-                forest.toward[at(w)] = back;
+            if (through < forest.distance[at(w)]) {
+                forest.toward[at(w)] = s.twin[at(*e)];
                 forest.distance[at(w)] = through;
                 queue.emplace(through, w);
             }
@@ -125,13 +66,17 @@ public:
     Cutter(const Mesh& mesh, const ChartSurface& surface, std::vector<std::uint8_t>& seam)
         : mesh_(mesh), s_(surface), seam_(seam) {}
 
-    // Returns the length of the cuts.
-    double run() {
+    // For charts with several boundary loops. Returns the length of the cuts, as all of these.
+    double join() {
+        for (const Index h : join_loops(mesh_, s_))
+            cut_edge(h);
+        return length_;
+    }
+
+    // For charts with at most one loop.
+    double cut_handles() {
         const VertexEdges edges(s_);
         const PathForest forest = grow_paths(mesh_, s_, edges, 0);
-        for (const Index exit : forest.loop_exit)
-            if (exit >= 0)
-                cut_path(forest, exit);
         for (const Index h : handle_edges(forest)) {
             cut_edge(h);
             cut_path(forest, s_.origin(h));
@@ -191,20 +136,10 @@ private:
         }
     }
 
-    // From v to the root. Where the path meets a boundary loop it goes on from the loop's exit.
     void cut_path(const PathForest& forest, Index v) {
-        while (true) {
-            const Index loop = forest.loop_of[at(v)];
-            if (loop >= 0) {
-                v = forest.loop_exit[at(loop)];
-                if (v < 0)
-                    return; // the root loop
-            }
-            const Index h = forest.toward[at(v)];
-            if (h < 0)
-                return; // the root vertex
-            cut_edge(h);
-            v = s_.target(h);
+        while (forest.toward[at(v)] >= 0) {
+            cut_edge(forest.toward[at(v)]);
+            v = s_.target(forest.toward[at(v)]);
         }
     }
 
@@ -278,8 +213,12 @@ private:
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
                          double* cut_length) {
     double length = 0.0;
+    if (surface.loops.size() > 1) {
+        length += Cutter(mesh, surface, seam).join();
+        surface = extract_surface(mesh, std::move(surface.face), seam);
+    }
     if (!surface.is_disk()) {
-        length += Cutter(mesh, surface, seam).run();
+        length += Cutter(mesh, surface, seam).cut_handles();
         surface = extract_surface(mesh, std::move(surface.face), seam);
     }
     if (surface.loops.front().size() < 3) {

@@ -3,7 +3,7 @@
 // References
 //   [EHP04] J. Erickson, S. Har-Peled: Optimally Cutting a Surface into a Disk. Discrete &
 //           Computational Geometry 31, 2004. doi:10.1007/s00454-003-2948-z (the greedy tree–cotree
-//           construction; boundary loops are treated as contracted to points)
+//           construction, once all boundary loops are joined)
 #pragma once
 
 #include "devseg/mesh/charts.h"

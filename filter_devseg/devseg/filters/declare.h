@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "devseg/errors.h"
 #include "devseg/filters/filter.h"
 
 namespace devseg {
@@ -46,8 +47,14 @@ public:
         Parameter parameter{std::move(name), std::move(label), std::move(help),
                             ParameterKind::choice, static_cast<int>(Options{}.*field), 0.0,
                             static_cast<double>(choices.size()) - 1.0, std::move(choices)};
-        setters_.emplace_back([field](Options& options, const ParameterValue& value) {
-            options.*field = static_cast<Enum>(std::get<int>(value));
+        setters_.emplace_back([field, name = parameter.name, count = parameter.choices.size()](
+                                  Options& options, const ParameterValue& value) {
+            const int position = std::get<int>(value);
+            if (position < 0 || static_cast<std::size_t>(position) >= count)
+                throw InvalidParameter(name + ": expected a choice from 0 to " +
+                                       std::to_string(count - 1) + ", found " +
+                                       std::to_string(position));
+            options.*field = static_cast<Enum>(position);
         });
         filter_.parameters.push_back(std::move(parameter));
         return *this;

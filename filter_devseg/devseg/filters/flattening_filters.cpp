@@ -113,7 +113,7 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     output.values = {
         {"charts_number", flattened.charts.count},
         {"cut_charts_number", cuts.cut_charts},
-        {"overlap_cuts_number", flattened.overlap_cuts},
+        {"overlap_cuts_number", flattened.cuts},
         {"pushed_charts_number", pushed},
         {"mended_charts_number", mended},
         {"converged", converged},
@@ -125,8 +125,8 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     if (mended > 0)
         output.notes.push_back(std::to_string(mended) + " charts had flipped faces and were "
                                                         "flattened with Symmetric Dirichlet");
-    if (flattened.overlap_cuts > 0)
-        output.notes.push_back(std::to_string(flattened.overlap_cuts) +
+    if (flattened.cuts > 0)
+        output.notes.push_back(std::to_string(flattened.cuts) +
                                " cuts were made where parts of a chart lay on top of each other");
     note_unsettled(layout, output);
     output.uv = layout.uv;

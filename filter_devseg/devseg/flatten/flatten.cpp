@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -53,24 +54,25 @@ constexpr double harmonic_is_enough = 1.02;
 
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-// The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; Tutte.
+// The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; ABF++;
+// Tutte, which rounding can flip on long closed tubes.
 std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& progress) {
-    std::vector<Vec2> uv = flatten_lscm(problem);
-    if (count_flips(problem, uv) == 0)
-        return uv;
-    try {
-        LpfbResult lpfb = flatten_lpfb(problem, LpfbOptions{}, progress);
-        if (lpfb.flips == 0)
-            return lpfb.uv;
-    } catch (const NumericalFailure&) { // no polygon has these lengths: Tutte needs none
+    const std::function<std::vector<Vec2>()> starts[] = {
+        [&] { return flatten_lscm(problem); },
+        [&] { return flatten_lpfb(problem, LpfbOptions{}, progress).uv; },
+        [&] { return flatten_abf(problem, AbfOptions{}, progress).uv; },
+        [&] { return flatten_tutte(problem); },
+    };
+    for (const auto& start : starts) {
+        try {
+            std::vector<Vec2> uv = start();
+            if (count_flips(problem, uv) == 0)
+                return uv;
+        } catch (const NumericalFailure&) { // the next one may have a solution
+        }
     }
-    uv = flatten_tutte(problem);
-    if (count_flips(problem, uv) > 0)
-        throw NumericalFailure("expected a map without flipped faces, found none for a chart of " +
-                               std::to_string(problem.faces.size()) +
-                               " faces; use more charts, or remesh the model "
-                               "('Remeshing: Isotropic Explicit Remeshing')");
-    return uv;
+    throw NumericalFailure("expected a map without flipped faces, found none for a chart of " +
+                           std::to_string(problem.faces.size()) + " faces");
 }
 
 void apply_symmetric_dirichlet(const FlatteningProblem& problem, FlatChart& chart,
@@ -205,13 +207,45 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
     return std::nullopt;
 }
 
+std::vector<Index> on_mesh(const ChartSurface& surface, std::vector<Index> half_edges) {
+    for (Index& h : half_edges)
+        h = surface.mesh_half_edge(h);
+    return half_edges;
+}
+
+// The mesh half-edges of a short cut between the first face and the one that is most faces away.
+std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
+    std::vector<std::uint8_t> seen(surface.face.size(), 0);
+    std::vector<Index> reached{0};
+    seen[0] = 1;
+    for (std::size_t i = 0; i < reached.size(); ++i)
+        for (Index h = 3 * reached[i]; h < 3 * reached[i] + 3; ++h) {
+            const Index twin = surface.twin[at(h)];
+            if (twin >= 0 && seen[at(twin / 3)] == 0) {
+                seen[at(twin / 3)] = 1;
+                reached.push_back(twin / 3);
+            }
+        }
+    // A third of the faces on each side takes part, so that the cut is near the middle.
+    Pairs pairs{{reached.front(), reached.back()}};
+    for (std::size_t i = 0; i < reached.size() / 3; ++i)
+        pairs.emplace_back(reached[i], reached[reached.size() - 1 - i]);
+    return on_mesh(surface, separating_path(mesh, surface, pairs));
+}
+
 // Returns the mesh half-edges to cut where parts of the chart could not be kept apart.
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress) {
     const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
-        chart.mended = true;
-        apply_symmetric_dirichlet(problem, chart, progress);
+    try {
+        if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
+            chart.mended = true;
+            apply_symmetric_dirichlet(problem, chart, progress);
+        }
+    } catch (const NumericalFailure&) {
+        if (chart.surface.face_count() < 2)
+            throw;
+        return halve(mesh, chart.surface); // the halves are easier
     }
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
@@ -229,10 +263,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
         chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
         return {};
     }
-    std::vector<Index> cut = separating_path(mesh, chart.surface, pairs);
-    for (Index& h : cut)
-        h = chart.surface.mesh_half_edge(h);
-    return cut;
+    return on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
 }
 
 // Flattens the charts with the given numbers; returns the half-edges to cut, per chart.
@@ -264,7 +295,7 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh,
     std::vector<Index> old_chart = result.charts.chart;
     std::vector<std::uint8_t> seam = result.charts.seam;
     for (const std::vector<Index>& cut : cuts) {
-        result.overlap_cuts += cut.empty() ? 0 : 1;
+        result.cuts += cut.empty() ? 0 : 1;
         for (const Index h : cut)
             seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
     }

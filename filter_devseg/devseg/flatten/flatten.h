@@ -25,7 +25,7 @@ struct FlatChart {
 struct FlattenResult {
     ChartMap charts; // the given charts, cut further where a part lay on top of another
     std::vector<FlatChart> flat;
-    int overlap_cuts = 0; // cuts that were needed
+    int cuts = 0; // that were needed
 };
 
 /// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other

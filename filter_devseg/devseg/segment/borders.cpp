@@ -452,7 +452,18 @@ Index straighten_borders(const Mesh& mesh, const std::vector<ConicProxy>& proxie
                          Progress& progress) {
     Straightener straightener(mesh, proxies, max_fitting_error, chart);
     Index replaced = 0;
-    const std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
+    std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
+    // Each border changes what the next ones find: the longest first, whatever the order of faces.
+    const auto length = [&](const BorderSegment& segment) {
+        double sum = 0.0;
+        for (const Index h : segment.half_edges)
+            sum += mesh.edge_length(h);
+        return sum;
+    };
+    std::stable_sort(segments.begin(), segments.end(),
+                     [&](const BorderSegment& a, const BorderSegment& b) {
+                         return length(a) > length(b);
+                     });
     for (std::size_t i = 0; i < segments.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(segments.size()));
         replaced += straightener.straighten(segments[i]) ? 1 : 0;
