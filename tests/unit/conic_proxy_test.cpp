@@ -61,6 +61,28 @@ TEST(FitConic, RecoversConesAndCylindersOfRandomAxes) {
     }
 }
 
+TEST(FitConic, NarrowPatchesShowTheirAxis) {
+    Random random(16);
+    for (const double span : {0.02, 0.05, 0.1}) { // radians: far from planar up to rounding
+        const Vec3 axis = random.direction();
+        const ConicProxy proxy =
+            fit_conic(moments_of(cone_normals(axis, 0.5 * pi, span, 400, random)));
+        EXPECT_NEAR(std::abs(proxy.axis.dot(axis)), 1.0, 1e-6);
+        EXPECT_NEAR(proxy.cos_angle, 0.0, 1e-6);
+    }
+}
+
+TEST(FitConic, OfBothSignsTheLargestComponentIsPositive) {
+    Random random(17);
+    for (int run = 0; run < 100; ++run) {
+        const Vec3 axis =
+            fit_conic(moments_of(cone_normals(random.direction(), 1.2, 5.0, 12, random))).axis;
+        Eigen::Index largest = 0;
+        axis.cwiseAbs().maxCoeff(&largest);
+        EXPECT_GT(axis[largest], 0.0);
+    }
+}
+
 TEST(FitConic, APlaneTakesItsNormal) {
     Random random(12);
     for (int run = 0; run < 50; ++run) {

@@ -153,6 +153,30 @@ TEST(DCharts, ASmallerBoundMakesChartsThatFitBetter) {
     EXPECT_LT(mean(0.005), 0.5 * mean(0.2));
 }
 
+TEST(DCharts, ConvergedMeansThatFewFacesChanged) {
+    // Without holes and straightening, the charts of n rounds are those of round n.
+    const Mesh mesh = checks::gated(noisy_torus());
+    DChartsOptions options = charts(8, 4.0);
+    options.straighten_boundaries = false;
+    const int rounds = segment(mesh, options).rounds;
+    EXPECT_GE(rounds, 3);
+    std::vector<Index> before;
+    for (int n = 1; n <= rounds; ++n) {
+        options.max_iterations = n;
+        const DChartsResult r = segment(mesh, options);
+        EXPECT_EQ(r.rounds, n);
+        std::size_t changed = r.chart.size();
+        if (!before.empty()) {
+            changed = 0;
+            for (std::size_t f = 0; f < before.size(); ++f)
+                changed += before[f] != r.chart[f] ? 1U : 0U;
+        }
+        EXPECT_EQ(r.converged, 20 * changed < r.chart.size());
+        EXPECT_EQ(r.converged, n == rounds);
+        before = r.chart;
+    }
+}
+
 TEST(DCharts, LargeHolesGetChartsOfTheirOwn) {
     // A strict bound leaves most of a sphere to hole filling.
     const Mesh mesh = checks::gated(shapes::sphere(3));

@@ -113,6 +113,19 @@ TEST(CutToDisks, RandomChartsOnRandomSurfaces) {
     }
 }
 
+TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed)
+        for (const RawMesh& raw : {shapes::torus(16, 10), shapes::double_torus()}) {
+            const Mesh mesh = checks::gated(shapes::with_face_order(
+                shapes::with_noise(raw, 0.05, seed), shapes::random_order(raw.faces.size(), seed)));
+            const ChartMap charts = cut(mesh).charts;
+            std::vector<int> cuts(mesh.points.size(), 0);
+            for (Index h = 0; h < mesh.half_edge_count(); ++h)
+                cuts[at(mesh.origin(h))] += charts.seam[at(h)];
+            EXPECT_EQ(std::count(cuts.begin(), cuts.end(), 1), 0);
+        }
+}
+
 TEST(CutToDisks, FacesWithoutLengthDoNotStopIt) {
     RawMesh raw = shapes::torus(10, 6);
     for (Index i = 0; i < 12; ++i)

@@ -88,7 +88,11 @@ TEST(OverlappingPairs, TouchingIsNotOverlapping) {
     EXPECT_TRUE(find_overlapping_pairs(shared_edge, 0.0).empty());
     const CornerUv shared_corner = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {2, 0}, {2, 1}};
     EXPECT_TRUE(find_overlapping_pairs(shared_corner, 0.0).empty());
-    CornerUv deeper = shared_edge; // by a hundred thousandth, against the millionth that is allowed
+    CornerUv deeper = shared_edge; // by a third of the millionth that is allowed
+    for (std::size_t i = 3; i < 6; ++i)
+        deeper[i] -= Vec2(3e-7, 3e-7);
+    EXPECT_TRUE(find_overlapping_pairs(deeper, 0.0).empty());
+    deeper = shared_edge; // by more
     for (std::size_t i = 3; i < 6; ++i)
         deeper[i] -= Vec2(1e-5, 1e-5);
     EXPECT_EQ(find_overlapping_pairs(deeper, 0.0).size(), 1U);

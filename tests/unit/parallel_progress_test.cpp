@@ -74,8 +74,8 @@ TEST_F(ParallelFor, ThrowsWhatTheLowestFailingIndexThrew) {
                 parallel_for(
                     60,
                     [&](int i) {
-                        if (i == 20) // the lower one fails later
-                            std::this_thread::sleep_for(std::chrono::microseconds(200));
+                        if (i == (run % 2 == 0 ? 20 : 21)) // the lower one fails last, or first
+                            std::this_thread::sleep_for(std::chrono::microseconds(300));
                         if (i == 20 || i == 21 || i > 40)
                             throw InvalidParameter(std::to_string(i));
                     },
@@ -172,9 +172,11 @@ TEST_F(ParallelFor, ReportsProgressFromTheCallingThreadOnly) {
 TEST_F(ParallelFor, PassesOnWhatTheHostsCallbackThrows) {
     Progress progress([](double, const char*) -> bool { throw std::runtime_error("the host"); });
     std::atomic<int> done{0};
-    EXPECT_THROW(parallel_for(
-                     3, [&](int) { ++done; }, progress),
-                 std::runtime_error);
+    const auto task = [&](int) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50)); // until the host was asked
+        ++done;
+    };
+    EXPECT_THROW(parallel_for(3, task, progress), std::runtime_error);
     EXPECT_LE(done, 3);
 }
 

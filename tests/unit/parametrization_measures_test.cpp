@@ -194,6 +194,18 @@ TEST(ParametrizationMeasures, FlippedFacesAreCountedAgainstMostOfTheirChart) {
     }
 }
 
+TEST(ParametrizationMeasures, TheLargestStretchIsThatOfFacesThatAreNotFlipped) {
+    // A vertex goes just past its neighbour: two faces are turned over and nearly flat.
+    const Square square;
+    const Vec2 inner(3.0 / cells, 3.0 / cells);
+    const ParametrizationMeasures m = measure(square, [&](const Vec2& p) {
+        return (p - inner).norm() < 1e-9 ? Vec2(p + Vec2(1.02, 0.0) / cells) : p;
+    });
+    EXPECT_EQ(m.flipped_faces_number, 2);
+    EXPECT_LT(m.linf_stretch, 3.0);
+    EXPECT_GT(m.l2_stretch, 3.0); // which counts all
+}
+
 TEST(ParametrizationMeasures, CollapsedFacesAreCountedAndLeftOut) {
     const Square square;
     CornerUv uv = square.plane;

@@ -159,7 +159,8 @@ TEST(RunFilter, EdgesThatTheGateCutAreSeams) {
 
 TEST(RunFilter, NeighbouringChartsHaveDifferentColours) {
     const RawMesh raw = shapes::sphere(3);
-    const HostResult r = run("Segmentation: D-Charts", host_of(raw), {{"charts_number", 12}});
+    const HostResult r = run("Segmentation: D-Charts", host_of(raw), {{"charts_number", 60}});
+    EXPECT_GE(value(r, "charts_number"), 60); // more than there are colours
     std::map<int, Color> color;
     for (std::size_t f = 0; f < raw.faces.size(); ++f)
         ASSERT_EQ(color.try_emplace(r.chart_id[f], r.face_color[f]).first->second, r.face_color[f]);
@@ -167,6 +168,28 @@ TEST(RunFilter, NeighbouringChartsHaveDifferentColours) {
         const int a = r.chart_id[faces[0].first];
         const int b = r.chart_id[faces[1].first];
         ASSERT_TRUE(a == b || color[a] != color[b]);
+    }
+}
+
+TEST(RunFilter, LengthsAreInModelUnits) {
+    const RawMesh raw = shapes::moved(shapes::cylinder_tube(12, 4, 1.0, 3.0), 37.0, Vec3(5, 5, 5));
+    HostMesh host = host_of(raw);
+    const HostResult r = run("Charts: Cut to Disks", host);
+    EXPECT_NEAR(value(r, "cut_length"), 3.0 * 37.0, 1e-9);
+    take_charts(host, r);
+    EXPECT_NEAR(value(run("Charts: Measure Segmentation", host), "seam_length"), 3.0 * 37.0, 1e-9);
+}
+
+TEST(RunFilter, FacesThatCoordinatesCannotExpressAreReported) {
+    // Slivers a billion times as long as wide lose their area in 32 bits.
+    HostMesh host = host_of(shapes::grid(12, 12, 1.0, 1e-9));
+    const HostResult flat = run("Charts: Flatten", host);
+    host.wedge_uv = flat.wedge_uv;
+    const double lost = value(run("Charts: Measure Flattening", host), "flipped_faces_number");
+    const std::string note = flat.notes.empty() ? "" : flat.notes.back();
+    EXPECT_EQ(lost > 0.0, contains(note, "too thin for 32-bit"));
+    if (lost > 0.0) {
+        EXPECT_TRUE(contains(note, std::to_string(static_cast<int>(lost)) + " faces"));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "devseg/pack/compaction.h"
 #include "devseg/parallel.h"
 
 namespace devseg {
@@ -25,10 +26,14 @@ constexpr double start_growth = 1.15;         // the first square, in sides of t
 constexpr double coarse_growth = 1.05;        // while the first square is too small
 constexpr double coarse_step = 0.04;          // first attempt at shrinking, as a share of the side
 constexpr double first_work = 3.0e8;          // operations to separate charts in the first square
-constexpr double coarse_work = 1.9e9;         // and in smaller and smaller squares
-constexpr double most_work_factor = 2.0;      // more for many charts, up to this factor
+constexpr double begin_work = 0.6e9;          // and in smaller and smaller squares,
+constexpr double next_step = 0.01;            // then again in steps from this one on
+constexpr double next_work = 1.5e9;           // for the layouts that are worth it
+constexpr double most_work_factor = 2.0;      // more for many charts, up to this factor,
+constexpr double many_crowd = 10.0;           // from this multiple of the usual number on
+constexpr double few_work_factor = 0.1;       // few charts are tried in many frames
 constexpr int no_failure_limit = 1000;        // beyond what the work allows
-constexpr SeparationOptions coarse_moves{0, 8, 100};
+constexpr SeparationOptions usual_moves{0, 8, 100};
 constexpr SeparationOptions many_moves{12, 4, 100};
 
 // The fine grid.
@@ -45,8 +50,21 @@ constexpr SeparationOptions fine_moves{7, 2 * fine_turns + 1, 40};
 
 // The distance to keep is a share of a side that is only known afterwards. The fine search assumes
 // one that is larger than the coarse square by this factor, and starts again if it was too small.
-constexpr double padding_reserve = 1.02;
+constexpr double padding_reserve = 1.05;
 constexpr double padding_step = 1.1;
+
+double crowd_of(std::size_t charts) {
+    return std::max(1.0, static_cast<double>(charts) / usual_charts);
+}
+
+double work_factor(std::size_t charts) {
+    return charts <= few_charts ? few_work_factor
+                                : std::clamp(crowd_of(charts) / many_crowd, 1.0, most_work_factor);
+}
+
+SeparationOptions coarse_moves(std::size_t charts) {
+    return charts > many_charts ? many_moves : usual_moves;
+}
 
 // Charts from the largest box to the smallest.
 std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
@@ -69,11 +87,11 @@ std::vector<std::size_t> by_height(const std::vector<ChartPoses>& poses) {
     return order;
 }
 
-Frame frame_of(double side, double aspect) {
-    return {static_cast<Index>(side), std::max(Index{1}, static_cast<Index>(side * aspect))};
+Frame frame_of(double width, double aspect) {
+    return {static_cast<Index>(width), std::max(Index{1}, static_cast<Index>(width * aspect))};
 }
 
-// A square that shrinks as long as the charts can be separated.
+// A frame that shrinks as long as the charts can be separated.
 class Shrinking {
 public:
     Shrinking(const std::vector<ChartPoses>& poses, double aspect, const SeparationOptions& options,
@@ -81,12 +99,12 @@ public:
         : poses_(poses), aspect_(aspect), options_(options), separation_(poses, seed, progress) {}
 
     Layout layout;
-    Index side = 0; // cells; of the frame's width
+    Frame frame;
 
-    // Finds a first feasible square, from `start` cells upwards. An empty layout is made anew.
-    void grow(double start, double factor, double work) {
-        for (int attempt = 0;; ++attempt, start *= factor) {
-            const Frame frame = frame_of(start, aspect_);
+    // Finds a first feasible frame, from `width` cells upwards. An empty layout is made anew.
+    void grow(double width, double factor, double work) {
+        for (int attempt = 0;; ++attempt, width *= factor) {
+            frame = frame_of(width, aspect_);
             // Shelves are the last resort: they succeed as soon as the frame is large enough.
             const bool shelves = poses_.size() > very_many_charts && layout.empty();
             if (shelves || attempt >= patient_attempts) {
@@ -98,22 +116,20 @@ public:
             if (layout.empty())
                 continue;
             auto budget = static_cast<std::int64_t>(work);
-            if (separation_.run(layout, frame, options_, budget)) {
-                side = frame.width;
+            if (separation_.run(layout, frame, options_, budget))
                 return;
-            }
         }
     }
 
     void shrink(double step, double work, int failures) {
         auto budget = static_cast<std::int64_t>(work);
+        bool other_side = false;
         while (budget > 0 && failures > 0) {
-            const Index next = side - std::max(Index{1}, static_cast<Index>(side * step));
-            if (!separation_.fits(frame_of(next, aspect_)) && side - next == 1)
-                return;
-            if (separation_.run(layout, frame_of(next, aspect_), options_, budget)) {
-                side = next;
+            const Frame next = smaller(step, other_side);
+            if (separation_.run(layout, next, options_, budget)) {
+                frame = next;
             } else {
+                other_side = !other_side;
                 step *= 0.5;
                 --failures;
             }
@@ -123,6 +139,21 @@ public:
 private:
     static constexpr int patient_attempts = 8;
     static constexpr double shelf_growth = 1.05;
+    static constexpr double most_drift = 0.02; // away from the aspect
+
+    // A cell of a coarse grid is a large step already: it is taken from one side only, from the one
+    // that is too long for the aspect or, unless it is far too short, from the other one.
+    Frame smaller(double step, bool other_side) const {
+        const auto cells = static_cast<Index>(std::max(frame.width, frame.height) * step);
+        if (cells > 1) {
+            const Frame next = frame_of(frame.width - cells, aspect_);
+            return {next.width, std::min(next.height, frame.height)};
+        }
+        const double excess = frame.width * aspect_ / frame.height; // of the width
+        const bool other = other_side && std::abs(excess - 1.0) < most_drift;
+        return (excess >= 1.0) != other ? Frame{frame.width - 1, frame.height}
+                                        : Frame{frame.width, frame.height - 1};
+    }
 
     const std::vector<ChartPoses>& poses_;
     double aspect_;
@@ -152,7 +183,7 @@ std::vector<ChartPoses> refine(const NestProblem& problem, Layout& layout, doubl
 
 void prepare(NestProblem& problem, Progress& progress) {
     const std::size_t n = problem.outlines.size();
-    const double crowd = std::max(1.0, static_cast<double>(n) / usual_charts);
+    const double crowd = crowd_of(n);
     problem.cell = problem.side / std::min(most_coarse_cells, coarse_cells * std::sqrt(crowd));
     const int turns = !problem.allow_rotation ? 1
                       : n <= very_many_charts ? orientations
@@ -173,32 +204,41 @@ void prepare(NestProblem& problem, Progress& progress) {
         progress);
 }
 
-std::vector<Placement> nest(const NestProblem& problem, double aspect, std::uint64_t seed,
-                            const Progress& progress) {
+CoarseLayout begin_nesting(const NestProblem& problem, double aspect, std::uint64_t seed,
+                           const Progress& progress) {
     const std::size_t n = problem.outlines.size();
-    const double crowd = std::max(1.0, static_cast<double>(n) / usual_charts);
-    const double work_factor = std::min(crowd / 10.0, most_work_factor);
-    const double longer = std::max(1.0, aspect); // side of the frame, in widths
-
-    Shrinking coarse(problem.poses, aspect, n > many_charts ? many_moves : coarse_moves, seed,
-                     progress);
+    Shrinking coarse(problem.poses, aspect, coarse_moves(n), seed, progress);
     coarse.grow(start_growth * problem.side / problem.cell / std::sqrt(aspect), coarse_growth,
                 first_work);
-    coarse.shrink(coarse_step, coarse_work * std::max(1.0, work_factor), no_failure_limit);
+    coarse.shrink(coarse_step, begin_work * work_factor(n), no_failure_limit);
+    return {std::move(coarse.layout), coarse.frame, aspect, seed};
+}
 
-    const double side = coarse.side * problem.cell;
+std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLayout& begun,
+                                      const Progress& progress) {
+    const std::size_t n = problem.outlines.size();
+    const double crowd = crowd_of(n);
+    // The seed is another one: with the same one, the same orders of moves would fail again.
+    Shrinking coarse(problem.poses, begun.aspect, coarse_moves(n), ~begun.seed, progress);
+    coarse.layout = begun.layout;
+    coarse.frame = begun.frame;
+    coarse.shrink(next_step, next_work * work_factor(n), no_failure_limit);
+
+    const Frame frame = coarse.frame;
     const double cells = std::min(most_fine_cells, fine_cells * std::sqrt(crowd));
-    const double cell = side / cells;
-    for (double assumed = padding_reserve * side * longer;; assumed *= padding_step) {
+    const double cell = frame.width * problem.cell / cells;
+    const double fine_aspect = static_cast<double>(frame.height) / frame.width;
+    const double longer = std::max(1.0, fine_aspect); // side of the frame, in widths
+    for (double assumed = padding_reserve * cell * cells * longer;; assumed *= padding_step) {
         Layout layout = coarse.layout;
         const std::vector<ChartPoses> poses =
             refine(problem, layout, cell, 0.5 * problem.padding * assumed);
-        Shrinking fine(poses, aspect, fine_moves, seed, progress);
+        Shrinking fine(poses, fine_aspect, fine_moves, begun.seed, progress);
         fine.layout = std::move(layout);
         fine.grow(cells, fine_growth, fine_first_work * crowd);
-        if (cell * fine.side * longer > assumed)
+        if (cell * std::max(fine.frame.width, fine.frame.height) > assumed)
             continue;
-        fine.shrink(fine_step, fine_work * std::max(1.0, work_factor), fine_failures);
+        fine.shrink(fine_step, fine_work * work_factor(n), fine_failures);
         std::vector<Placement> placements(n);
         for (std::size_t i = 0; i < n; ++i) {
             const Spot& spot = fine.layout[i];
@@ -207,7 +247,8 @@ std::vector<Placement> nest(const NestProblem& problem, double aspect, std::uint
             placements[i].sine = c.sine;
             placements[i].offset = c.offset + cell * Vec2(spot.x, spot.y);
         }
-        return placements;
+        return compact(problem.outlines, placements, {problem.padding, problem.allow_rotation},
+                       progress);
     }
 }
 

@@ -1,9 +1,10 @@
-// Nesting: charts into a square as small as a fixed effort finds, in two stages.
+// Nesting: charts into a frame as small as a fixed effort finds, in three stages.
 //
 // 1. On a coarse grid, charts in many orientations are inserted one by one; then the square is
 //    shrunk in small steps and the overlaps that appear are separated again.
 // 2. On a fine grid, whose images are conservative, the layout found is separated and shrunk
 //    further by small moves and turns. What it returns keeps the distance exactly.
+// 3. The exact outlines are compacted (see compaction.h).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,8 @@
 #include "devseg/pack/separation.h"
 
 namespace devseg {
+
+constexpr std::size_t few_charts = 4; // that cannot fill a square
 
 struct NestProblem {
     std::vector<Outline> outlines;
@@ -26,8 +29,20 @@ struct NestProblem {
 /// Fills in the coarse grid.
 void prepare(NestProblem& problem, Progress& progress);
 
-/// The layout for one seed, in a rectangle whose height is `aspect` times its width.
-std::vector<Placement> nest(const NestProblem& problem, double aspect, std::uint64_t seed,
-                            const Progress& progress);
+/// What a search has found on the coarse grid.
+struct CoarseLayout {
+    Layout layout;
+    Frame frame;
+    double aspect = 1.0;
+    std::uint64_t seed = 0;
+};
+
+/// A first part of the coarse search, in a frame whose height is about `aspect` times its width.
+CoarseLayout begin_nesting(const NestProblem& problem, double aspect, std::uint64_t seed,
+                           const Progress& progress);
+
+/// The rest of the coarse search and what follows it.
+std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLayout& begun,
+                                      const Progress& progress);
 
 } // namespace devseg

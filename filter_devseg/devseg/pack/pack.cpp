@@ -6,7 +6,9 @@
 #include <string>
 
 #include "devseg/errors.h"
+#include "devseg/pack/compaction.h"
 #include "devseg/pack/nest.h"
+#include "devseg/pack/proximity.h"
 #include "devseg/pack/shelves.h"
 #include "devseg/parallel.h"
 
@@ -16,21 +18,21 @@ namespace {
 
 constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
 constexpr double least_use = 0.1;         // what padding alone must leave of it
-constexpr std::size_t few_charts = 4;     // that cannot fill a square
 constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each
-constexpr std::size_t chains = 2;         // independent searches: fixed, whatever the threads
+// Independent searches, and how many of them are not given up halfway. An even number keeps two
+// threads busy; it is the same whatever the threads.
+constexpr std::size_t chains = 4;
+constexpr std::size_t finished_chains = 2;
 
 // Heights of the rectangle, in widths, that are tried for a few charts.
-constexpr double few_aspects[] = {1.0, 0.8, 0.65, 0.5, 0.35, 0.25};
+constexpr double few_aspects[] = {1.0,  0.92, 0.85, 0.78, 0.71, 0.65, 0.59,
+                                  0.53, 0.47, 0.41, 0.35, 0.3,  0.25};
 
-struct Box {
-    Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
-    Vec2 high = Vec2::Constant(std::numeric_limits<double>::lowest());
-    Vec2 size() const { return high - low; }
-};
+const Box nothing = {Vec2::Constant(std::numeric_limits<double>::max()),
+                     Vec2::Constant(std::numeric_limits<double>::lowest())};
 
 Box box_of(const std::vector<Outline>& outlines, const std::vector<Placement>& placements) {
-    Box box;
+    Box box = nothing;
     for (std::size_t i = 0; i < outlines.size(); ++i)
         for (const Vec2& p : outlines[i].hull) {
             box.low = box.low.cwiseMin(placements[i](p));
@@ -49,7 +51,7 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
     for (const Outline& outline : outlines) {
         area += outline.area;
         const std::vector<Vec2>& hull = outline.hull;
-        Box box;
+        Box box = nothing;
         for (std::size_t k = 0; k < hull.size(); ++k) {
             perimeter += (hull[(k + 1) % hull.size()] - hull[k]).norm();
             box.low = box.low.cwiseMin(hull[k]);
@@ -73,32 +75,33 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
     return std::max(side, longest) > 0.0 ? std::max(side, longest) : 1.0;
 }
 
-// Small is good; of a few charts, which cannot fill a square, rather the box than the square.
-double badness(const Vec2& box, std::size_t charts) {
-    constexpr double share_of_box = 0.75;
-    const double square = box.maxCoeff() * box.maxCoeff();
-    return charts > few_charts
-               ? square
-               : std::pow(box.prod(), share_of_box) * std::pow(square, 1.0 - share_of_box);
-}
-
 std::vector<Placement> find_placements(const NestProblem& problem, Progress& progress) {
-    const std::size_t n = problem.outlines.size();
-    const bool few = n <= few_charts;
-    const std::size_t count = few ? std::size(few_aspects) : chains;
-    std::vector<std::vector<Placement>> found(count);
+    const bool few = problem.outlines.size() <= few_charts;
+    std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : chains);
     parallel_for(
-        static_cast<int>(count),
+        static_cast<int>(begun.size()),
         [&](int k) {
-            found[at(k)] = nest(problem, few ? few_aspects[k] : 1.0,
-                                static_cast<std::uint64_t>(k) + 1, progress);
+            begun[at(k)] = begin_nesting(problem, few ? few_aspects[k] : 1.0,
+                                         static_cast<std::uint64_t>(k) + 1, progress);
         },
         progress);
-    const auto size = [&](const std::vector<Placement>& placements) {
-        return badness(box_of(problem.outlines, placements).size(), n);
+    if (!few) {
+        const auto bad = [](const CoarseLayout& c) {
+            return badness(Vec2(c.frame.width, c.frame.height));
+        };
+        std::stable_sort(begun.begin(), begun.end(),
+                         [&](const auto& a, const auto& b) { return bad(a) < bad(b); });
+        begun.resize(finished_chains);
+    }
+    std::vector<std::vector<Placement>> found(begun.size());
+    parallel_for(
+        static_cast<int>(found.size()),
+        [&](int k) { found[at(k)] = finish_nesting(problem, begun[at(k)], progress); }, progress);
+    const auto bad = [&](const std::vector<Placement>& placements) {
+        return badness(box_of(problem.outlines, placements).size());
     };
     return *std::min_element(found.begin(), found.end(),
-                             [&](const auto& a, const auto& b) { return size(a) < size(b); });
+                             [&](const auto& a, const auto& b) { return bad(a) < bad(b); });
 }
 
 } // namespace

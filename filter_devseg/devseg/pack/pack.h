@@ -36,11 +36,12 @@ struct PackResult {
 };
 
 /// A square is shrunk again and again, and the overlaps that appear are separated by guided local
-/// search on a coarse and then on a fine grid (see nest.h). Placed charts are at least
-/// `padding` · side apart. Up to 4 charts share a rectangle, as they cannot fill a square; one
-/// chart takes its best box, and more than 1000 lie on shelves. The same bytes whatever the number
-/// of threads. Throws InvalidParameter for a padding outside of [0, 0.1], or one that leaves no
-/// room for so many charts, and Cancelled.
+/// search on a coarse and then on a fine grid (see nest.h); at last the outlines themselves are
+/// pushed together (see compaction.h). Small is the box of the layout, almost whatever its shape:
+/// up to 4 charts, which cannot fill a square, are tried in flatter and flatter rectangles. Placed
+/// charts are at least `padding` · side apart. One chart takes its best box, and more than 1000 lie
+/// on shelves. The same bytes whatever the number of threads. Throws InvalidParameter for a padding
+/// outside of [0, 0.1], or one that leaves no room for so many charts, and Cancelled.
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
                        Progress& progress);
 

@@ -1,0 +1,280 @@
+// The program follows the compaction by linear programming of
+//   Z. Li, V. Milenkovic: "Compaction and separation algorithms for non-convex polygons and their
+//   applications", European Journal of Operational Research 84(3), 1995,
+//   doi:10.1016/0377-2217(95)00021-H
+// Here charts turn as well, and the moves are the least ones, which Hildreth's method finds:
+//   C. Hildreth: "A quadratic programming procedure", Naval Research Logistics Quarterly 4(1),
+//   1957, doi:10.1002/nav.3800040113
+#include "devseg/pack/compaction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "devseg/pack/proximity.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double share_of_box = 0.9;      // in the badness
+constexpr double least_distance = 5.0e-4; // that is kept, as a share of the side
+constexpr double distance_slack = 1.0e-4; // kept in addition, as a share of the distance
+constexpr double most_move = 0.45;        // of the least distance: outlines never cross
+constexpr double push = 0.5;              // of the walls, in largest moves
+constexpr double wall_inverse_mass = 0.3; // walls give way less than charts
+constexpr double tolerance = 1.0e-3;      // of the bounds, in largest moves
+constexpr int most_rounds = 120;
+constexpr int most_sweeps = 300;
+constexpr int patience = 15;                   // rounds without progress
+constexpr double progress_step = 1e-4;         // that counts as progress, as a share
+constexpr std::int64_t most_work = 20'000'000; // bounds and edges to look at
+constexpr std::int64_t edge_work = 10;         // to place one and to find what is near
+
+double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+// A chart as a rigid body of mass 1.
+struct Body {
+    Vec2 centre = Vec2::Zero();   // about which it turns, in the chart's coordinates
+    double inverse_inertia = 0.0; // 0: it does not turn
+    double radius = 0.0;          // of its farthest point
+    Vec2 position = Vec2::Zero(); // of the centre
+    double angle = 0.0;
+    double cosine = 1.0;
+    double sine = 0.0;
+
+    Placement placement() const {
+        const Placement turn{cosine, sine, Vec2::Zero()};
+        return {cosine, sine, position - turn(centre)};
+    }
+};
+
+Body make_body(const Outline& outline, const Placement& placement, bool allow_rotation) {
+    Body body;
+    const double count = static_cast<double>(outline.hull.size());
+    for (const Vec2& p : outline.hull)
+        body.centre += p / count;
+    double inertia = 0.0;
+    for (const Vec2& p : outline.hull) {
+        body.radius = std::max(body.radius, (p - body.centre).norm());
+        inertia += (p - body.centre).squaredNorm() / count;
+    }
+    if (allow_rotation && inertia > 0.0)
+        body.inverse_inertia = 1.0 / inertia;
+    body.position = placement(body.centre);
+    body.cosine = placement.cosine;
+    body.sine = placement.sine;
+    body.angle = std::atan2(body.sine, body.cosine);
+    return body;
+}
+
+struct Move {
+    Vec2 shift = Vec2::Zero();
+    double turn = 0.0;
+};
+
+// normal · (move of a − move of b) ≥ need, where the points of a and b have these arms.
+struct Bound {
+    std::size_t a = 0;
+    std::size_t b = 0; // from the number of charts on: a wall
+    Vec2 normal = Vec2::Zero();
+    double arm_a = 0.0;
+    double arm_b = 0.0;
+    double need = 0.0;
+    double inverse_mass = 0.0; // of both together, along the normal
+    double impulse = 0.0;
+};
+
+class Compaction {
+public:
+    Compaction(const std::vector<Outline>& outlines, const std::vector<Placement>& placements,
+               const PackOptions& options)
+        : outlines_(outlines), padding_(options.padding) {
+        for (std::size_t i = 0; i < outlines.size(); ++i)
+            bodies_.push_back(make_body(outlines[i], placements[i], options.allow_rotation));
+        measure();
+    }
+
+    Vec2 size() const { return box_.size(); }
+    std::int64_t work() const { return work_; }
+    bool feasible() const { return least_ >= goal_ * (1.0 - 0.5 * distance_slack); }
+
+    std::vector<Placement> placements() const {
+        std::vector<Placement> result;
+        for (const Body& body : bodies_)
+            result.push_back(body.placement());
+        return result;
+    }
+
+    // The walls come closer only while all distances are kept.
+    void step() {
+        const std::size_t n = bodies_.size();
+        const double most = most_move * least_;
+        moves_.assign(n + 4, Move{});
+        if (feasible()) {
+            const double inward = push * most;
+            for (std::size_t wall = 0; wall < 4; ++wall)
+                moves_[n + wall].shift = inward * wall_normal(wall);
+        }
+        for (int sweep = 0; sweep < most_sweeps && relax(tolerance * most); ++sweep)
+            ;
+        for (std::size_t i = 0; i < n; ++i) {
+            Body& body = bodies_[i];
+            const Move& move = moves_[i];
+            const double length = move.shift.norm() + std::abs(move.turn) * body.radius;
+            const double scale = length > most ? most / length : 1.0;
+            body.position += scale * move.shift;
+            if (move.turn != 0.0) {
+                body.angle += scale * move.turn;
+                body.cosine = std::cos(body.angle);
+                body.sine = std::sin(body.angle);
+            }
+        }
+        measure();
+    }
+
+private:
+    static Vec2 wall_normal(std::size_t wall) {
+        const double sign = wall < 2 ? 1.0 : -1.0;
+        return wall % 2 == 0 ? Vec2(sign, 0.0) : Vec2(0.0, sign);
+    }
+
+    // Lays out edges and hulls.
+    void place() {
+        edges_.clear();
+        box_.low = Vec2::Constant(std::numeric_limits<double>::max());
+        box_.high = -box_.low;
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const Placement placement = bodies_[i].placement();
+            const Outline& outline = outlines_[i];
+            for (const Vec2& p : outline.hull) {
+                box_.low = box_.low.cwiseMin(placement(p));
+                box_.high = box_.high.cwiseMax(placement(p));
+            }
+            for (const OutlineEdge& e : outline.edges)
+                edges_.push_back({placement(e.from), placement(e.to), i});
+            if (outline.edges.empty()) {
+                const Vec2 p = placement(outline.hull.front());
+                edges_.push_back({p, p, i});
+            }
+        }
+    }
+
+    // Finds all bounds, and the least distance of two charts as far as it matters.
+    void measure() {
+        place();
+        const double side = size().maxCoeff() / (1.0 - padding_);
+        goal_ = std::max(padding_, least_distance) * side * (1.0 + distance_slack);
+        // Farther points cannot come too close in one round.
+        const double reach = goal_ * (1.0 + 2.0 * most_move);
+        least_ = reach;
+        bounds_.clear();
+        for (const ClosePair& pair : proximity_.find(edges_, box_, bodies_.size(), reach)) {
+            least_ = std::min(least_, pair.distance);
+            add(pair, goal_ - pair.distance);
+        }
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const Placement placement = bodies_[i].placement();
+            for (const Vec2& point : outlines_[i].hull)
+                for (std::size_t wall = 0; wall < 4; ++wall) {
+                    const Vec2 p = placement(point);
+                    const Vec2 normal = wall_normal(wall);
+                    const double distance = normal.dot(p - (wall < 2 ? box_.low : box_.high));
+                    if (distance < reach)
+                        add({i, bodies_.size() + wall, p, p, normal, distance}, -distance);
+                }
+        }
+        work_ += edge_work * static_cast<std::int64_t>(edges_.size());
+    }
+
+    void add(const ClosePair& pair, double need) {
+        Bound bound;
+        bound.a = pair.a;
+        bound.b = pair.b;
+        bound.normal = pair.normal;
+        bound.need = need;
+        const Body& a = bodies_[pair.a];
+        bound.arm_a = cross(pair.at_a - a.position, pair.normal);
+        bound.inverse_mass = 1.0 + bound.arm_a * bound.arm_a * a.inverse_inertia;
+        if (pair.b < bodies_.size()) {
+            const Body& b = bodies_[pair.b];
+            bound.arm_b = cross(pair.at_b - b.position, pair.normal);
+            bound.inverse_mass += 1.0 + bound.arm_b * bound.arm_b * b.inverse_inertia;
+        } else {
+            bound.inverse_mass += wall_inverse_mass;
+        }
+        bounds_.push_back(bound);
+    }
+
+    // One sweep of Hildreth's method over the bounds; true when one was missed by more than this.
+    bool relax(double missed_by) {
+        bool missed = false;
+        for (Bound& bound : bounds_) {
+            Move& a = moves_[bound.a];
+            Move& b = moves_[bound.b];
+            const double miss = bound.need - bound.normal.dot(a.shift - b.shift) -
+                                bound.arm_a * a.turn + bound.arm_b * b.turn;
+            const double change = std::max(-bound.impulse, miss / bound.inverse_mass);
+            if (change == 0.0)
+                continue;
+            missed = missed || miss > missed_by;
+            bound.impulse += change;
+            a.shift += change * bound.normal;
+            a.turn += change * bound.arm_a * bodies_[bound.a].inverse_inertia;
+            if (bound.b < bodies_.size()) {
+                b.shift -= change * bound.normal;
+                b.turn -= change * bound.arm_b * bodies_[bound.b].inverse_inertia;
+            } else {
+                b.shift -= change * wall_inverse_mass * bound.normal;
+            }
+        }
+        work_ += static_cast<std::int64_t>(bounds_.size());
+        return missed;
+    }
+
+    const std::vector<Outline>& outlines_;
+    double padding_;
+    std::vector<Body> bodies_;
+    std::vector<Move> moves_; // of the charts and of the four walls
+    std::vector<PlacedEdge> edges_;
+    Box box_;
+    Proximity proximity_;
+    std::vector<Bound> bounds_;
+    double goal_ = 0.0;  // the distance to keep
+    double least_ = 0.0; // distance, at most the reach
+    std::int64_t work_ = 0;
+};
+
+} // namespace
+
+double badness(const Vec2& box) {
+    const double square = box.maxCoeff() * box.maxCoeff();
+    return std::pow(box.prod(), share_of_box) * std::pow(square, 1.0 - share_of_box);
+}
+
+std::vector<Placement> compact(const std::vector<Outline>& outlines,
+                               const std::vector<Placement>& placements, const PackOptions& options,
+                               const Progress& progress) {
+    Compaction compaction(outlines, placements, options);
+    std::vector<Placement> best = placements;
+    double least = badness(compaction.size());
+    for (int round = 0, idle = 0; round < most_rounds && idle < patience; ++round, ++idle) {
+        progress.check();
+        if (compaction.work() > most_work)
+            break;
+        compaction.step();
+        const double now = badness(compaction.size());
+        if (!compaction.feasible() || now >= least)
+            continue;
+        if (now < least * (1.0 - progress_step))
+            idle = 0;
+        least = now;
+        best = compaction.placements();
+    }
+    return best;
+}
+
+} // namespace devseg
