@@ -15,22 +15,6 @@ namespace {
 
 using checks::Disk;
 
-// A strip of paper, folded by the same angle along `folds` rulings whose direction varies: a
-// tangent developable, built from its development.
-RawMesh folded_strip(Index folds, Index rows, double angle) {
-    RawMesh mesh = shapes::grid(folds, rows);
-    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
-    for (Index i = 0; i <= folds; ++i) {
-        const Vec3 bottom(0.3 * i, 0.0, 0.0);
-        const Vec3 ruling(0.6 * std::sin(0.3 * i), 2.0, 0.0);
-        place = place * Eigen::Translation3d(bottom) *
-                Eigen::AngleAxisd(angle, ruling.normalized()) * Eigen::Translation3d(-bottom);
-        for (Index j = 0; j <= rows; ++j)
-            mesh.points[at(j * (folds + 1) + i)] = place * (bottom + ruling * j / rows);
-    }
-    return mesh;
-}
-
 RawMesh bumpy_grid(Index cells) {
     RawMesh mesh = shapes::grid(cells, cells, cells, cells);
     for (Vec3& p : mesh.points)
@@ -129,7 +113,7 @@ AbfResult flatten(const Disk& disk) {
 TEST(Abf, DevelopablesAreFlattenedIsometrically) {
     const auto ruling = [](const Vec3& p) { return std::abs(p.y()) < 1e-12 && p.x() > 0.0; };
     for (const Disk& disk : {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
-                             Disk(shapes::cone(24, 7), ruling), Disk(folded_strip(20, 5, 0.2))}) {
+                             Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))}) {
         const AbfResult result = flatten(disk);
         EXPECT_TRUE(result.converged);
         EXPECT_LT(result.energy, 1e-18);

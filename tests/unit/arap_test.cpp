@@ -34,26 +34,10 @@ double energy_from_stretches(const Disk& disk, const std::vector<Vec2>& uv) {
     return sum / disk.problem.total_area;
 }
 
-// A strip of paper, folded by the same angle along rulings whose direction varies: a tangent
-// developable, built from its development.
-RawMesh folded_strip(Index folds, Index rows, double angle) {
-    RawMesh mesh = shapes::grid(folds, rows);
-    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
-    for (Index i = 0; i <= folds; ++i) {
-        const Vec3 bottom(0.3 * i, 0.0, 0.0);
-        const Vec3 ruling(0.6 * std::sin(0.3 * i), 2.0, 0.0);
-        place = place * Eigen::Translation3d(bottom) *
-                Eigen::AngleAxisd(angle, ruling.normalized()) * Eigen::Translation3d(-bottom);
-        for (Index j = 0; j <= rows; ++j)
-            mesh.points[at(j * (folds + 1) + i)] = place * (bottom + ruling * j / rows);
-    }
-    return mesh;
-}
-
 std::vector<Disk> developables() {
     const auto ruling = [](const Vec3& p) { return std::abs(p.y()) < 1e-12 && p.x() > 0.0; };
     return {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
-            Disk(shapes::cone(24, 7), ruling), Disk(folded_strip(20, 5, 0.2))};
+            Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))};
 }
 
 std::vector<Disk> curved() {

@@ -13,14 +13,7 @@ namespace devseg {
 namespace {
 
 using checks::contains;
-
-double number(const ParameterValue& value) {
-    if (const auto* b = std::get_if<bool>(&value))
-        return *b ? 1.0 : 0.0;
-    if (const auto* i = std::get_if<int>(&value))
-        return *i;
-    return std::get<double>(value);
-}
+using checks::number;
 
 // A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
 // that it is packed at once.

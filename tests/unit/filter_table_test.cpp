@@ -8,19 +8,13 @@
 
 #include "devseg/filters/filter.h"
 #include "unit/checks.h"
+#include "unit/host_checks.h"
 
 namespace devseg {
 namespace {
 
 using checks::contains;
-
-double number(const ParameterValue& value) {
-    if (const auto* b = std::get_if<bool>(&value))
-        return *b ? 1.0 : 0.0;
-    if (const auto* i = std::get_if<int>(&value))
-        return *i;
-    return std::get<double>(value);
-}
+using checks::number;
 
 bool is_snake_case(const std::string& name) {
     return std::regex_match(name, std::regex("[a-z][a-z0-9]*(_[a-z0-9]+)*"));

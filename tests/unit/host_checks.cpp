@@ -14,6 +14,14 @@ HostResult run(const std::string& menu_name, const HostMesh& host, const Paramet
     throw std::logic_error("no such filter");
 }
 
+double number(const ParameterValue& value) {
+    if (const auto* b = std::get_if<bool>(&value))
+        return *b ? 1.0 : 0.0;
+    if (const auto* i = std::get_if<int>(&value))
+        return *i;
+    return std::get<double>(value);
+}
+
 double value(const HostResult& result, const std::string& name) {
     for (const auto& [key, v] : result.values)
         if (key == name)

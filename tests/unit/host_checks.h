@@ -14,6 +14,7 @@ namespace devseg::checks {
 HostResult run(const std::string& menu_name, const HostMesh& host,
                const ParameterValues& values = {});
 double value(const HostResult& result, const std::string& name);
+double number(const ParameterValue& value);
 
 HostMesh host_of(const RawMesh& raw);
 void take_charts(HostMesh& host, const HostResult& result);

@@ -183,4 +183,18 @@ RawMesh helix_strip(Index steps, double turns, double inner, double outer, doubl
     return mesh;
 }
 
+RawMesh folded_strip(Index folds, Index rows, double angle) {
+    RawMesh mesh = grid(folds, rows);
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    for (Index i = 0; i <= folds; ++i) {
+        const Vec3 bottom(0.3 * i, 0.0, 0.0);
+        const Vec3 ruling(0.6 * std::sin(0.3 * i), 2.0, 0.0);
+        place = place * Eigen::Translation3d(bottom) *
+                Eigen::AngleAxisd(angle, ruling.normalized()) * Eigen::Translation3d(-bottom);
+        for (Index j = 0; j <= rows; ++j)
+            mesh.points[at(j * (folds + 1) + i)] = place * (bottom + ruling * j / rows);
+    }
+    return mesh;
+}
+
 } // namespace devseg::shapes

@@ -48,4 +48,8 @@ RawMesh plate_with_handle();
 /// where it makes more than one turn.
 RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise);
 
+/// A strip of paper, folded by the same angle (radians) along rulings whose direction varies: a
+/// tangent developable, built from its development.
+RawMesh folded_strip(Index folds, Index rows, double angle);
+
 } // namespace devseg::shapes

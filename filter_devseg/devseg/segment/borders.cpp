@@ -21,22 +21,6 @@ bool is_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
     return twin >= 0 && chart[at(h / 3)] != chart[at(twin / 3)];
 }
 
-// The half-edges that leave a vertex, starting with h, counterclockwise; on a mesh boundary the
-// last one before the gap may have no half-edge of its own.
-template <class Visit>
-bool visit_star(const Mesh& mesh, Index h, Visit visit) {
-    Index leaving = h;
-    do {
-        visit(leaving);
-        leaving = mesh.twin[at(Mesh::previous(leaving))];
-    } while (leaving >= 0 && leaving != h);
-    if (leaving == h)
-        return true; // closed star
-    for (Index back = mesh.twin[at(h)]; back >= 0; back = mesh.twin[at(Mesh::next(back))])
-        visit(Mesh::next(back));
-    return false;
-}
-
 // Vertices where borders end: three or more borders meet, or the mesh's boundary is reached.
 std::vector<std::uint8_t> find_junctions(const Mesh& mesh, const std::vector<Index>& chart) {
     std::vector<std::uint8_t> borders(mesh.points.size(), 0);

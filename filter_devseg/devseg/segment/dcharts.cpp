@@ -186,21 +186,12 @@ private:
     std::vector<double> area_;
 };
 
-// The faces around a corner's vertex, by turning through the half-edges.
+// The faces around a corner's vertex.
 NormalMoments vertex_star(const Mesh& mesh, Index corner) {
     NormalMoments moments;
-    const auto add = [&](Index h) {
+    visit_star(mesh, corner, [&](Index h) {
         moments.add(mesh.face_areas[at(h / 3)], mesh.face_normals[at(h / 3)]);
-    };
-    Index h = corner;
-    do {
-        add(h);
-        h = mesh.twin[at(Mesh::previous(h))];
-    } while (h >= 0 && h != corner);
-    if (h == corner)
-        return moments;
-    for (Index back = mesh.twin[at(corner)]; back >= 0; back = mesh.twin[at(Mesh::next(back))])
-        add(Mesh::next(back));
+    });
     return moments;
 }
 
