@@ -25,7 +25,8 @@ inline RawMesh read_raw_mesh(const CMeshO& m) {
     raw.faces.reserve(static_cast<std::size_t>(m.fn));
     for (const auto& f : m.face)
         if (!f.IsD())
-            raw.faces.push_back({live[vcg::tri::Index(m, f.cV(0))], live[vcg::tri::Index(m, f.cV(1))],
+            raw.faces.push_back({live[vcg::tri::Index(m, f.cV(0))],
+                                 live[vcg::tri::Index(m, f.cV(1))],
                                  live[vcg::tri::Index(m, f.cV(2))]});
     return raw;
 }

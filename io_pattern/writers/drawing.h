@@ -39,9 +39,9 @@ struct DrawingLayer {
 };
 
 struct Drawing {
-    double width = 0.0;  // mm
-    double height = 0.0; // mm
-    int decimals = 3;    // of all numbers in the file, enough for the smallest path
+    double width = 0.0;               // mm
+    double height = 0.0;              // mm
+    int decimals = 3;                 // of all numbers in the file, enough for the smallest path
     std::vector<DrawingLayer> layers; // those without paths and texts are not written
 };
 

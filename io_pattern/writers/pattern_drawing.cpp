@@ -61,8 +61,7 @@ SheetPlan plan_sheet(const Pattern& pattern) {
     below.size = Vec2(std::max(layout.x(), check_square), layout.y() + strip).array() + 2 * margin;
     SheetPlan beside;
     beside.square.x() += layout.x() + margin;
-    beside.size =
-        Vec2(layout.x() + strip, std::max(layout.y(), check_square)).array() + 2 * margin;
+    beside.size = Vec2(layout.x() + strip, std::max(layout.y(), check_square)).array() + 2 * margin;
     return beside.size.prod() < below.size.prod() ? beside : below;
 }
 

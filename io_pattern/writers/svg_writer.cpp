@@ -143,8 +143,8 @@ private:
 };
 
 [[noreturn]] void refuse(const QString& path, const QString& reason) {
-    throw FileError("expected to write the file '" + path.toStdString() + "', found: " +
-                    reason.toStdString() +
+    throw FileError("expected to write the file '" + path.toStdString() +
+                    "', found: " + reason.toStdString() +
                     "; choose a folder that exists, can be written and has room");
 }
 

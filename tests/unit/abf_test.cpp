@@ -112,8 +112,9 @@ AbfResult flatten(const Disk& disk) {
 
 TEST(Abf, DevelopablesAreFlattenedIsometrically) {
     const auto ruling = [](const Vec3& p) { return std::abs(p.y()) < 1e-12 && p.x() > 0.0; };
-    for (const Disk& disk : {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
-                             Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))}) {
+    for (const Disk& disk :
+         {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
+          Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))}) {
         const AbfResult result = flatten(disk);
         EXPECT_TRUE(result.converged);
         EXPECT_LT(result.energy, 1e-18);

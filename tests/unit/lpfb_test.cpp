@@ -149,8 +149,9 @@ TEST(Lpfb, ImpossibleBoundariesAreRefused) {
 
 TEST(Lpfb, DevelopablesAreFlattenedIsometrically) {
     const auto ruling = [](const Vec3& p) { return std::abs(p.y()) < 1e-12 && p.x() > 0.0; };
-    for (const Disk& disk : {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
-                             Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))}) {
+    for (const Disk& disk :
+         {Disk(shapes::grid(5, 4)), Disk(shapes::cylinder_tube(24, 7)),
+          Disk(shapes::cone(24, 7), ruling), Disk(shapes::folded_strip(20, 5, 0.2))}) {
         const LpfbResult result = flatten(disk);
         EXPECT_EQ(result.flips, 0);
         EXPECT_EQ(result.mended, 0);

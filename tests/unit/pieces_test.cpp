@@ -129,10 +129,9 @@ TEST(Pieces, FlatSheetKeepsItsSizeAtAnyScaleOfTheTexture) {
         for (int i = 0; i < 6; ++i)
             for (int j = 0; j < 4; ++j) {
                 const Vec3 a(i * 0.5, j * 0.5, 7.0);
-                model.add_quad(a, a + Vec3(0.5, 0, 0), a + Vec3(0.5, 0.5, 0), a + Vec3(0, 0.5, 0),
-                               [&](const Vec3& p) {
-                                   return Vec2(uv_scale * (flat(p) + Vec2(0.3, -0.2)));
-                               });
+                model.add_quad(
+                    a, a + Vec3(0.5, 0, 0), a + Vec3(0.5, 0.5, 0), a + Vec3(0, 0.5, 0),
+                    [&](const Vec3& p) { return Vec2(uv_scale * (flat(p) + Vec2(0.3, -0.2))); });
             }
         PatternOptions options;
         options.mm_per_unit = 20.0;
@@ -254,8 +253,7 @@ TEST(Pieces, MirroredChartAmongOthersIsTurnedOverAndKeptClear) {
         ASSERT_EQ(pattern.pieces.size(), 3u);
         expect_same_shape(pattern.pieces[0], pattern.pieces[1]);
         expect_same_shape(pattern.pieces[0], pattern.pieces[2]);
-        EXPECT_TRUE(
-            pattern.pieces[0].box.intersection(pattern.pieces[2].box).isEmpty());
+        EXPECT_TRUE(pattern.pieces[0].box.intersection(pattern.pieces[2].box).isEmpty());
     }
 }
 
@@ -277,8 +275,8 @@ TEST(Pieces, HeightScalesAlongY) {
 
 TEST(Pieces, ScalesOutOfRangeAreRefused) {
     const Model model = letter_l(Vec2::Zero(), flat);
-    for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(),
-                             1e-30, 1e30}) {
+    for (const double bad :
+         {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity(), 1e-30, 1e30}) {
         PatternOptions options;
         options.mm_per_unit = bad;
         EXPECT_THROW(pattern_of(model, options), InvalidParameter) << bad;
@@ -324,17 +322,16 @@ TEST(Pieces, CollapsedChartsAreCountedAndNamed) {
 TEST(Pieces, ClosedSurfaceWithoutSeamsIsRefused) {
     Model model;
     const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0, 0, 1);
-    for (const auto& [p, q, r] : {std::tie(a, c, b), std::tie(a, b, d), std::tie(b, c, d),
-                                  std::tie(a, d, c)})
+    for (const auto& [p, q, r] :
+         {std::tie(a, c, b), std::tie(a, b, d), std::tie(b, c, d), std::tie(a, d, c)})
         model.add(p, q, r, flat);
     EXPECT_THROW(pattern_of(model), InvalidMesh);
 }
 
 TEST(Pieces, FoldsAreReported) {
     // The last square of the L is folded back onto the first one, but for a tenth.
-    const Model model = letter_l(Vec2::Zero(), [](const Vec3& p) {
-        return Vec2(p.x() > 1.5 ? 0.1 : p.x(), p.y());
-    });
+    const Model model = letter_l(
+        Vec2::Zero(), [](const Vec3& p) { return Vec2(p.x() > 1.5 ? 0.1 : p.x(), p.y()); });
     const Pattern pattern = pattern_of(model);
     ASSERT_FALSE(pattern.notes.empty());
     EXPECT_TRUE(contains(pattern.notes[0], "1 of 1 pieces folds over")) << pattern.notes[0];

@@ -26,8 +26,8 @@ class TemporaryFolder {
 public:
     TemporaryFolder()
         : path_(fs::temp_directory_path() /
-                ("devseg_svg_" + std::string(testing::UnitTest::GetInstance()
-                                                 ->current_test_info()->name()))) {
+                ("devseg_svg_" +
+                 std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
         fs::remove_all(path_);
         fs::create_directories(path_);
     }
@@ -71,8 +71,7 @@ PatternPiece round_piece(const Vec2& centre, double radius, const std::string& n
     const int count = 200;
     for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * pi * i / count;
-        piece.outer.points.push_back(centre +
-                                     radius * Vec2(std::cos(angle), std::sin(angle)));
+        piece.outer.points.push_back(centre + radius * Vec2(std::cos(angle), std::sin(angle)));
         piece.box.extend(piece.outer.points.back());
     }
     piece.area = piece.outer.area = 0.5 * count * std::sin(2.0 * pi / count) * radius * radius;
@@ -148,8 +147,8 @@ TEST(SvgWriter, PointsThatRoundToOneAreWrittenOnce) {
     Drawing drawing;
     drawing.width = drawing.height = 10;
     DrawingLayer layer{"cut", "Cut", "#ff0000", {}, {}, {}};
-    layer.paths.push_back({"p", {{{Vec2(1, 1), Vec2(1.0001, 1), Vec2(2, 1), Vec2(2, 2),
-                                   Vec2(1, 1.0001)}, true}}});
+    layer.paths.push_back(
+        {"p", {{{Vec2(1, 1), Vec2(1.0001, 1), Vec2(2, 1), Vec2(2, 2), Vec2(1, 1.0001)}, true}}});
     drawing.layers.push_back(layer);
     EXPECT_NE(svg_bytes(drawing).find("d=\"M 1,9 L 2,9 L 2,8 Z\""), std::string::npos);
 }

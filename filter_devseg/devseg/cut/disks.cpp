@@ -157,8 +157,8 @@ private:
                 continue;
             if (in_forest(forest, h) || in_forest(forest, opposite))
                 continue;
-            duals.push_back({forest.distance[at(s_.origin(h))] +
-                                 forest.distance[at(s_.target(h))] + edge_length(mesh_, s_, h),
+            duals.push_back({forest.distance[at(s_.origin(h))] + forest.distance[at(s_.target(h))] +
+                                 edge_length(mesh_, s_, h),
                              h});
         }
         std::stable_sort(duals.begin(), duals.end(),
@@ -196,9 +196,8 @@ private:
         cut_path(from_far, farthest(from_far));
     }
     static Index farthest(const PathForest& forest) {
-        return static_cast<Index>(
-            std::max_element(forest.distance.begin(), forest.distance.end()) -
-            forest.distance.begin());
+        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
+                                  forest.distance.begin());
     }
 
     const Mesh& mesh_;

@@ -12,8 +12,8 @@
 namespace devseg {
 
 struct DiskCuts {
-    ChartMap charts;        // the same charts with more seams
-    Index cut_charts = 0;   // charts that had to be cut
+    ChartMap charts;         // the same charts with more seams
+    Index cut_charts = 0;    // charts that had to be cut
     double cut_length = 0.0; // total length of the new cuts, internal units
 };
 

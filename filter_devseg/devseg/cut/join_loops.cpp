@@ -8,8 +8,7 @@
 
 namespace devseg {
 
-VertexEdges::VertexEdges(const ChartSurface& surface)
-    : begin_(at(surface.vertex_count()) + 1, 0) {
+VertexEdges::VertexEdges(const ChartSurface& surface) : begin_(at(surface.vertex_count()) + 1, 0) {
     const auto each = [&](auto visit) {
         for (Index h = 0; h < 3 * surface.face_count(); ++h) {
             visit(surface.origin(h), h);

@@ -44,9 +44,14 @@ public:
     template <class Enum>
     Declare& choice(Enum Options::*field, std::string name, std::string label,
                     std::vector<std::string> choices, std::string help) {
-        Parameter parameter{std::move(name), std::move(label), std::move(help),
-                            ParameterKind::choice, static_cast<int>(Options{}.*field), 0.0,
-                            static_cast<double>(choices.size()) - 1.0, std::move(choices)};
+        Parameter parameter{std::move(name),
+                            std::move(label),
+                            std::move(help),
+                            ParameterKind::choice,
+                            static_cast<int>(Options{}.*field),
+                            0.0,
+                            static_cast<double>(choices.size()) - 1.0,
+                            std::move(choices)};
         setters_.emplace_back([field, name = parameter.name, count = parameter.choices.size()](
                                   Options& options, const ParameterValue& value) {
             const int position = std::get<int>(value);

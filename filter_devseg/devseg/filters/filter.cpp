@@ -52,8 +52,8 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bo
                 return std::nullopt;
             if (!p.allFinite())
                 throw InvalidMesh("expected finite texture coordinates, found a NaN or an infinite "
-                                  "number at face " + std::to_string(source) +
-                                      "; run 'Charts: Flatten' again",
+                                  "number at face " +
+                                      std::to_string(source) + "; run 'Charts: Flatten' again",
                                   {static_cast<Index>(source)});
             uv[at(3 * f + k)] = p;
         }

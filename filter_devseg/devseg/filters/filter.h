@@ -58,8 +58,8 @@ enum Writes : unsigned {
 /// What filters see of a mesh: checked, in internal units.
 struct FilterInput {
     const Mesh& mesh;
-    std::optional<ChartMap> charts; // from chart_id and seam_edges, if the mesh has them
-    std::optional<CornerUv> uv;     // wedge texture coordinates, if the mesh has them
+    std::optional<ChartMap> charts;        // from chart_id and seam_edges, if the mesh has them
+    std::optional<CornerUv> uv;            // wedge texture coordinates, if the mesh has them
     const std::vector<Index>& source_face; // #F: the host's number of each face, for results
 };
 

@@ -93,8 +93,7 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     progress.begin_phase("cutting charts to disks", 0.05);
     DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
     progress.begin_phase("flattening charts", 0.75);
-    FlattenResult flattened =
-        flatten_charts(input.mesh, cuts.charts, options.method, progress);
+    FlattenResult flattened = flatten_charts(input.mesh, cuts.charts, options.method, progress);
     progress.begin_phase("packing charts", 0.2);
     const Layout layout =
         lay_out(input.mesh, flattened.flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
@@ -176,7 +175,8 @@ FilterDeclaration flatten() {
     using O = FlattenOptions;
     return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
                       FilterCategory::texture, flatten_help)
-        .choice(&O::method, "method", "Method", {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
+        .choice(&O::method, "method", "Method",
+                {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
                 "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
                 "change of angles, fast. ABF++: least change of angles, more even on curved "
                 "charts. ARAP: lengths, milder where they cannot be kept. LPFB: every boundary "

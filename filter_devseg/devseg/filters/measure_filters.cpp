@@ -69,9 +69,12 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
         {"chart_extension", column(m.charts, [](const ChartMeasures& c) { return c.extension; })},
         {"chart_compression",
          column(m.charts, [](const ChartMeasures& c) { return c.compression; })},
-        {"chart_worst_face", column(m.charts, [&](const ChartMeasures& c) {
-             return c.worst_face < 0 ? -1.0 : double(input.source_face[at(c.worst_face)]);
-         })},
+        {"chart_worst_face", column(m.charts,
+                                    [&](const ChartMeasures& c) {
+                                        return c.worst_face < 0
+                                                   ? -1.0
+                                                   : double(input.source_face[at(c.worst_face)]);
+                                    })},
         {"seam_chart_a", column(m.seams, [](const SeamMeasures& s) { return s.chart_a; })},
         {"seam_chart_b", column(m.seams, [](const SeamMeasures& s) { return s.chart_b; })},
         {"seam_length_a", column(m.seams, [](const SeamMeasures& s) { return s.length_a; })},
@@ -93,7 +96,8 @@ FilterDeclaration segmentation_measures() {
         .result("max_fitting_error", "largest squared cosine difference of a face's normal to its "
                                      "chart's best cone, no unit")
         .result("seam_length", "length of all cut edges, each counted once, model units")
-        .result("largest_chart_area_share", "area of the largest chart over the area of all, 0 to 1")
+        .result("largest_chart_area_share",
+                "area of the largest chart over the area of all, 0 to 1")
         .runs(run_segmentation);
 }
 

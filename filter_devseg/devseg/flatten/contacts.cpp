@@ -134,8 +134,8 @@ public:
                 continue;
             add(v, exit);
             // Past a corner that points inwards, the vertex must get outside of both its edges.
-            const double along = nearest_parameter(uv_[at(v)], uv_[at(s_.origin(exit))],
-                                                   uv_[at(s_.target(exit))]);
+            const double along =
+                nearest_parameter(uv_[at(v)], uv_[at(s_.origin(exit))], uv_[at(s_.target(exit))]);
             if (along <= 0.0)
                 add(v, previous_on_boundary(s_, exit));
             if (along >= 1.0)
@@ -153,7 +153,7 @@ private:
 
     const ChartSurface& s_;
     const std::vector<Vec2>& uv_;
-    std::vector<Index> leaving_; // #v: boundary half-edge from the vertex, −1 = inside
+    std::vector<Index> leaving_;        // #v: boundary half-edge from the vertex, −1 = inside
     std::vector<std::uint8_t> settled_; // #v: 1 where a full turn says which way to go
     std::set<std::pair<Index, Index>> tested_;
     std::set<Contact> contacts_;

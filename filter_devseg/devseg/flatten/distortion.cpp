@@ -57,8 +57,8 @@ Positions distortion_gradient(const FlatteningProblem& problem, const Positions&
         const double det = j.determinant();
         Eigen::Matrix2d cofactor; // ∂ det / ∂ J
         cofactor << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);
-        const Eigen::Matrix2d stress = (1.0 + 1.0 / (det * det)) * j -
-                                       (j.squaredNorm() / (det * det * det)) * cofactor;
+        const Eigen::Matrix2d stress =
+            (1.0 + 1.0 / (det * det)) * j - (j.squaredNorm() / (det * det * det)) * cofactor;
         const Eigen::Matrix2d force = (problem.area[f] / (2.0 * problem.total_area)) * stress *
                                       problem.inverse[f].transpose();
         const Triangle& t = problem.faces[f];

@@ -86,8 +86,8 @@ void apply_symmetric_dirichlet(const FlatteningProblem& problem, FlatChart& char
 
 // The LPFB map, with inner vertices moved towards an isometry where the harmonic ones leave
 // much to gain; infinite energy where it has flips.
-std::pair<double, std::vector<Vec2>> polish_lpfb(const FlatteningProblem& problem,
-                                                 LpfbResult lpfb, const Progress& progress) {
+std::pair<double, std::vector<Vec2>> polish_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
+                                                 const Progress& progress) {
     if (lpfb.flips > 0)
         return {std::numeric_limits<double>::infinity(), {}};
     double energy = symmetric_dirichlet_energy(problem, lpfb.uv);
@@ -115,8 +115,7 @@ bool is_acceptable(const FlatteningProblem& problem, const std::vector<Vec2>& uv
 // one that lies on itself, those of the nearest isometric map are tried.
 bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
                 FlatChart& chart, const Progress& progress) {
-    auto own =
-        polish_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
+    auto own = polish_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
     if (std::isfinite(own.first) && is_acceptable(problem, own.second) &&
         overlapping_pairs(chart.surface, own.second, tolerance).empty()) {
         chart.uv = std::move(own.second);
@@ -142,7 +141,9 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
         case FlattenMethod::symmetric_dirichlet:
             apply_symmetric_dirichlet(problem, chart, progress);
             return true;
-        case FlattenMethod::lscm: chart.uv = flatten_lscm(problem); break;
+        case FlattenMethod::lscm:
+            chart.uv = flatten_lscm(problem);
+            break;
         case FlattenMethod::abf: {
             AbfResult result = flatten_abf(problem, AbfOptions{}, progress);
             chart.uv = std::move(result.uv);
@@ -157,7 +158,8 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
             scale_to_area(problem, chart.uv);
             break;
         }
-        case FlattenMethod::lpfb: return apply_lpfb(mesh, problem, tolerance, chart, progress);
+        case FlattenMethod::lpfb:
+            return apply_lpfb(mesh, problem, tolerance, chart, progress);
         }
     } catch (const NumericalFailure&) {
         if (method == FlattenMethod::symmetric_dirichlet)
@@ -165,8 +167,7 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
         return false;
     }
     // Conformal maps of strongly curved charts can shrink faces until 32-bit coordinates flip them.
-    return count_flips(problem, chart.uv) == 0 &&
-           least_area_ratio(problem, chart.uv) > collapsed;
+    return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
 }
 
 // Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
@@ -194,7 +195,8 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
     SymmetricDirichletOptions options;
     options.max_iterations = 30;
     for (int round = 0; round < push_rounds; ++round) {
-        penalty.contacts = merge_contacts(penalty.contacts, find_contacts(chart.surface, uv, pairs));
+        penalty.contacts =
+            merge_contacts(penalty.contacts, find_contacts(chart.surface, uv, pairs));
         uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
         scale_to_area(problem, uv);
         if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
@@ -255,8 +257,8 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
     // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
     // would not be theirs any more.
     const bool may_push = method == FlattenMethod::symmetric_dirichlet || chart.mended;
-    if (auto apart = may_push ? push_apart(problem, chart, pairs, tolerance, progress)
-                              : std::nullopt) {
+    if (auto apart =
+            may_push ? push_apart(problem, chart, pairs, tolerance, progress) : std::nullopt) {
         chart.uv = std::move(*apart);
         open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
         chart.pushed = true;
@@ -289,8 +291,7 @@ std::vector<std::vector<Index>> flatten_some(const Mesh& mesh, FlattenMethod met
 
 // Cuts the charts as asked, and takes over the maps of those that stay as they are. Returns the
 // numbers of the others.
-std::vector<std::size_t> cut_apart(const Mesh& mesh,
-                                   const std::vector<std::vector<Index>>& cuts,
+std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vector<Index>>& cuts,
                                    FlattenResult& result, Progress& progress) {
     std::vector<Index> old_chart = result.charts.chart;
     std::vector<std::uint8_t> seam = result.charts.seam;

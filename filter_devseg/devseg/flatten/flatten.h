@@ -30,8 +30,8 @@ struct FlattenResult {
 
 /// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
 /// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
-/// else cut apart along a short path. The result does not depend on the number of threads. Throws NumericalFailure, naming the chart's
-/// size, where no map without flips could be found.
+/// else cut apart along a short path. The result does not depend on the number of threads. Throws
+/// NumericalFailure, naming the chart's size, where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 

@@ -10,9 +10,8 @@ namespace {
 
 // Shewchuk's bound for the orientation determinant in double precision (J. R. Shewchuk: Adaptive
 // Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997, section 4.2).
-constexpr double orientation_error =
-    (3.0 + 8.0 * std::numeric_limits<double>::epsilon()) * 0.5 *
-    std::numeric_limits<double>::epsilon();
+constexpr double orientation_error = (3.0 + 8.0 * std::numeric_limits<double>::epsilon()) * 0.5 *
+                                     std::numeric_limits<double>::epsilon();
 
 // a · b = high + low, exactly.
 void two_product(double a, double b, double& high, double& low) {

@@ -89,8 +89,7 @@ std::vector<CutSide> two_sides(const ChartSurface& surface,
         queue.pop();
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
             const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && takes_part[at(twin / 3)] != 0 &&
-                side[at(twin / 3)] == CutSide::open) {
+            if (twin >= 0 && takes_part[at(twin / 3)] != 0 && side[at(twin / 3)] == CutSide::open) {
                 side[at(twin / 3)] = side[at(f)];
                 queue.push(twin / 3);
             }
@@ -105,9 +104,8 @@ bool boundary_crosses_itself(const ChartSurface& surface, const std::vector<Vec2
     return any_crossing(boundary_segments(surface, uv));
 }
 
-std::vector<std::pair<Index, Index>> overlapping_pairs(const ChartSurface& surface,
-                                                       const std::vector<Vec2>& uv,
-                                                       double tolerance) {
+std::vector<std::pair<Index, Index>>
+overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, double tolerance) {
     if (!boundary_crosses_itself(surface, uv))
         return {};
     CornerUv corners;

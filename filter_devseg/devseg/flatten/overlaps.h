@@ -19,9 +19,8 @@ bool boundary_crosses_itself(const ChartSurface& surface, const std::vector<Vec2
 
 /// Pairs of faces that overlap by more than `tolerance` (a length in the plane); empty when the
 /// boundary does not cross itself.
-std::vector<std::pair<Index, Index>> overlapping_pairs(const ChartSurface& surface,
-                                                       const std::vector<Vec2>& uv,
-                                                       double tolerance);
+std::vector<std::pair<Index, Index>>
+overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, double tolerance);
 
 /// Half-edges of the surface that cut it in two along a short path, such that the two faces of the
 /// first overlapping pair, with as many of the faces around them that take part in the overlap as

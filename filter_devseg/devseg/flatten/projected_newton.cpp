@@ -22,8 +22,7 @@ struct ProjectedNewton::State {
     bool analyzed = false;
 };
 
-ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem,
-                                 std::vector<std::uint8_t> fixed)
+ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed)
     : state_(new State{problem, std::move(fixed), {}, {}, false}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
@@ -33,7 +32,8 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
     entries.clear();
     double trace = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        // J's columns are linear in the corners: ∂(J column c)/∂ corner k = weight(k, c) · identity.
+        // J's columns are linear in the corners: ∂(J column c)/∂ corner k = weight(k, c) ·
+        // identity.
         const Eigen::Matrix2d& inverse = problem.inverse[f];
         Eigen::Matrix<double, 3, 2> weight;
         weight.row(1) = inverse.row(0);

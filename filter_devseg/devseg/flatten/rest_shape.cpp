@@ -62,8 +62,9 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& 
         const double p = sorted[2];
         const double q = sorted[1];
         const double r = sorted[0];
-        const double area = 0.25 * std::sqrt(std::max(0.0, (p + (q + r)) * (r - (p - q)) *
-                                                               (r + (p - q)) * (p + (q - r))));
+        const double area =
+            0.25 *
+            std::sqrt(std::max(0.0, (p + (q + r)) * (r - (p - q)) * (r + (p - q)) * (p + (q - r))));
         const double y = 2.0 * area / a;
         Eigen::Matrix2d edges;
         edges << a, x, 0.0, y;

@@ -14,9 +14,9 @@ namespace devseg {
 /// A chart that is ready to be flattened. Positions are in internal units of the mesh.
 struct FlatteningProblem {
     Index vertex_count = 0;
-    std::vector<Triangle> faces;       // #f local vertices
-    std::vector<Index> boundary;       // vertices of the only boundary loop, counterclockwise
-    std::vector<double> boundary_edge; // length of the edge from boundary[i] to boundary[i + 1]
+    std::vector<Triangle> faces;          // #f local vertices
+    std::vector<Index> boundary;          // vertices of the only boundary loop, counterclockwise
+    std::vector<double> boundary_edge;    // length of the edge from boundary[i] to boundary[i + 1]
     std::vector<Eigen::Matrix2d> edges;   // #f: columns are the edges 0→1 and 0→2 of the face
     std::vector<Eigen::Matrix2d> inverse; // #f: the inverse of `edges`
     std::vector<double> area;             // #f

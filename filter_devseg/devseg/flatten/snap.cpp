@@ -11,8 +11,8 @@ namespace devseg {
 
 namespace {
 
-constexpr int rounds = 8;      // sweeps over the flipped faces
-constexpr int reach = 4;       // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
+constexpr int rounds = 8; // sweeps over the flipped faces
+constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
 
 bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
     const Triangle& t = faces[at(f)];
@@ -50,8 +50,7 @@ Stars build_stars(const std::vector<Triangle>& faces, std::size_t vertices) {
 // The distance between neighbouring single precision numbers near the point.
 double unit_in_last_place(const Vec2& p) {
     const float size = static_cast<float>(p.cwiseAbs().maxCoeff());
-    return static_cast<double>(
-        std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
+    return static_cast<double>(std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
 }
 
 class Repair {

@@ -20,12 +20,12 @@ namespace devseg {
 
 namespace {
 
-constexpr std::size_t history = 6;          // pairs that L-BFGS remembers
+constexpr std::size_t history = 6;           // pairs that L-BFGS remembers
 constexpr double sufficient_decrease = 1e-4; // Armijo's constant
-constexpr double safe_step = 0.8;  // share of the step at which the first triangle collapses
+constexpr double safe_step = 0.8; // share of the step at which the first triangle collapses
 constexpr double smallest_step = 1e-12;
-constexpr int stall_window = 10; // steps over which progress is judged
-constexpr double locked = 1e20;  // stiffness of vertices that stay: their steps vanish
+constexpr int stall_window = 10;      // steps over which progress is judged
+constexpr double locked = 1e20;       // stiffness of vertices that stay: their steps vanish
 constexpr double near_isometry = 1.2; // energy below which one factorization is enough
 constexpr double little_gain = 1e-3;  // share of the energy that a Newton step must gain
 
@@ -147,9 +147,7 @@ public:
     const Positions& last_change() const { return change_; } // of the gradient
 
 private:
-    double value(const Positions& y) const {
-        return distortion(problem_, y) + penalty_.energy(y);
-    }
+    double value(const Positions& y) const { return distortion(problem_, y) + penalty_.energy(y); }
     Positions slope(const Positions& y) const {
         Positions g = distortion_gradient(problem_, y);
         penalty_.add_gradient(y, g);

@@ -11,14 +11,14 @@
 namespace devseg {
 
 struct SymmetricDirichletOptions {
-    int max_iterations = 300;          // quasi-Newton steps at most
+    int max_iterations = 300;         // quasi-Newton steps at most
     double relative_tolerance = 1e-7; // stop when ten steps gain less than this share of the energy
-    std::vector<std::uint8_t> fixed; // #v: 1 for vertices that stay; empty = all are free
+    std::vector<std::uint8_t> fixed;  // #v: 1 for vertices that stay; empty = all are free
 };
 
 struct SymmetricDirichletResult {
-    std::vector<Vec2> uv;   // #v, no face flipped
-    double energy = 0.0;    // Σ A (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²) / (4 Σ A); 1 for an isometry
+    std::vector<Vec2> uv; // #v, no face flipped
+    double energy = 0.0; // Σ A (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²) / (4 Σ A); 1 for an isometry
     int iterations = 0;
     bool converged = false;
 };

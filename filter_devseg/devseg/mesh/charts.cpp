@@ -55,9 +55,8 @@ ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
     const auto same_label = [&](Index h) {
         return labels[at(h / 3)] == labels[at(mesh.twin[at(h)] / 3)];
     };
-    FaceComponents parts = face_components(mesh, [&](Index h) {
-        return same_label(h) && !(split_at_seams && is_cut(h));
-    });
+    FaceComponents parts = face_components(
+        mesh, [&](Index h) { return same_label(h) && !(split_at_seams && is_cut(h)); });
     ChartMap result;
     result.chart = std::move(parts.label);
     result.count = parts.count;

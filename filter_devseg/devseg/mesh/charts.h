@@ -33,10 +33,10 @@ ChartFaces group_faces(const ChartMap& charts);
 
 /// One chart, cut open along its seams: a manifold of its own with local vertices and half-edges.
 struct ChartSurface {
-    std::vector<Index> face;          // #f: index in the mesh
-    std::vector<Triangle> corners;    // #f: local vertices
-    std::vector<Index> vertex;        // #v: index of the mesh vertex
-    std::vector<Index> twin;          // 3 #f: local half-edges, −1 on the chart's boundary
+    std::vector<Index> face;               // #f: index in the mesh
+    std::vector<Triangle> corners;         // #f: local vertices
+    std::vector<Index> vertex;             // #v: index of the mesh vertex
+    std::vector<Index> twin;               // 3 #f: local half-edges, −1 on the chart's boundary
     std::vector<std::vector<Index>> loops; // boundary loops as local half-edges, in their order
     Index edge_count = 0;
 
@@ -50,8 +50,8 @@ struct ChartSurface {
     Index mesh_half_edge(Index h) const { return 3 * face[at(h / 3)] + h % 3; }
 };
 
-/// The given faces, cut open along the marked edges (`seam`, 3 #F): all edges between these faces and
-/// others must be marked.
+/// The given faces, cut open along the marked edges (`seam`, 3 #F): all edges between these faces
+/// and others must be marked.
 ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
                              const std::vector<std::uint8_t>& seam);
 

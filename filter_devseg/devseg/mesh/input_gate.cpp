@@ -30,9 +30,9 @@ void require_valid_indices(const RawMesh& raw) {
     for (std::size_t f = 0; f < raw.faces.size(); ++f)
         for (const Index v : raw.faces[f])
             if (v < 0 || v >= count)
-                throw InvalidMesh("expected vertex indices from 0 to " +
-                                      std::to_string(count - 1) + ", found " + std::to_string(v) +
-                                      " in face " + std::to_string(f) + "; mend the file",
+                throw InvalidMesh("expected vertex indices from 0 to " + std::to_string(count - 1) +
+                                      ", found " + std::to_string(v) + " in face " +
+                                      std::to_string(f) + "; mend the file",
                                   {static_cast<Index>(f)});
 }
 
@@ -49,7 +49,8 @@ void require_finite(const RawMesh& raw) {
             }
     if (!bad.empty())
         throw InvalidMesh("expected finite coordinates, found a NaN or an infinite number at "
-                          "vertex " + std::to_string(first_vertex) + " (" +
+                          "vertex " +
+                              std::to_string(first_vertex) + " (" +
                               counted(static_cast<Index>(bad.size()), "face", "faces") +
                               " affected, first face " + std::to_string(bad.front()) +
                               "); delete these faces, they have been selected "
@@ -81,7 +82,8 @@ void normalise(const RawMesh& raw, Mesh& mesh) {
         mesh.points[v] = (raw.points[v] - centre) / mesh.unit_length;
 }
 
-// Items sorted into buckets 0 … bucket_count − 1 (counting sort): bucket b is [begin[b], begin[b+1]).
+// Items sorted into buckets 0 … bucket_count − 1 (counting sort): bucket b is [begin[b],
+// begin[b+1]).
 template <class Item>
 struct Buckets {
     std::vector<Index> begin;
@@ -171,8 +173,8 @@ std::vector<Index> neighbours_regardless_of_direction(const std::vector<Triangle
     };
     using Use = std::pair<Index, Index>; // (larger vertex, half-edge)
     const auto buckets = sort_into_buckets<Use>(
-        static_cast<Index>(neighbour.size()), vertex_count,
-        [&](Index h) { return ends(h).first; }, [&](Index h) { return Use(ends(h).second, h); });
+        static_cast<Index>(neighbour.size()), vertex_count, [&](Index h) { return ends(h).first; },
+        [&](Index h) { return Use(ends(h).second, h); });
     for (Index v = 0; v < vertex_count; ++v) {
         const auto first = buckets.items.begin() + buckets.begin[at(v)];
         const auto last = buckets.items.begin() + buckets.begin[at(v) + 1];
@@ -382,20 +384,20 @@ GatedMesh gate_mesh(const RawMesh& raw) {
         if (count > 0)
             gated.notes.push_back(text);
     };
-    note(selection.repeated, counted(selection.repeated, "face repeats", "faces repeat") +
-                       " a vertex and was left out ('Remove Zero Area Faces' drops such faces)");
+    note(selection.repeated,
+         counted(selection.repeated, "face repeats", "faces repeat") +
+             " a vertex and was left out ('Remove Zero Area Faces' drops such faces)");
     note(selection.duplicates, counted(selection.duplicates, "face lies", "faces lie") +
-                         " on the vertices of another one and was left out "
-                         "('Remove Duplicate Faces' drops such faces)");
+                                   " on the vertices of another one and was left out "
+                                   "('Remove Duplicate Faces' drops such faces)");
     note(crowded_edges, counted(crowded_edges, "edge has", "edges have") +
                             " more than two faces and was cut "
                             "('Repair non Manifold Edges' mends them)");
     note(orientation.turned, counted(orientation.turned, "face was", "faces were") +
                                  " read with the orientation of its neighbours "
                                  "('Re-Orient All Faces Coherently' does it for good)");
-    note(orientation.one_sided_edges,
-         "the surface is one-sided and was cut along " +
-             counted(orientation.one_sided_edges, "edge", "edges"));
+    note(orientation.one_sided_edges, "the surface is one-sided and was cut along " +
+                                          counted(orientation.one_sided_edges, "edge", "edges"));
     note(crowded_edges == 0 && orientation.one_sided_edges == 0 ? split : 0,
          counted(split, "vertex joins", "vertices join") +
              " fans of faces and was split ('Repair non Manifold Vertices by Splitting')");

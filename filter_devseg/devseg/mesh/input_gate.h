@@ -24,11 +24,11 @@ struct RawMesh {
 /// neither the position nor the size of a model matters.
 struct GatedMesh {
     Mesh mesh;
-    std::vector<Index> source_face;   // #F: index of the source face
-    std::vector<Index> source_vertex; // #V: index of the source vertex
+    std::vector<Index> source_face;    // #F: index of the source face
+    std::vector<Index> source_vertex;  // #V: index of the source vertex
     std::vector<std::uint8_t> flipped; // #F: 1 where the orientation was turned over
-    std::vector<std::uint8_t> cut;    // 3 #F: 1 on half-edges whose edge the gate had to cut
-    std::vector<Index> stand_in; // #source faces: the face whose results it takes, −1 = none
+    std::vector<std::uint8_t> cut;     // 3 #F: 1 on half-edges whose edge the gate had to cut
+    std::vector<Index> stand_in;    // #source faces: the face whose results it takes, −1 = none
     std::vector<std::string> notes; // what was worked around, one sentence each
 
     /// Source corner of corner k of face f; a turned face swaps its last two corners.

@@ -30,8 +30,8 @@ Corner3 corners_on_surface(const Mesh& mesh, Index f) {
 
 bool has_area(const Mesh& mesh, Index f) {
     const Corner3 p = corners_on_surface(mesh, f);
-    const double longest = std::max(
-        {(p.b - p.a).squaredNorm(), (p.c - p.b).squaredNorm(), (p.a - p.c).squaredNorm()});
+    const double longest =
+        std::max({(p.b - p.a).squaredNorm(), (p.c - p.b).squaredNorm(), (p.a - p.c).squaredNorm()});
     return mesh.face_areas[at(f)] > no_area * longest;
 }
 
@@ -162,8 +162,8 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const std::size_t c = at(charts.chart[at(f)]);
         const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
-        const bool flipped = !(sign * orientation(uv[at(3 * f)], uv[at(3 * f + 1)],
-                                                  uv[at(3 * f + 2)]) > 0.0);
+        const bool flipped =
+            !(sign * orientation(uv[at(3 * f)], uv[at(3 * f + 1)], uv[at(3 * f + 2)]) > 0.0);
         result.flipped_faces_number += flipped ? 1 : 0;
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(uv_area(uv, f));

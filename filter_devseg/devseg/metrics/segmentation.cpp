@@ -57,8 +57,8 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& char
             moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
         const ConicProxy proxy = fit_conic(moments);
         for (const Index f : surface.face)
-            result.max_fitting_error = std::max(result.max_fitting_error,
-                                                proxy.fitting_error(mesh.face_normals[at(f)]));
+            result.max_fitting_error =
+                std::max(result.max_fitting_error, proxy.fitting_error(mesh.face_normals[at(f)]));
         result.largest_chart_area_share =
             std::max(result.largest_chart_area_share, moments.area / mesh.total_area);
     }

@@ -51,9 +51,9 @@ PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, con
 }
 
 void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
-    const auto outer = std::max_element(
-        paths.begin(), paths.end(),
-        [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
+    const auto outer =
+        std::max_element(paths.begin(), paths.end(),
+                         [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
     std::swap(*outer, paths.front());
     piece.outer = std::move(paths.front());
     piece.area = piece.outer.area;
@@ -118,8 +118,7 @@ Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces) {
     return box;
 }
 
-std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
-                                       const ChartMap& charts,
+std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress) {
     const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);

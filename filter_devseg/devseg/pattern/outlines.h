@@ -12,8 +12,7 @@ namespace devseg {
 /// common shift. `uv_areas` are the charts' signed areas: charts with 0 are left out, and negative
 /// ones are turned over. A layout that is mirrored for the most part is mirrored as a whole; other
 /// mirrored charts keep their place, or go to rows above the layout where they would touch others.
-std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
-                                       const ChartMap& charts,
+std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress);
 

@@ -48,7 +48,8 @@ void check_options(const PatternOptions& o) {
                                number(o.mm_per_unit));
     if (!(o.height_mm >= 0.0) || !std::isfinite(o.height_mm))
         throw InvalidParameter("height_mm: expected a number above 0, or 0 to scale by "
-                               "mm_per_unit, found " + number(o.height_mm));
+                               "mm_per_unit, found " +
+                               number(o.height_mm));
 }
 
 // Millimetres for one internal unit of the mesh.
@@ -77,12 +78,13 @@ void check_coordinates(const CornerUv& uv) {
             bad.push_back(static_cast<Index>(f));
     if (!bad.empty())
         throw InvalidMesh("expected finite texture coordinates, found NaN or infinite ones on " +
-                              std::to_string(bad.size()) +
-                              (bad.size() == 1 ? " face" : " faces") + remedy,
+                              std::to_string(bad.size()) + (bad.size() == 1 ? " face" : " faces") +
+                              remedy,
                           bad);
     if (std::all_of(uv.begin(), uv.end(), [&](const Vec2& p) { return p == uv.front(); }))
         throw InvalidMesh(std::string("expected texture coordinates that lay the charts out, "
-                                      "found all of them at one point") + remedy);
+                                      "found all of them at one point") +
+                          remedy);
 }
 
 struct ChartAreas {
@@ -92,7 +94,7 @@ struct ChartAreas {
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
 
-    double scale = 1.0;       // internal units for one unit of the texture coordinates
+    double scale = 1.0; // internal units for one unit of the texture coordinates
     bool is_crumb(std::size_t c) const {
         return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
     }
@@ -120,9 +122,9 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& 
         areas.plane_total += std::abs(area);
     }
     if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
-        throw InvalidMesh(std::string("expected texture coordinates that cover an area, found ") +
-                          (areas.plane_total > 0.0 ? "some that are too large to measure"
-                                                   : "none") + remedy);
+        throw InvalidMesh(
+            std::string("expected texture coordinates that cover an area, found ") +
+            (areas.plane_total > 0.0 ? "some that are too large to measure" : "none") + remedy);
     areas.scale = layout_scale(mesh, charts, uv);
     return areas;
 }
@@ -181,7 +183,8 @@ void note_scale_errors(Pattern& pattern) {
             worst = &piece;
     if (worst != nullptr)
         pattern.notes.push_back("the charts are not at one common scale in the texture "
-                                "coordinates: lengths of piece " + worst->name + " are " +
+                                "coordinates: lengths of piece " +
+                                worst->name + " are " +
                                 number(std::round(1000.0 * worst->length_scale) / 10.0) +
                                 " % of the true ones ('Charts: Flatten' keeps the scale)");
 }
@@ -226,8 +229,8 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     progress.begin_phase("tracing outlines", 0.4);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
-    pattern.pieces = trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale * mm,
-                                  progress);
+    pattern.pieces =
+        trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale * mm, progress);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     progress.begin_phase("naming pieces", 0.4);

@@ -25,12 +25,12 @@ struct PiecePath {
 };
 
 struct PatternPiece {
-    std::string name;             // "P01", "P02", … in the order of the charts
-    Index chart = -1;             // label in charts_from_uv
-    PiecePath outer;              // counterclockwise; darts and slits are part of it
-    std::vector<PiecePath> holes; // clockwise
-    double area = 0.0;            // mm², without the holes
-    double length_scale = 1.0;    // paper length / true length, from the areas; 1 = true
+    std::string name;                   // "P01", "P02", … in the order of the charts
+    Index chart = -1;                   // label in charts_from_uv
+    PiecePath outer;                    // counterclockwise; darts and slits are part of it
+    std::vector<PiecePath> holes;       // clockwise
+    double area = 0.0;                  // mm², without the holes
+    double length_scale = 1.0;          // paper length / true length, from the areas; 1 = true
     Vec2 label_position = Vec2::Zero(); // the point inside that is farthest from all outlines
     double label_radius = 0.0;          // mm, its distance from them
     Eigen::AlignedBox2d box;            // mm
@@ -40,9 +40,9 @@ struct PatternPiece {
 /// model, y up.
 struct Pattern {
     std::vector<PatternPiece> pieces;
-    double width = 0.0;       // mm
-    double height = 0.0;      // mm
-    double mm_per_unit = 1.0; // as used, from height_mm where that was given
+    double width = 0.0;             // mm
+    double height = 0.0;            // mm
+    double mm_per_unit = 1.0;       // as used, from height_mm where that was given
     std::vector<std::string> notes; // what the user should know, one sentence each
 };
 

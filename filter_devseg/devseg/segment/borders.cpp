@@ -47,8 +47,7 @@ Index next_on_border(const Mesh& mesh, const std::vector<Index>& chart, Index h)
 
 } // namespace
 
-std::vector<BorderSegment> find_border_segments(const Mesh& mesh,
-                                                const std::vector<Index>& chart) {
+std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vector<Index>& chart) {
     const std::vector<std::uint8_t> junction = find_junctions(mesh, chart);
     std::vector<std::uint8_t> done(mesh.twin.size(), 0);
     std::vector<BorderSegment> segments;
@@ -90,8 +89,8 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh) {
             Vec3 sum = mesh.face_areas[at(f)] * normals[at(f)];
             for (Index h = 3 * f; h < 3 * f + 3; ++h) {
                 const Index twin = mesh.twin[at(h)];
-                if (twin >= 0 && mesh.face_normals[at(f)].dot(mesh.face_normals[at(twin / 3)]) >
-                                     crease_cosine)
+                if (twin >= 0 &&
+                    mesh.face_normals[at(f)].dot(mesh.face_normals[at(twin / 3)]) > crease_cosine)
                     sum += mesh.face_areas[at(twin / 3)] * normals[at(twin / 3)];
             }
             next[at(f)] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : normals[at(f)];
@@ -105,10 +104,11 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh) {
 // back after each border, so that the cost follows the borders and not the mesh.
 class Straightener {
 public:
-    Straightener(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
-                 double max_fitting_error, std::vector<Index>& chart)
-        : mesh_(mesh), normals_(smooth_normals(mesh)), proxies_(proxies), max_fitting_error_(max_fitting_error), chart_(chart),
-          fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
+    Straightener(const Mesh& mesh, const std::vector<ConicProxy>& proxies, double max_fitting_error,
+                 std::vector<Index>& chart)
+        : mesh_(mesh), normals_(smooth_normals(mesh)), proxies_(proxies),
+          max_fitting_error_(max_fitting_error), chart_(chart), fuzzy_(mesh.faces.size(), 0),
+          blocked_(mesh.points.size(), 0),
           distance_(mesh.points.size(), std::numeric_limits<double>::infinity()),
           arrival_(mesh.points.size(), -1), new_border_(mesh.twin.size(), 0),
           outgoing_(mesh.points.size(), -1), valence_(mesh.points.size(), 0),
@@ -210,7 +210,8 @@ private:
         return sum;
     }
 
-    // Dijkstra over the old border and the edges that touch the fuzzy area; half-edges from `from` to `to`, head to tail.
+    // Dijkstra over the old border and the edges that touch the fuzzy area; half-edges from `from`
+    // to `to`, head to tail.
     std::vector<Index> shortest_path(const BorderSegment& segment, Index from, Index to) {
         using Entry = std::pair<double, Index>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -332,8 +333,8 @@ private:
         const std::vector<CutSide> result = cut.solve();
         std::vector<std::pair<Index, Index>> labels;
         for (std::size_t i = 0; i < area_.size(); ++i)
-            labels.emplace_back(area_[i], result[i] == CutSide::source ? segment.chart_a
-                                                                       : segment.chart_b);
+            labels.emplace_back(area_[i],
+                                result[i] == CutSide::source ? segment.chart_a : segment.chart_b);
         return apply(segment, labels);
     }
 
@@ -392,8 +393,8 @@ private:
         bool good = sum[0] > 0 && sum[1] > 0;
         for (int i = 0; i < 2 && good; ++i) {
             const Index c = i == 0 ? segment.chart_a : segment.chart_b;
-            const auto found =
-                std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.second == c; });
+            const auto found = std::find_if(labels.begin(), labels.end(),
+                                            [&](const auto& l) { return l.second == c; });
             if (found == labels.end())
                 good = false;
             else {
@@ -417,11 +418,11 @@ private:
     const std::vector<ConicProxy>& proxies_;
     double max_fitting_error_;
     std::vector<Index>& chart_;
-    std::vector<std::uint8_t> fuzzy_; // #F: 1 = in the area; 2, 3 = given to chart a, b
-    std::vector<Index> area_;         // the faces in the fuzzy area
-    std::vector<std::uint8_t> blocked_; // #V: 1 on the border at hand
-    std::vector<double> distance_;      // #V
-    std::vector<Index> arrival_;        // #V: half-edge of the shortest path
+    std::vector<std::uint8_t> fuzzy_;      // #F: 1 = in the area; 2, 3 = given to chart a, b
+    std::vector<Index> area_;              // the faces in the fuzzy area
+    std::vector<std::uint8_t> blocked_;    // #V: 1 on the border at hand
+    std::vector<double> distance_;         // #V
+    std::vector<Index> arrival_;           // #V: half-edge of the shortest path
     std::vector<std::uint8_t> new_border_; // 3 #F
     std::vector<Index> outgoing_;          // #V: a half-edge that leaves the vertex
     std::vector<Index> valence_;           // #V: faces of an inner vertex, −1 on the boundary
@@ -432,8 +433,7 @@ private:
 } // namespace
 
 Index straighten_borders(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
-                         double max_fitting_error, std::vector<Index>& chart,
-                         Progress& progress) {
+                         double max_fitting_error, std::vector<Index>& chart, Progress& progress) {
     Straightener straightener(mesh, proxies, max_fitting_error, chart);
     Index replaced = 0;
     std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
@@ -444,10 +444,9 @@ Index straighten_borders(const Mesh& mesh, const std::vector<ConicProxy>& proxie
             sum += mesh.edge_length(h);
         return sum;
     };
-    std::stable_sort(segments.begin(), segments.end(),
-                     [&](const BorderSegment& a, const BorderSegment& b) {
-                         return length(a) > length(b);
-                     });
+    std::stable_sort(
+        segments.begin(), segments.end(),
+        [&](const BorderSegment& a, const BorderSegment& b) { return length(a) > length(b); });
     for (std::size_t i = 0; i < segments.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(segments.size()));
         replaced += straightener.straighten(segments[i]) ? 1 : 0;

@@ -16,9 +16,9 @@ namespace devseg {
 /// A piece of the border between two charts: from one junction to the next, or a whole loop. A
 /// junction is a vertex where three charts meet, or where the border reaches the mesh's boundary.
 struct BorderSegment {
-    Index chart_a = 0;                // the chart on the left
-    Index chart_b = 0;                // the chart on the right
-    std::vector<Index> half_edges;    // of chart a, head to tail
+    Index chart_a = 0;             // the chart on the left
+    Index chart_b = 0;             // the chart on the right
+    std::vector<Index> half_edges; // of chart a, head to tail
     bool is_loop = false;
 };
 

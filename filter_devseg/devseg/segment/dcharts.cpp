@@ -44,8 +44,7 @@ template <class T>
 void check_options(const Mesh& mesh, const DChartsOptions& o) {
     if (o.charts_number < 1 || o.charts_number > mesh.face_count())
         refuse("charts_number",
-               "a number from 1 to " + std::to_string(mesh.face_count()) +
-                   " (the number of faces)",
+               "a number from 1 to " + std::to_string(mesh.face_count()) + " (the number of faces)",
                o.charts_number);
     if (!(o.max_fitting_error > 0.0) || !(o.max_fitting_error <= 4.0))
         refuse("max_fitting_error", "a number above 0 and at most 4 (0.2 is usual)",
@@ -310,9 +309,8 @@ struct Hole {
 
 std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) {
     const auto is_open = [&](Index f) { return chart[at(f)] < 0; };
-    const FaceComponents parts = face_components(mesh, [&](Index h) {
-        return is_open(h / 3) && is_open(mesh.twin[at(h)] / 3);
-    });
+    const FaceComponents parts = face_components(
+        mesh, [&](Index h) { return is_open(h / 3) && is_open(mesh.twin[at(h)] / 3); });
     std::vector<Index> hole_of(at(parts.count), -1);
     std::vector<Hole> holes;
     for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -385,8 +383,7 @@ void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
 
 } // namespace
 
-DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options,
-                              Progress& progress) {
+DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress) {
     check_options(mesh, options);
     DChartsResult result;
 

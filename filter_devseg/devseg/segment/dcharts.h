@@ -15,14 +15,14 @@
 namespace devseg {
 
 struct DChartsOptions {
-    int charts_number = 10;         // initial estimate; hole filling may add charts
-    double max_fitting_error = 0.2; // F_max: bound of the fitting error while growing
-    double alpha = 1.0;             // weight of developability, exponent of F
-    double beta = 0.7;              // weight of roundness, exponent of C
-    double gamma = 0.5;             // weight of straight boundaries, exponent of P
+    int charts_number = 10;            // initial estimate; hole filling may add charts
+    double max_fitting_error = 0.2;    // F_max: bound of the fitting error while growing
+    double alpha = 1.0;                // weight of developability, exponent of F
+    double beta = 0.7;                 // weight of roundness, exponent of C
+    double gamma = 0.5;                // weight of straight boundaries, exponent of P
     bool straighten_boundaries = true; // shortest borders within the fuzzy areas
-    int max_iterations = 100;       // Lloyd rounds at most
-    int random_seed = 0;            // 0: a start that does not depend on the order of the faces
+    int max_iterations = 100;          // Lloyd rounds at most
+    int random_seed = 0;               // 0: a start that does not depend on the order of the faces
 };
 
 struct DChartsResult {

@@ -46,8 +46,8 @@ void add_parameter(RichParameterList& list, const Parameter& p) {
         list.addParam(RichInt(name, std::get<int>(p.default_value), label, help));
         break;
     case ParameterKind::real:
-        list.addParam(RichFloat(name, static_cast<Scalarm>(std::get<double>(p.default_value)),
-                                label, help));
+        list.addParam(
+            RichFloat(name, static_cast<Scalarm>(std::get<double>(p.default_value)), label, help));
         break;
     case ParameterKind::choice: {
         QStringList choices;
@@ -62,10 +62,14 @@ void add_parameter(RichParameterList& list, const Parameter& p) {
 devseg::ParameterValue read_parameter(const RichParameterList& list, const Parameter& p) {
     const QString name = text(p.name);
     switch (p.kind) {
-    case ParameterKind::boolean: return list.getBool(name);
-    case ParameterKind::integer: return list.getInt(name);
-    case ParameterKind::real: return as_written(list.getFloat(name));
-    case ParameterKind::choice: return list.getEnum(name);
+    case ParameterKind::boolean:
+        return list.getBool(name);
+    case ParameterKind::integer:
+        return list.getInt(name);
+    case ParameterKind::real:
+        return as_written(list.getFloat(name));
+    case ParameterKind::choice:
+        return list.getEnum(name);
     }
     return p.default_value;
 }
@@ -122,10 +126,14 @@ QString DevsegFilterPlugin::filterInfo(ActionIDType filter) const {
 
 FilterPlugin::FilterClass DevsegFilterPlugin::getClass(const QAction* action) const {
     switch (declaration(ID(action)).category) {
-    case FilterCategory::remeshing: return FilterPlugin::Remeshing;
-    case FilterCategory::texture: return FilterPlugin::Texture;
-    case FilterCategory::color: return FilterPlugin::FaceColoring;
-    case FilterCategory::measure: return FilterPlugin::Measure;
+    case FilterCategory::remeshing:
+        return FilterPlugin::Remeshing;
+    case FilterCategory::texture:
+        return FilterPlugin::Texture;
+    case FilterCategory::color:
+        return FilterPlugin::FaceColoring;
+    case FilterCategory::measure:
+        return FilterPlugin::Measure;
     }
     return FilterPlugin::Remeshing;
 }
@@ -159,9 +167,11 @@ RichParameterList DevsegFilterPlugin::initParameterList(const QAction* action, c
     return list;
 }
 
-std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(
-    const QAction* action, const RichParameterList& parameters, MeshDocument& document,
-    unsigned int& post_condition_mask, vcg::CallBackPos* callback) {
+std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* action,
+                                                                const RichParameterList& parameters,
+                                                                MeshDocument& document,
+                                                                unsigned int& post_condition_mask,
+                                                                vcg::CallBackPos* callback) {
     const FilterDeclaration& filter = declaration(ID(action));
     MeshModel* model = document.mm();
     if (model == nullptr)

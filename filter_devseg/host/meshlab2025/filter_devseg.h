@@ -25,9 +25,7 @@ public:
     int getPreConditions(const QAction* action) const override;
     int postCondition(const QAction* action) const override;
     RichParameterList initParameterList(const QAction* action, const MeshModel& mesh) override;
-    std::map<std::string, QVariant> applyFilter(const QAction* action,
-                                                const RichParameterList& parameters,
-                                                MeshDocument& document,
-                                                unsigned int& post_condition_mask,
-                                                vcg::CallBackPos* callback) override;
+    std::map<std::string, QVariant>
+    applyFilter(const QAction* action, const RichParameterList& parameters, MeshDocument& document,
+                unsigned int& post_condition_mask, vcg::CallBackPos* callback) override;
 };
