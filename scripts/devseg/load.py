@@ -12,8 +12,8 @@ from devseg.errors import DevsegError, host_message
 # What pymeshlab itself reports about a mesh that it changed while loading.
 _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) degenerated faces")
 
-# pymeshlab's progress callback keeps a pointer to the log of some verbose MeshSet and uses it while
-# loading into later ones: none of them may die. Their meshes may, see release().
+# pymeshlab's progress callback keeps a pointer to the log of a MeshSet that has loaded a file, and
+# uses it while others load or save: none of them may die. Their meshes may, see release().
 _loggers: list[Any] = []
 
 

@@ -46,12 +46,17 @@ def obj(tmp_path: Path) -> Callable[[meshes.Mesh, str], Path]:
     return write
 
 
+# pymeshlab may keep a pointer to the log of a MeshSet and use it for later ones.
+_alive: list[Any] = []
+
+
 @pytest.fixture
 def meshset(pymeshlab: ModuleType) -> Callable[[meshes.Mesh], Any]:
     """A MeshSet that holds one mesh."""
 
     def make(mesh: meshes.Mesh) -> Any:
         meshset = pymeshlab.MeshSet()
+        _alive.append(meshset)
         meshset.add_mesh(pymeshlab.Mesh(*mesh))
         return meshset
 

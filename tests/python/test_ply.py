@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 
 import meshes
 from devseg import DevsegError, ply, restore_attributes
+from devseg.load import load_mesh
 
 
 def header(vertices: int, faces: int, form: str = "binary_little_endian") -> bytes:
@@ -21,9 +21,7 @@ def header(vertices: int, faces: int, form: str = "binary_little_endian") -> byt
     ).encode()
 
 
-def test_attributes_survive_saving_and_loading(
-    pymeshlab: ModuleType, meshset: Callable, tmp_path: Path
-) -> None:
+def test_attributes_survive_saving_and_loading(meshset: Callable, tmp_path: Path) -> None:
     saved = meshset(meshes.cylinder())
     count = saved.current_mesh().face_number()
     charts, seams = np.arange(count) % 5.0, np.arange(count) % 8.0
@@ -32,8 +30,7 @@ def test_attributes_survive_saving_and_loading(
     path = tmp_path / "saved.ply"
     saved.save_current_mesh(str(path), __ca_fs__chart_id=True, __ca_fs__seam_edges=True)
 
-    loaded = pymeshlab.MeshSet()
-    loaded.load_new_mesh(str(path))
+    loaded, _ = load_mesh(path)
     mesh = loaded.current_mesh()
     assert restore_attributes(mesh, path) == ["chart_id", "seam_edges"]
     np.testing.assert_array_equal(mesh.face_custom_scalar_attribute_array("chart_id"), charts)

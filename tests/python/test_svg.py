@@ -142,16 +142,16 @@ def test_bad_scale_writes_no_file(
     assert not path.exists()
 
 
-def test_mesh_without_texture_coordinates_is_refused(pymeshlab: Any, tmp_path: Path) -> None:
-    ms = pymeshlab.MeshSet()
-    ms.add_mesh(pymeshlab.Mesh(*meshes.cube()))
+def test_mesh_without_texture_coordinates_is_refused(
+    meshset: Any, pymeshlab: Any, tmp_path: Path
+) -> None:
+    ms = meshset(meshes.cube())
     with pytest.raises(pymeshlab.PyMeshLabException, match="texture coordinates"):
         ms.save_current_mesh(str(tmp_path / "none.svg"))
 
 
-def test_texture_coordinates_from_elsewhere_are_exported(pymeshlab: Any, tmp_path: Path) -> None:
-    ms = pymeshlab.MeshSet()
-    ms.add_mesh(pymeshlab.Mesh(*meshes.cube()))
+def test_texture_coordinates_from_elsewhere_are_exported(meshset: Any, tmp_path: Path) -> None:
+    ms = meshset(meshes.cube())
     ms.compute_texcoord_parametrization_triangle_trivial_per_wedge(textdim=256)
     path = tmp_path / "foreign.svg"
     ms.save_current_mesh(str(path), mm_per_unit=10.0)
