@@ -63,6 +63,23 @@ TEST(CutLength, HolesNearEachOtherAreCutToEachOther) {
     EXPECT_LE(cut_length(shapes::plate(mask)), allowance * (3.0 + 1.0 + 1.0));
 }
 
+TEST(CutLength, CutsMayBranchOffFromOthers) {
+    // All is mountains but a valley from the border, which forks to two holes.
+    shapes::Mask mask(9, std::string(11, '#'));
+    mask[4][2] = mask[4][8] = '.';
+    RawMesh raw = shapes::plate(mask);
+    for (Vec3& p : raw.points) {
+        const bool border = p.x() < 0.5 || p.x() > 10.5 || p.y() < 0.5 || p.y() > 8.5;
+        const bool hole = p.y() > 3.5 && p.y() < 5.5 &&
+                          (std::abs(p.x() - 2.5) < 1.0 || std::abs(p.x() - 8.5) < 1.0);
+        const bool stem = std::abs(p.x() - 5.0) < 0.5 && p.y() < 4.5;
+        const bool arms = std::abs(p.y() - 4.0) < 0.5 && p.x() > 2.5 && p.x() < 8.5;
+        if (!border && !hole && !stem && !arms)
+            p.z() = 30.0;
+    }
+    EXPECT_NEAR(cut_length(raw), 4.0 + 2.0 + 3.0, 1e-9);
+}
+
 TEST(CutLength, ATubeIsCutAlongItsLength) {
     EXPECT_NEAR(cut_length(shapes::cylinder_tube(20, 5, 1.0, 3.0)), 3.0, 1e-9);
 }

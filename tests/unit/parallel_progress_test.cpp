@@ -66,26 +66,38 @@ TEST_F(ParallelFor, UsesNoMoreThreadsThanAllowed) {
 }
 
 TEST_F(ParallelFor, ThrowsWhatTheLowestFailingIndexThrew) {
-    for (const int threads : {1, 2, 4}) {
-        set_thread_limit(threads);
-        for (int run = 0; run < 200; ++run) {
-            Progress progress;
-            try {
-                parallel_for(
-                    60,
-                    [&](int i) {
-                        if (i == (run % 2 == 0 ? 20 : 21)) // the lower one fails last, or first
-                            std::this_thread::sleep_for(std::chrono::microseconds(300));
-                        if (i == 20 || i == 21 || i > 40)
+    const auto wait_for = [](const std::atomic<bool>& flag) { // but not for long
+        for (int i = 0; i < 50 && !flag; ++i)
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    };
+    for (const int threads : {1, 2, 4})
+        for (const bool lower_first : {true, false})
+            for (int run = 0; run < 10; ++run) {
+                set_thread_limit(threads);
+                std::atomic<bool> started[2] = {};
+                std::atomic<bool> fails[2] = {};
+                Progress progress;
+                try {
+                    parallel_for(
+                        60,
+                        [&](int i) {
+                            if (i != 20 && i != 21)
+                                return;
+                            const int own = i - 20;
+                            started[own] = true;
+                            if (threads > 1)
+                                wait_for(lower_first == (own == 0) ? started[1 - own]
+                                                                   : fails[1 - own]);
+                            fails[own] = true;
                             throw InvalidParameter(std::to_string(i));
-                    },
-                    progress);
-                FAIL() << "no exception";
-            } catch (const InvalidParameter& error) {
-                ASSERT_STREQ(error.what(), "20");
+                        },
+                        progress);
+                    FAIL() << "no exception";
+                } catch (const InvalidParameter& error) {
+                    ASSERT_STREQ(error.what(), "20");
+                }
             }
-        }
-    }
 }
 
 // Index 0 must be reported, however the threads are scheduled.
