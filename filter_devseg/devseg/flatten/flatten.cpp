@@ -19,6 +19,7 @@
 #include "devseg/flatten/lpfb.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/multilevel.h"
 #include "devseg/flatten/overlaps.h"
 #include "devseg/flatten/slits.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
@@ -75,10 +76,29 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& 
                            std::to_string(problem.faces.size()) + " faces");
 }
 
-void apply_symmetric_dirichlet(const FlatteningProblem& problem, FlatChart& chart,
+std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
+                                  const FlatteningProblem& problem, const Progress& progress) {
+    if (surface.face_count() < multilevel_threshold)
+        return valid_start(problem, progress);
+    const auto solve = [&](const FlatteningProblem& coarse) {
+        return minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
+                                            SymmetricDirichletOptions{}, progress)
+            .uv;
+    };
+    try {
+        std::vector<Vec2> uv = flatten_multilevel(mesh, surface, problem, solve, progress);
+        if (count_flips(problem, uv) == 0)
+            return uv;
+    } catch (const NumericalFailure&) { // needles can leave no room for a vertex
+    }
+    return valid_start(problem, progress);
+}
+
+void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
                                const Progress& progress) {
     SymmetricDirichletResult result = minimise_symmetric_dirichlet(
-        problem, valid_start(problem, progress), SymmetricDirichletOptions{}, progress);
+        problem, isometric_start(mesh, chart.surface, problem, progress),
+        SymmetricDirichletOptions{}, progress);
     chart.uv = std::move(result.uv);
     chart.converged = result.converged;
     scale_to_area(problem, chart.uv);
@@ -121,7 +141,7 @@ bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double toler
         chart.uv = std::move(own.second);
         return true;
     }
-    apply_symmetric_dirichlet(problem, chart, progress);
+    apply_symmetric_dirichlet(mesh, problem, chart, progress);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     const std::vector<double> angles = boundary_angles(problem, chart.uv);
     auto near =
@@ -139,7 +159,7 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
     try {
         switch (method) {
         case FlattenMethod::symmetric_dirichlet:
-            apply_symmetric_dirichlet(problem, chart, progress);
+            apply_symmetric_dirichlet(mesh, problem, chart, progress);
             return true;
         case FlattenMethod::lscm:
             chart.uv = flatten_lscm(problem);
@@ -242,7 +262,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
     try {
         if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
             chart.mended = true;
-            apply_symmetric_dirichlet(problem, chart, progress);
+            apply_symmetric_dirichlet(mesh, problem, chart, progress);
         }
     } catch (const NumericalFailure&) {
         if (chart.surface.face_count() < 2)
