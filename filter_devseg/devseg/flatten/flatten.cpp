@@ -21,6 +21,8 @@
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/multilevel.h"
 #include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/peaks.h"
+#include "devseg/flatten/push_apart.h"
 #include "devseg/flatten/slits.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
@@ -30,15 +32,6 @@
 namespace devseg {
 
 namespace {
-
-// Pushing apart: rounds, each stiffer than the one before.
-constexpr int push_rounds = 10;
-constexpr double first_stiffness = 100.0; // in units of the energy per chart area
-constexpr double stiffer = 2.0;
-constexpr double gap_share = 3e-4; // distance to leave between parts, of the chart's size
-// Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a cut
-// keeps the pattern truer than a deformation.
-constexpr double push_cost = 0.01;
 
 // Least distance of the two sides of a cut, as a share of the root of the model's area: far above
 // what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
@@ -101,6 +94,7 @@ void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& proble
         SymmetricDirichletOptions{}, progress);
     chart.uv = std::move(result.uv);
     chart.converged = result.converged;
+    relieve_peaks(problem, chart.surface.twin, false, chart.uv, progress);
     scale_to_area(problem, chart.uv);
 }
 
@@ -190,45 +184,6 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
     return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
 }
 
-// Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
-// where a vertex has new ones.
-std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
-                                    std::vector<Contact> contacts) {
-    const std::size_t found = contacts.size();
-    for (const Contact& contact : old)
-        if (std::none_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(found),
-                         [&](const Contact& c) { return c.vertex == contact.vertex; }))
-            contacts.push_back(contact);
-    return contacts;
-}
-
-// The map with its overlapping parts pushed apart; nothing if that does not help, or costs too
-// much shape.
-std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
-                                            const FlatChart& chart, Pairs pairs, double tolerance,
-                                            const Progress& progress) {
-    const double before = symmetric_dirichlet_energy(problem, chart.uv);
-    std::vector<Vec2> uv = chart.uv;
-    ContactPenalty penalty;
-    penalty.stiffness = first_stiffness / problem.total_area;
-    penalty.gap = gap_share * std::sqrt(problem.total_area);
-    SymmetricDirichletOptions options;
-    options.max_iterations = 30;
-    for (int round = 0; round < push_rounds; ++round) {
-        penalty.contacts =
-            merge_contacts(penalty.contacts, find_contacts(chart.surface, uv, pairs));
-        uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
-        scale_to_area(problem, uv);
-        if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
-            return std::nullopt;
-        pairs = overlapping_pairs(chart.surface, uv, tolerance);
-        if (pairs.empty())
-            return uv;
-        penalty.stiffness *= stiffer;
-    }
-    return std::nullopt;
-}
-
 std::vector<Index> on_mesh(const ChartSurface& surface, std::vector<Index> half_edges) {
     for (Index& h : half_edges)
         h = surface.mesh_half_edge(h);
@@ -277,9 +232,11 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
     // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
     // would not be theirs any more.
     const bool may_push = method == FlattenMethod::symmetric_dirichlet || chart.mended;
-    if (auto apart =
-            may_push ? push_apart(problem, chart, pairs, tolerance, progress) : std::nullopt) {
+    if (auto apart = may_push
+                         ? push_apart(problem, chart.surface, chart.uv, pairs, tolerance, progress)
+                         : std::nullopt) {
         chart.uv = std::move(*apart);
+        relieve_peaks(problem, chart.surface.twin, true, chart.uv, progress);
         open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
         chart.pushed = true;
         chart.energy = symmetric_dirichlet_energy(problem, chart.uv);

@@ -204,19 +204,7 @@ private:
     }
 
     void gather(Index v) {
-        star_.faces.clear();
-        visit_star(s_.twin, leaving_[at(v)], [&](Index k) {
-            const std::size_t f = at(k / 3);
-            const std::size_t e = at(k % 3);
-            VertexStar::Face face;
-            face.from = uv_[at(s_.faces[f][(e + 1) % 3])];
-            face.to = uv_[at(s_.faces[f][(e + 2) % 3])];
-            face.area = area_[f];
-            face.cot_apex = cotangent_[f][(e + 1) % 3];
-            face.cot_from = cotangent_[f][(e + 2) % 3];
-            face.cot_to = cotangent_[f][e];
-            star_.faces.push_back(face);
-        });
+        gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[at(v)], star_);
     }
 
     struct Spoke {

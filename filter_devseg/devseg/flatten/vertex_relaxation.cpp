@@ -31,9 +31,27 @@ double VertexStar::energy(const Vec2& p) const {
         const double d = cross(f.from - p, f.to - p) / (2.0 * f.area);
         if (!(d > 0.0))
             return std::numeric_limits<double>::infinity();
-        sum += 0.25 * f.area * squared_norm(f, p) * (1.0 + 1.0 / (d * d));
+        const double density = 0.25 * squared_norm(f, p) * (1.0 + 1.0 / (d * d));
+        sum += f.area * (steepness > 0.0 ? std::exp(steepness * (density - 1.0)) : density);
     }
     return sum;
+}
+
+void gather_star(const StarSource& source, const std::vector<Vec2>& uv, Index leaving,
+                 VertexStar& star) {
+    star.faces.clear();
+    visit_star(source.twin, leaving, [&](Index k) {
+        const std::size_t f = at(k / 3);
+        const std::size_t e = at(k % 3);
+        VertexStar::Face face;
+        face.from = uv[at(source.faces[f][(e + 1) % 3])];
+        face.to = uv[at(source.faces[f][(e + 2) % 3])];
+        face.area = source.area[f];
+        face.cot_apex = source.cotangent[f][(e + 1) % 3];
+        face.cot_from = source.cotangent[f][(e + 2) % 3];
+        face.cot_to = source.cotangent[f][e];
+        star.faces.push_back(face);
+    });
 }
 
 Vec2 relax_vertex(const VertexStar& star, const Vec2& start) {
@@ -51,15 +69,24 @@ Vec2 relax_vertex(const VertexStar& star, const Vec2& start) {
         const Vec2 dd = Vec2(f.from.y() - f.to.y(), f.to.x() - f.from.x()) / (2.0 * f.area);
         const double inverse = 1.0 / d;
         const double inverse2 = inverse * inverse;
-        const double w = 0.25 * f.area;
-        const double mixed = -2.0 * inverse2 * inverse * w;
-        const double square = 6.0 * q * inverse2 * inverse2 * w;
-        const double even = (f.cot_from + f.cot_to) / f.area * (1.0 + inverse2) * w;
-        energy += w * q * (1.0 + inverse2);
-        gradient += w * (1.0 + inverse2) * dq + q * mixed * dd;
-        xx += even + 2.0 * mixed * dq.x() * dd.x() + square * dd.x() * dd.x();
-        yy += even + 2.0 * mixed * dq.y() * dd.y() + square * dd.y() * dd.y();
-        xy += mixed * (dq.x() * dd.y() + dq.y() * dd.x()) + square * dd.x() * dd.y();
+        const double density = 0.25 * q * (1.0 + inverse2);
+        const Vec2 slope = 0.25 * (1.0 + inverse2) * dq - 0.5 * q * inverse2 * inverse * dd;
+        const double value =
+            f.area * (star.steepness > 0.0 ? std::exp(star.steepness * (density - 1.0)) : density);
+        // Of exp(s (ψ − 1)): s e^… ∇ψ, and s e^… (∇²ψ + s ∇ψ ∇ψᵀ).
+        const double w = star.steepness > 0.0 ? star.steepness * value : f.area;
+        const double mixed = -0.5 * inverse2 * inverse * w;
+        const double square = 1.5 * q * inverse2 * inverse2 * w;
+        const double even = 0.25 * (f.cot_from + f.cot_to) / f.area * (1.0 + inverse2) * w;
+        const double outer = star.steepness * w;
+        energy += value;
+        gradient += w * slope;
+        xx += even + 2.0 * mixed * dq.x() * dd.x() + square * dd.x() * dd.x() +
+              outer * slope.x() * slope.x();
+        yy += even + 2.0 * mixed * dq.y() * dd.y() + square * dd.y() * dd.y() +
+              outer * slope.y() * slope.y();
+        xy += mixed * (dq.x() * dd.y() + dq.y() * dd.x()) + square * dd.x() * dd.y() +
+              outer * slope.x() * slope.y();
     }
     const double mean = 0.5 * (xx + yy);
     const double radius = std::hypot(0.5 * (xx - yy), xy);

@@ -18,10 +18,24 @@ struct VertexStar {
         double cot_apex = 0.0;
     };
     std::vector<Face> faces;
+    double steepness = 0.0; // s > 0: the density ψ counts as exp(s (ψ − 1)), so that peaks dominate
 
-    /// Σ A (|J|² + |J⁻¹|²) / 4 over the faces with the vertex at p; infinite where one is flipped.
+    /// Σ A ψ over the faces with the vertex at p, ψ = (|J|² + |J⁻¹|²) / 4, or Σ A exp(s (ψ − 1));
+    /// infinite where a face is flipped.
     double energy(const Vec2& p) const;
 };
+
+/// A chart's faces with their rest shapes, by reference.
+struct StarSource {
+    const std::vector<Triangle>& faces;                  // #f
+    const std::vector<Index>& twin;                      // 3 #f
+    const std::vector<double>& area;                     // #f
+    const std::vector<std::array<double, 3>>& cotangent; // #f: opposite to edge k → k + 1
+};
+
+/// Fills `star` with the faces around the origin of a half-edge; uv is #v.
+void gather_star(const StarSource& source, const std::vector<Vec2>& uv, Index leaving,
+                 VertexStar& star);
 
 /// One step of Newton's method with a line search that keeps every face's orientation. The start
 /// must be valid. Returns the new position; the energy there is not higher.
