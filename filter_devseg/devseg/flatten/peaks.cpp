@@ -11,9 +11,9 @@ namespace devseg {
 
 namespace {
 
-constexpr double harmless = 1.2;      // stretch of a face that is no peak anyway
+constexpr double harmless = 1.005;     // stretch of a face that is no peak anyway
 constexpr double usual_share = 0.995; // of the area: what is stretched more may be a peak
-constexpr double above_usual = 1.05;  // stretch of a peak over that of the usual faces
+constexpr double above_usual = 1.01;  // stretch of a peak over that of the usual faces
 constexpr int rings = 3;              // of faces around peaks, whose vertices move
 constexpr int sweeps = 40;
 // s: at 20, faces with a stretch of 1.4 weigh e² times as much; lower ones cost less.

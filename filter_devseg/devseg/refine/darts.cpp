@@ -87,7 +87,9 @@ private:
                 dart.length += mesh_.edge_length(h);
             std::vector<std::uint8_t> seam = seam_;
             mark(mesh_, dart.path, seam);
-            dart.map = try_chart(mesh_, faces_, seam, TrialEffort(), progress_);
+            TrialEffort effort;
+            effort.wanted_l2 = options_.chart.l2;
+            dart.map = try_chart(mesh_, faces_, seam, effort, progress_);
             const double value = worth(dart);
             if (value > highest) {
                 highest = value;

@@ -14,20 +14,24 @@ namespace devseg {
 
 namespace {
 
-constexpr Index coarse_faces = 6000;      // enough to decide where borders run
-constexpr Index faces_per_chart = 150;    // of the coarse surface, at least
-constexpr double worth_coarsening = 1.25; // faces over those of the coarse surface
+constexpr Index coarse_faces = 6000;          // enough to decide where borders run
+constexpr Index creased_coarse_faces = 24000; // where they must run along creases
+constexpr Index faces_per_chart = 150;        // of the coarse surface, at least
+constexpr double worth_coarsening = 2.0;      // faces over those of the coarse surface
 
-// What border is worth against the fitting error of faces. Where creases shape the surface, charts
-// should end at them, and more seeds are needed to find all the parts between them, which joining
-// reduces again.
+// What border is worth against the fitting error of faces.
 constexpr double smooth_length_weight = 0.045;
-constexpr double creased_length_weight = 0.015;
-constexpr int creased_seeds = 2;
-constexpr double bent_cosine = 0.866; // of 30 degrees
-constexpr double sharp_cosine = 0.5;  // of 60 degrees
-constexpr double sharp_share = 0.6;   // of the bent edges
-constexpr double least_creases = 1.0; // over the root of the area
+
+// Where creases shape the surface, its parts are cones, cylinders and planes but for the
+// tessellation: charts must fit them closely, borders belong on creases whatever their length, and
+// joins must be nearly exact.
+constexpr double creased_fitting_error = 0.008; // F_max at most
+constexpr double creased_length_weight = 0.001;
+constexpr double creased_threshold = 0.02; // factor of η
+constexpr double bent_cosine = 0.866;      // of 30 degrees
+constexpr double sharp_cosine = 0.5;       // of 60 degrees
+constexpr double sharp_share = 0.6;        // of the bent edges
+constexpr double least_creases = 1.0;      // over the root of the area
 
 // Of the surface: smaller pieces are slivers that nobody wants to cut out.
 constexpr double fragment_share = 0.002;
@@ -60,12 +64,13 @@ struct Pieces {
     std::vector<Index> tips;        // vertices where darts end
 };
 
-Pieces decide(const Mesh& mesh, const DevelopableChartsOptions& options, DevelopableCharts& result,
-              Progress& progress) {
-    const bool creased = is_creased(mesh);
+Pieces decide(const Mesh& mesh, bool creased, const DevelopableChartsOptions& options,
+              DevelopableCharts& result, Progress& progress) {
     DChartsOptions growing = options;
-    if (creased && options.merge_charts)
-        growing.charts_number = std::min(creased_seeds * options.charts_number, mesh.face_count());
+    if (creased)
+        growing.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
+    const StretchBounds bounds =
+        bounds_from(options.merge_threshold * (creased ? creased_threshold : 1.0));
     const DChartsResult grown = segment_dcharts(mesh, growing, progress);
     result.rounds = grown.rounds;
     result.converged = grown.converged;
@@ -75,7 +80,7 @@ Pieces decide(const Mesh& mesh, const DevelopableChartsOptions& options, Develop
     if (options.straighten_boundaries) {
         progress.begin_phase("straightening borders", 0.1);
         ExpansionOptions expansion;
-        expansion.max_fitting_error = options.max_fitting_error;
+        expansion.max_fitting_error = growing.max_fitting_error;
         expansion.length_weight = creased ? creased_length_weight : smooth_length_weight;
         relabel_by_expansion(mesh, grown.proxies, expansion, pieces.patch, progress);
     }
@@ -86,17 +91,17 @@ Pieces decide(const Mesh& mesh, const DevelopableChartsOptions& options, Develop
         return pieces;
 
     progress.begin_phase("trying charts", 0.05);
-    Draft draft = make_draft(mesh, pieces.chart, progress);
+    Draft draft = make_draft(mesh, pieces.chart, bounds.l2, progress);
     if (options.merge_charts) {
         progress.begin_phase("joining charts", 0.3);
         MergeOptions merging;
-        merging.chart = bounds_from(options.merge_threshold);
+        merging.chart = bounds;
         result.joins = merge_charts(mesh, merging, draft, progress);
     }
     if (options.add_darts) {
         progress.begin_phase("cutting darts", 0.1);
         DartOptions darts;
-        darts.chart = bounds_from(options.merge_threshold);
+        darts.chart = bounds;
         cut_darts(mesh, darts, draft, progress);
     }
     pieces.chart = draft.chart;
@@ -127,17 +132,19 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
     check_options(mesh, options);
     DevelopableCharts result;
     progress.begin_phase("coarsening", 0.2);
-    const Index wanted = std::max(coarse_faces, faces_per_chart * options.charts_number);
+    const bool creased = is_creased(mesh);
+    const Index wanted = std::max(creased ? creased_coarse_faces : coarse_faces,
+                                  faces_per_chart * options.charts_number);
     const bool is_large = mesh.face_count() > worth_coarsening * wanted;
     if (!is_large) {
-        Pieces pieces = decide(mesh, options, result, progress);
+        Pieces pieces = decide(mesh, creased, options, result, progress);
         result.chart = std::move(pieces.chart);
         result.seam = std::move(pieces.seam);
         result.darts = static_cast<Index>(pieces.tips.size());
     } else {
         CoarseSurface surface = coarsen(mesh.points, mesh.faces, mesh.twin, wanted, progress);
         const CoarseMesh coarse = extract_coarse_mesh(mesh, surface);
-        const Pieces pieces = decide(coarse.mesh, options, result, progress);
+        const Pieces pieces = decide(coarse.mesh, creased, options, result, progress);
         std::vector<Index> label(mesh.faces.size(), -1);
         for (std::size_t f = 0; f < coarse.face.size(); ++f)
             label[at(coarse.face[f])] = pieces.chart[f];

@@ -25,7 +25,10 @@ double Draft::linf() const {
     return worst;
 }
 
-Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, Progress& progress) {
+Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, double wanted_l2,
+                 Progress& progress) {
+    TrialEffort effort;
+    effort.wanted_l2 = wanted_l2;
     Draft draft;
     draft.chart = chart;
     draft.seam.assign(mesh.twin.size(), 0);
@@ -41,7 +44,7 @@ Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, Progress& pr
         [&](int i) {
             const std::size_t c = static_cast<std::size_t>(i);
             if (!draft.faces[c].empty())
-                draft.map[c] = try_chart(mesh, draft.faces[c], draft.seam, TrialEffort(), progress);
+                draft.map[c] = try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
         },
         progress);
     return draft;

@@ -23,8 +23,10 @@ struct Draft {
     double linf() const;   // over the charts
 };
 
-/// Labels of edge-connected charts → a draft without cuts inside charts, all charts tried.
-Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, Progress& progress);
+/// Labels of edge-connected charts → a draft without cuts inside charts, all charts tried; the
+/// stretch is to be compared with `wanted_l2`.
+Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, double wanted_l2,
+                 Progress& progress);
 
 /// Stretch that a chart should not exceed.
 struct StretchBounds {

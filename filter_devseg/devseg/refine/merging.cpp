@@ -87,7 +87,8 @@ private:
             [&](int i) {
                 const Pair& pair = open[static_cast<std::size_t>(i)];
                 TrialEffort effort;
-                effort.give_up_l2 = bounds(pair).l2;
+                effort.wanted_l2 = bounds(pair).l2;
+                effort.give_up = true;
                 maps[static_cast<std::size_t>(i)] =
                     try_chart(mesh_, united(pair), draft_.seam, effort, progress_);
             },
@@ -137,6 +138,7 @@ private:
             if (best.first < 0 || !joined_[best].overlaps)
                 return best;
             TrialEffort effort;
+            effort.wanted_l2 = bounds(best).l2;
             effort.push_apart = true;
             TrialMap& map = joined_[best];
             map = try_chart(mesh_, united(best), draft_.seam, effort, progress_);

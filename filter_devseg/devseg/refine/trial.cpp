@@ -18,25 +18,27 @@ namespace devseg {
 
 namespace {
 
-constexpr int trial_rounds = 40;
-constexpr double trial_tolerance = 1e-5;
+// Rounds stop when ten of them gain less than this share of the excess that is compared with.
+constexpr double precision = 1e-3;
+constexpr double coarsest = 1e-5; // relative to the energy
+constexpr double finest = 1e-7;
+constexpr int few_rounds = 40;
+constexpr int many_rounds = 200;
 
-// Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy,
-// depending on how much of the distortion is shear; a third more leaves room for the minimum's own
-// scale.
-double hopeless_energy(double l2) {
-    return 1.0 + (l2 * l2 - 1.0);
-}
-
+// Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over 1,
+// depending on how much of the distortion is shear: an energy whose excess is that of the wanted
+// l2² is hopeless.
 std::vector<Vec2> trial_uv(const FlatteningProblem& problem, const TrialEffort& effort,
                            const Progress& progress) {
     std::vector<Vec2> uv = flatten_lscm(problem);
     if (count_flips(problem, uv) > 0)
         uv = flatten_tutte(problem);
     SymmetricDirichletOptions options;
-    options.max_iterations = trial_rounds;
-    options.relative_tolerance = trial_tolerance;
-    options.give_up_energy = hopeless_energy(effort.give_up_l2);
+    const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
+    options.relative_tolerance = std::clamp(precision * excess, finest, coarsest);
+    options.max_iterations = precision * excess < coarsest ? many_rounds : few_rounds;
+    if (effort.give_up)
+        options.give_up_energy = 1.0 + excess;
     uv = minimise_symmetric_dirichlet(problem, uv, options, progress).uv;
     scale_to_area(problem, uv);
     return uv;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "devseg/mesh/charts.h"
@@ -25,8 +24,9 @@ struct TrialMap {
 };
 
 struct TrialEffort {
-    // Stretch at which a map is not worth finishing; what is measured then is a lower bound.
-    double give_up_l2 = std::numeric_limits<double>::infinity();
+    double wanted_l2 =
+        1.005;               // what the stretch is compared with: decides how exact the map must be
+    bool give_up = false;    // stop early if it will be above; what is measured then is too much
     bool push_apart = false; // try to push overlapping parts apart
 };
 
