@@ -55,6 +55,9 @@ FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOption
         {"hole_charts_number", segmentation.hole_charts},
         {"joined_charts_number", segmentation.joins},
         {"darts_number", segmentation.darts},
+        {"bounds_kept", segmentation.bounds_kept},
+        {"l2_stretch", segmentation.l2_stretch},
+        {"linf_stretch", segmentation.linf_stretch},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
         {"seam_length", seam_length(input.mesh, cuts.charts)},
@@ -90,10 +93,11 @@ FilterDeclaration dcharts() {
     using O = DevelopableChartsOptions;
     return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
                       FilterCategory::remeshing, dcharts_help)
-        .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
+        .integer(&O::charts_number, "charts_number", "Number of charts", 0, 1e9,
                  "The initial estimate of the number of charts, from 1 to the number of faces. "
-                 "Large regions that fit no chart get charts of their own, so that the final "
-                 "number may be larger.")
+                 "Large regions that fit no chart get charts of their own, and neighbours that "
+                 "flatten well together are joined, so that the final number differs. 0 finds the "
+                 "fewest charts whose final map keeps max_l2_stretch and max_linf_stretch.")
         .real(&O::max_fitting_error, "max_fitting_error", "Largest fitting error", 0.0, 4.0,
               "Bound of the fitting error while charts grow, without unit, above 0. Smaller "
               "charts fit better: 0.2 is usual for free forms, 0.01 for mechanical parts.")
@@ -118,6 +122,12 @@ FilterDeclaration dcharts() {
         .boolean(&O::add_darts, "add_darts", "Cut darts",
                  "Cut from the border of a chart to the spots where its map is stretched most, as "
                  "far as that is worth the length of the cut.")
+        .real(&O::max_l2_stretch, "max_l2_stretch", "Largest L2 stretch", 1.0, 100.0,
+              "Bound of the L2 stretch of the whole map, above 1, without unit; used where "
+              "charts_number is 0, and measured on the final map of the full surface.")
+        .real(&O::max_linf_stretch, "max_linf_stretch", "Largest L∞ stretch", 0.0, 1000.0,
+              "Bound of the stretch of the worst spot, above 1, without unit; 0 for no bound. Used "
+              "where charts_number is 0.")
         .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                  "The rounds of growing and reseeding end here at the latest; usually fewer than "
                  "5 % of the faces change their chart long before.")
@@ -129,6 +139,9 @@ FilterDeclaration dcharts() {
         .result("hole_charts_number", "charts that were added where no other fitted")
         .result("joined_charts_number", "joins of two charts")
         .result("darts_number", "cuts inside charts, to spots of high stretch")
+        .result("bounds_kept", "with charts_number 0: whether the final map keeps the bounds")
+        .result("l2_stretch", "with charts_number 0: L2 stretch of the final map, else 0")
+        .result("linf_stretch", "with charts_number 0: L∞ stretch of the final map, else 0")
         .result("rounds_number", "rounds of growing and reseeding")
         .result("converged", "whether fewer than 5 % of the faces changed in the last round")
         .result("seam_length", "length of all cut edges, model units")

@@ -2,22 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <sstream>
 
-#include "devseg/mesh/coarsen.h"
+#include "devseg/errors.h"
+#include "devseg/refine/carry_over.h"
 #include "devseg/refine/darts.h"
 #include "devseg/refine/merging.h"
-#include "devseg/segment/borders.h"
+#include "devseg/refine/splitting.h"
 #include "devseg/segment/expansion.h"
 #include "devseg/segment/fragments.h"
 
 namespace devseg {
 
 namespace {
-
-constexpr Index coarse_faces = 6000;          // enough to decide where borders run
-constexpr Index creased_coarse_faces = 24000; // where they must run along creases
-constexpr Index faces_per_chart = 150;        // of the coarse surface, at least
-constexpr double worth_coarsening = 2.0;      // faces over those of the coarse surface
 
 // What border is worth against the fitting error of faces.
 constexpr double smooth_length_weight = 0.045;
@@ -28,13 +26,18 @@ constexpr double smooth_length_weight = 0.045;
 constexpr double creased_fitting_error = 0.008; // F_max at most
 constexpr double creased_length_weight = 0.001;
 constexpr double creased_threshold = 0.02; // factor of η
-constexpr double bent_cosine = 0.866;      // of 30 degrees
-constexpr double sharp_cosine = 0.5;       // of 60 degrees
-constexpr double sharp_share = 0.6;        // of the bent edges
-constexpr double least_creases = 1.0;      // over the root of the area
 
-// Of the surface: smaller pieces are slivers that nobody wants to cut out.
-constexpr double fragment_share = 0.002;
+constexpr double bent_cosine = 0.866; // of 30 degrees
+constexpr double sharp_cosine = 0.5;  // of 60 degrees
+constexpr double sharp_share = 0.6;   // of the bent edges
+constexpr double least_creases = 1.0; // over the root of the area
+
+constexpr int automatic_seeds = 10; // where the number of charts is to be found
+constexpr int most_splits = 200;
+constexpr int most_attempts = 5;
+constexpr double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
+constexpr double chart_excess = 4.0; // of one chart over that of the whole
+constexpr double loose_linf = 8.0;   // worst spots count little where they have no bound
 
 // Stretch that joined charts may have, from η: at η = 0.01, L2 1.005 and L∞ 1.4.
 StretchBounds bounds_from(double merge_threshold) {
@@ -57,120 +60,180 @@ bool is_creased(const Mesh& mesh) {
     return sharp > least_creases * std::sqrt(mesh.total_area) && sharp > sharp_share * bent;
 }
 
-struct Pieces {
-    std::vector<Index> patch;       // #F: charts before joining
-    std::vector<Index> chart;       // #F
-    std::vector<std::uint8_t> seam; // 3 #F
-    std::vector<Index> tips;        // vertices where darts end
+void check_bounds(const DevelopableChartsOptions& o) {
+    const auto refuse = [](const char* name, const char* expected, double found) {
+        std::ostringstream text;
+        text << name << ": expected " << expected << ", found " << found;
+        throw InvalidParameter(text.str());
+    };
+    if (!(o.merge_threshold > 0.0) || !(o.merge_threshold <= 1.0))
+        refuse("merge_threshold", "a number above 0 and at most 1 (0.01 is usual)",
+               o.merge_threshold);
+    if (!(o.max_l2_stretch > 1.0))
+        refuse("max_l2_stretch", "a number above 1 (1.005 is usual)", o.max_l2_stretch);
+    if (o.max_linf_stretch != 0.0 && !(o.max_linf_stretch > 1.0))
+        refuse("max_linf_stretch", "0 for no bound, or a number above 1", o.max_linf_stretch);
+}
+
+// One run: the surface on which decisions are made, and how charts grow on it.
+class Designer {
+public:
+    Designer(const Mesh& mesh, const DevelopableChartsOptions& options, Progress& progress)
+        : options_(options), progress_(progress), creased_(is_creased(mesh)), growing_(options),
+          working_(mesh, creased_, std::max(options.charts_number, automatic_seeds), progress) {
+        if (options.charts_number == 0)
+            growing_.charts_number = std::min(automatic_seeds, mesh.face_count());
+        if (creased_)
+            growing_.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
+    }
+
+    DevelopableCharts run() {
+        grow_patches();
+        return options_.charts_number == 0 ? run_automatic() : run_with_estimate();
+    }
+
+private:
+    struct Aim {
+        StretchBounds chart;
+        double max_excess = std::numeric_limits<double>::infinity();
+        bool few = false; // few charts matter more than wide necks between their parts
+    };
+
+    void grow_patches() {
+        const Mesh& mesh = working_.mesh();
+        const DChartsResult grown = segment_dcharts(mesh, growing_, progress_);
+        result_.rounds = grown.rounds;
+        result_.converged = grown.converged;
+        result_.hole_charts = grown.hole_charts;
+        patch_ = grown.chart;
+        progress_.begin_phase("straightening borders", 0.1);
+        if (options_.straighten_boundaries) {
+            ExpansionOptions expansion;
+            expansion.max_fitting_error = growing_.max_fitting_error;
+            expansion.length_weight = creased_ ? creased_length_weight : smooth_length_weight;
+            relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
+        }
+        patch_ = absorb_fragments(mesh, patch_, fragment_share);
+    }
+
+    DevelopableCharts run_with_estimate() {
+        if (!options_.merge_charts && !options_.add_darts)
+            return finish(make_untried_draft(working_.mesh(), patch_));
+        Aim aim;
+        aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
+        progress_.begin_phase("trying charts", 0.05);
+        Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
+        improve(aim, draft);
+        return finish(draft);
+    }
+
+    void improve(const Aim& aim, Draft& draft) {
+        if (options_.merge_charts) {
+            progress_.begin_phase("joining charts", 0.3);
+            MergeOptions merging;
+            merging.chart = aim.chart;
+            merging.max_excess = aim.max_excess;
+            merging.least_neck = aim.few ? 0.0 : merging.least_neck;
+            result_.joins = merge_charts(working_.mesh(), merging, draft, progress_);
+        }
+        if (options_.add_darts) {
+            progress_.begin_phase("cutting darts", 0.1);
+            DartOptions darts;
+            darts.chart = aim.chart;
+            cut_darts(working_.mesh(), darts, draft, progress_);
+        }
+    }
+
+    // Splits the chart that contributes most until the stretch of all is within the bound.
+    void split_worst(const Aim& aim, Draft& draft) {
+        for (int i = 0; i < most_splits && draft.excess() > aim.max_excess; ++i) {
+            Index worst = -1;
+            for (Index c = 0; c < static_cast<Index>(draft.faces.size()); ++c)
+                if (!draft.faces[at(c)].empty() &&
+                    (worst < 0 || draft.map[at(c)].excess() > draft.map[at(worst)].excess()))
+                    worst = c;
+            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+                return;
+        }
+    }
+
+    // The fewest charts within the bounds: what the coarse surface may use of them is lowered until
+    // the map of the full surface keeps them.
+    DevelopableCharts run_automatic() {
+        const double allowed = options_.max_l2_stretch * options_.max_l2_stretch - 1.0;
+        const bool has_linf = options_.max_linf_stretch > 0.0;
+        double share = first_share;
+        double linf = has_linf ? options_.max_linf_stretch
+                               : bounds_from(loose_linf * (options_.max_l2_stretch - 1.0)).linf;
+        progress_.begin_phase("trying charts", 0.05);
+        const Draft start =
+            make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, progress_);
+        DevelopableCharts best;
+        for (int attempt = 0; attempt < most_attempts; ++attempt) {
+            Aim aim;
+            aim.chart = {std::sqrt(1.0 + chart_excess * allowed), linf};
+            aim.max_excess = share * allowed * working_.mesh().total_area;
+            aim.few = true;
+            Draft draft = start;
+            split_worst(aim, draft);
+            improve(aim, draft);
+            DevelopableCharts found = finish(draft);
+            StretchBounds reached = working_.measure(found.chart, found.seam, progress_);
+            if (has_linf && options_.add_darts && reached.linf > options_.max_linf_stretch) {
+                DartOptions darts;
+                darts.chart = {aim.chart.l2, options_.max_linf_stretch};
+                found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
+                reached = working_.measure(found.chart, found.seam, progress_);
+            }
+            found.l2_stretch = reached.l2;
+            found.linf_stretch = reached.linf;
+            found.bounds_kept = reached.l2 <= options_.max_l2_stretch &&
+                                (!has_linf || reached.linf <= options_.max_linf_stretch);
+            if (attempt == 0 || found.l2_stretch < best.l2_stretch || found.bounds_kept)
+                best = std::move(found);
+            if (best.bounds_kept)
+                return best;
+            share *= std::min(0.9, allowed / (reached.l2 * reached.l2 - 1.0));
+            if (has_linf)
+                linf = 1.0 + (linf - 1.0) * std::min(0.9, (options_.max_linf_stretch - 1.0) /
+                                                              (reached.linf - 1.0));
+        }
+        return best;
+    }
+
+    DevelopableCharts finish(const Draft& draft) {
+        progress_.begin_phase("finishing borders", 0.1);
+        FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
+                                              options_.straighten_boundaries, progress_);
+        DevelopableCharts result = result_;
+        result.chart = std::move(full.chart);
+        result.seam = std::move(full.seam);
+        result.darts = full.darts;
+        result.fitting_error = working_.fitting_errors(result.chart);
+        return result;
+    }
+
+    const DevelopableChartsOptions& options_;
+    Progress& progress_;
+    const bool creased_;
+    DChartsOptions growing_;
+    WorkingSurface working_;
+    std::vector<Index> patch_; // #F of the working surface: charts before joining
+    DevelopableCharts result_; // what is known so far
 };
-
-Pieces decide(const Mesh& mesh, bool creased, const DevelopableChartsOptions& options,
-              DevelopableCharts& result, Progress& progress) {
-    DChartsOptions growing = options;
-    if (creased)
-        growing.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
-    const StretchBounds bounds =
-        bounds_from(options.merge_threshold * (creased ? creased_threshold : 1.0));
-    const DChartsResult grown = segment_dcharts(mesh, growing, progress);
-    result.rounds = grown.rounds;
-    result.converged = grown.converged;
-    result.hole_charts = grown.hole_charts;
-    Pieces pieces;
-    pieces.patch = grown.chart;
-    if (options.straighten_boundaries) {
-        progress.begin_phase("straightening borders", 0.1);
-        ExpansionOptions expansion;
-        expansion.max_fitting_error = growing.max_fitting_error;
-        expansion.length_weight = creased ? creased_length_weight : smooth_length_weight;
-        relabel_by_expansion(mesh, grown.proxies, expansion, pieces.patch, progress);
-    }
-    pieces.patch = absorb_fragments(mesh, pieces.patch, fragment_share);
-    pieces.chart = pieces.patch;
-    pieces.seam.assign(mesh.twin.size(), 0);
-    if (!options.merge_charts && !options.add_darts)
-        return pieces;
-
-    progress.begin_phase("trying charts", 0.05);
-    Draft draft = make_draft(mesh, pieces.chart, bounds.l2, progress);
-    if (options.merge_charts) {
-        progress.begin_phase("joining charts", 0.3);
-        MergeOptions merging;
-        merging.chart = bounds;
-        result.joins = merge_charts(mesh, merging, draft, progress);
-    }
-    if (options.add_darts) {
-        progress.begin_phase("cutting darts", 0.1);
-        DartOptions darts;
-        darts.chart = bounds;
-        cut_darts(mesh, darts, draft, progress);
-    }
-    pieces.chart = draft.chart;
-    pieces.seam = draft.seam;
-    pieces.tips = draft.tips;
-    return pieces;
-}
-
-// What faces fit in each chart: the proxies of all patches that it was joined from.
-ChartProxies proxies_of_charts(const Mesh& mesh, const Pieces& pieces) {
-    const Index patches = 1 + *std::max_element(pieces.patch.begin(), pieces.patch.end());
-    const std::vector<ConicProxy> proxies = fit_conics(mesh, pieces.patch, patches);
-    ChartProxies result(at(1 + *std::max_element(pieces.chart.begin(), pieces.chart.end())));
-    std::vector<std::uint8_t> seen(proxies.size(), 0);
-    for (std::size_t f = 0; f < pieces.patch.size(); ++f)
-        if (seen[at(pieces.patch[f])]++ == 0)
-            result[at(pieces.chart[f])].push_back(proxies[at(pieces.patch[f])]);
-        else
-            seen[at(pieces.patch[f])] = 1;
-    return result;
-}
 
 } // namespace
 
 DevelopableCharts segment_developable_charts(const Mesh& mesh,
                                              const DevelopableChartsOptions& options,
                                              Progress& progress) {
-    check_options(mesh, options);
-    DevelopableCharts result;
+    DChartsOptions growing = options;
+    if (growing.charts_number == 0)
+        growing.charts_number = 1;
+    check_options(mesh, growing);
+    check_bounds(options);
     progress.begin_phase("coarsening", 0.2);
-    const bool creased = is_creased(mesh);
-    const Index wanted = std::max(creased ? creased_coarse_faces : coarse_faces,
-                                  faces_per_chart * options.charts_number);
-    const bool is_large = mesh.face_count() > worth_coarsening * wanted;
-    if (!is_large) {
-        Pieces pieces = decide(mesh, creased, options, result, progress);
-        result.chart = std::move(pieces.chart);
-        result.seam = std::move(pieces.seam);
-        result.darts = static_cast<Index>(pieces.tips.size());
-    } else {
-        CoarseSurface surface = coarsen(mesh.points, mesh.faces, mesh.twin, wanted, progress);
-        const CoarseMesh coarse = extract_coarse_mesh(mesh, surface);
-        const Pieces pieces = decide(coarse.mesh, creased, options, result, progress);
-        std::vector<Index> label(mesh.faces.size(), -1);
-        for (std::size_t f = 0; f < coarse.face.size(); ++f)
-            label[at(coarse.face[f])] = pieces.chart[f];
-        result.chart = refine_labels(mesh.points, std::move(surface), std::move(label));
-        progress.begin_phase("straightening borders", 0.1);
-        if (options.straighten_boundaries) {
-            const int rings =
-                2 + static_cast<int>(2.0 * std::sqrt(static_cast<double>(mesh.face_count()) /
-                                                     static_cast<double>(wanted)));
-            straighten_borders(mesh, proxies_of_charts(coarse.mesh, pieces),
-                               options.max_fitting_error, rings, result.chart, progress);
-        }
-        result.chart = absorb_fragments(mesh, result.chart, fragment_share);
-        result.seam.assign(mesh.twin.size(), 0);
-        std::vector<Index> tips;
-        for (const Index v : pieces.tips)
-            tips.push_back(coarse.vertex[at(v)]);
-        result.darts = cut_darts_to(mesh, result.chart, tips, result.seam);
-    }
-    const ChartMap charts = make_chart_map(mesh, result.chart, result.seam, false);
-    result.chart = charts.chart;
-    const std::vector<ConicProxy> proxies = fit_conics(mesh, result.chart, charts.count);
-    result.fitting_error.resize(mesh.faces.size());
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        result.fitting_error[f] = proxies[at(result.chart[f])].fitting_error(mesh.face_normals[f]);
-    return result;
+    return Designer(mesh, options, progress).run();
 }
 
 } // namespace devseg

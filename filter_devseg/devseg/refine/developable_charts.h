@@ -16,6 +16,9 @@ struct DevelopableChartsOptions : DChartsOptions {
     bool merge_charts = true;          // join neighbours whose joined map stretches little
     double merge_threshold = 0.01;     // η: how little
     bool add_darts = true;             // cut towards the worst spots of charts
+    // With charts_number = 0: the fewest charts whose final map keeps these bounds.
+    double max_l2_stretch = 1.005;
+    double max_linf_stretch = 0.0; // 0: no bound
 };
 
 struct DevelopableCharts {
@@ -27,6 +30,10 @@ struct DevelopableCharts {
     Index hole_charts = 0;             // charts that hole filling added
     Index joins = 0;                   // of two charts each
     Index darts = 0;                   // cuts inside charts
+    // With charts_number = 0, of the symmetric Dirichlet map of the full surface:
+    double l2_stretch = 0.0;
+    double linf_stretch = 0.0;
+    bool bounds_kept = true; // false: no number of charts that was tried keeps them
 };
 
 /// Segments a coarse version of the surface if it is large (all decisions are made there), takes

@@ -25,10 +25,7 @@ double Draft::linf() const {
     return worst;
 }
 
-Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, double wanted_l2,
-                 Progress& progress) {
-    TrialEffort effort;
-    effort.wanted_l2 = wanted_l2;
+Draft make_untried_draft(const Mesh& mesh, const std::vector<Index>& chart) {
     Draft draft;
     draft.chart = chart;
     draft.seam.assign(mesh.twin.size(), 0);
@@ -39,6 +36,16 @@ Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, double wante
         draft.faces[c].push_back(f);
     }
     draft.map.resize(draft.faces.size());
+    return draft;
+}
+
+Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart,
+                 const std::vector<std::uint8_t>& seam, double wanted_l2, Progress& progress) {
+    Draft draft = make_untried_draft(mesh, chart);
+    if (!seam.empty())
+        draft.seam = seam;
+    TrialEffort effort;
+    effort.wanted_l2 = wanted_l2;
     parallel_for(
         static_cast<int>(draft.faces.size()),
         [&](int i) {

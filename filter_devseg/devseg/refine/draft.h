@@ -23,10 +23,13 @@ struct Draft {
     double linf() const;   // over the charts
 };
 
-/// Labels of edge-connected charts → a draft without cuts inside charts, all charts tried; the
-/// stretch is to be compared with `wanted_l2`.
-Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart, double wanted_l2,
-                 Progress& progress);
+/// Labels of edge-connected charts and cuts inside them (3 #F, empty for none) → a draft, all
+/// charts tried; the stretch is to be compared with `wanted_l2`.
+Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart,
+                 const std::vector<std::uint8_t>& seam, double wanted_l2, Progress& progress);
+
+/// The same without trials, for a segmentation that stays as it is.
+Draft make_untried_draft(const Mesh& mesh, const std::vector<Index>& chart);
 
 /// Stretch that a chart should not exceed.
 struct StretchBounds {

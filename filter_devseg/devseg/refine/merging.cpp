@@ -15,9 +15,6 @@ namespace {
 // the area for each √area of border.
 constexpr double negligible = 1e-5;
 
-// Least length of border that a join saves, over the root of the smaller chart's area.
-constexpr double least_neck = 0.5;
-
 class Merger {
 public:
     Merger(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress)
@@ -107,11 +104,10 @@ private:
                excess + added_excess(pair, map) <= options_.max_excess;
     }
 
-    // Charts that touch along a short border only would hang together by a narrow neck.
     double least_border(const Pair& pair) const {
         const double area =
             std::min(draft_.map[at(pair.first)].area, draft_.map[at(pair.second)].area);
-        return least_neck * std::sqrt(area);
+        return options_.least_neck * std::sqrt(area);
     }
 
     // The pair whose border is bought off at the lowest price; −1 if there is none.
@@ -125,7 +121,7 @@ private:
                 const double saved = length - map.cut_length +
                                      draft_.map[at(pair.first)].cut_length +
                                      draft_.map[at(pair.second)].cut_length;
-                if (!is_allowed(pair, map, excess) || saved < least_border(pair))
+                if (!is_allowed(pair, map, excess) || !(saved > 0.0) || saved < least_border(pair))
                     continue;
                 const double price =
                     (std::max(0.0, added_excess(pair, map)) + negligible * mesh_.total_area) /

@@ -14,6 +14,9 @@ namespace devseg {
 struct MergeOptions {
     StretchBounds chart;                                         // of each joined chart
     double max_excess = std::numeric_limits<double>::infinity(); // of the draft, see Draft::excess
+    // Least length of border that a join saves, over the root of the smaller chart's area: charts
+    // that touch along a short border would hang together by a narrow neck.
+    double least_neck = 0.5;
     double small_share = 0.01; // of the surface: smaller charts are joined to a neighbour anyway
 };
 

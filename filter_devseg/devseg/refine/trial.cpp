@@ -44,25 +44,6 @@ std::vector<Vec2> trial_uv(const FlatteningProblem& problem, const TrialEffort& 
     return uv;
 }
 
-// Γ of each face, and the measures of the whole map.
-std::vector<double> measure(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                            TrialMap& map) {
-    std::vector<double> stretch(problem.faces.size());
-    map.l2_squared = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian(problem, uv, f);
-        // Singular values of the inverse map: Γ² + γ² = |J|² / det², Γ γ = 1 / det.
-        const double det = j.determinant();
-        const double sum = j.squaredNorm() / (det * det);
-        const double product = 1.0 / det;
-        const double root = std::sqrt(std::max(0.0, sum * sum - 4.0 * product * product));
-        stretch[f] = std::sqrt(0.5 * (sum + root));
-        map.l2_squared += 0.5 * sum * problem.area[f] / problem.total_area;
-        map.linf = std::max(map.linf, stretch[f]);
-    }
-    return stretch;
-}
-
 // Faces that are stretched more than all faces around them.
 std::vector<Index> local_maxima(const ChartSurface& surface, const std::vector<double>& stretch) {
     std::vector<Index> maxima;
@@ -83,6 +64,25 @@ std::vector<Index> local_maxima(const ChartSurface& surface, const std::vector<d
 }
 
 } // namespace
+
+std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                                    TrialMap& map) {
+    std::vector<double> stretch(problem.faces.size());
+    map.area = problem.total_area;
+    map.l2_squared = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d j = jacobian(problem, uv, f);
+        // Singular values of the inverse map: Γ² + γ² = |J|² / det², Γ γ = 1 / det.
+        const double det = j.determinant();
+        const double sum = j.squaredNorm() / (det * det);
+        const double product = 1.0 / det;
+        const double root = std::sqrt(std::max(0.0, sum * sum - 4.0 * product * product));
+        stretch[f] = std::sqrt(0.5 * (sum + root));
+        map.l2_squared += 0.5 * sum * problem.area[f] / problem.total_area;
+        map.linf = std::max(map.linf, stretch[f]);
+    }
+    return stretch;
+}
 
 std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
                                   std::vector<std::uint8_t> seam) {
@@ -123,7 +123,7 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
             uv = std::move(*apart);
             map.overlaps = false;
         }
-    const std::vector<double> stretch = measure(problem, uv, map);
+    const std::vector<double> stretch = measure_stretch(problem, uv, map);
     map.worst_faces = local_maxima(surface, stretch);
     for (Index& f : map.worst_faces)
         f = surface.face[at(f)];

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "devseg/flatten/rest_shape.h"
 #include "devseg/mesh/charts.h"
 #include "devseg/progress.h"
 
@@ -36,6 +37,10 @@ struct TrialEffort {
 TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
                    const Progress& progress);
+
+/// Fills in the area and the stretch of a map; returns Γ of each face.
+std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                                    TrialMap& map);
 
 /// `seam` with the edges between the faces and others marked as well.
 std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
