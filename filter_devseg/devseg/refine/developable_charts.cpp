@@ -34,6 +34,7 @@ constexpr double least_creases = 1.0; // over the root of the area
 
 constexpr int automatic_seeds = 10; // where the number of charts is to be found
 constexpr int most_splits = 200;
+constexpr double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
 constexpr int most_attempts = 5;
 constexpr double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
 constexpr double chart_excess = 4.0; // of one chart over that of the whole
@@ -144,16 +145,20 @@ private:
         }
     }
 
-    // Splits the chart that contributes most until the stretch of all is within the bound.
+    // Splits the charts that contribute most until the stretch of all leaves room for joins.
     void split_worst(const Aim& aim, Draft& draft) {
-        for (int i = 0; i < most_splits && draft.excess() > aim.max_excess; ++i) {
+        std::vector<std::uint8_t> whole; // charts that could not be split
+        for (int i = 0; i < most_splits && draft.excess() > room_for_joins * aim.max_excess; ++i) {
+            whole.resize(draft.faces.size(), 0);
             Index worst = -1;
             for (Index c = 0; c < static_cast<Index>(draft.faces.size()); ++c)
-                if (!draft.faces[at(c)].empty() &&
+                if (!draft.faces[at(c)].empty() && whole[at(c)] == 0 &&
                     (worst < 0 || draft.map[at(c)].excess() > draft.map[at(worst)].excess()))
                     worst = c;
-            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+            if (worst < 0)
                 return;
+            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+                whole[at(worst)] = 1;
         }
     }
 

@@ -30,6 +30,10 @@ Mesh submesh(const Mesh& mesh, const std::vector<Index>& faces) {
     return part;
 }
 
+Index count_labels(const std::vector<Index>& label) {
+    return 1 + *std::max_element(label.begin(), label.end());
+}
+
 } // namespace
 
 bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
@@ -46,7 +50,9 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
     expansion.max_fitting_error = options.max_fitting_error;
     relabel_by_expansion(part, grown.proxies, expansion, label, progress);
     label = absorb_fragments(part, label, fragment_share);
-    const Index count = 1 + *std::max_element(label.begin(), label.end());
+    if (count_labels(label) < 2) // the shortest border is none: take the charts as they grew
+        label = absorb_fragments(part, grown.chart, fragment_share);
+    const Index count = count_labels(label);
     if (count < 2)
         return false;
 
