@@ -14,10 +14,11 @@ namespace devseg {
 namespace {
 
 constexpr Index coarse_faces = 2000;
-constexpr double growth = 2.0;      // vertices at the end of a level over those at its beginning
-constexpr int sweeps = 3;           // over all vertices at the end of a level
-constexpr int bisections = 60;      // towards the middle of the kernel, which is valid
-constexpr double least_room = 1e-2; // area of a new face over that of its rest triangle
+constexpr double growth = 2.0; // vertices at the end of a level over those at its beginning
+constexpr int sweeps = 3;      // over all vertices at the end of a level
+constexpr int bisections = 60; // towards the middle of the kernel, which is valid
+constexpr std::size_t check_every = 4096; // vertices between two looks at the progress
+constexpr double least_room = 1e-2;       // area of a new face over that of its rest triangle
 
 constexpr double full_turn = 2.0 * 3.14159265358979323846;
 
@@ -51,7 +52,7 @@ public:
             static_cast<std::size_t>(growth * static_cast<double>(alive_.size()));
         while (!done() && alive_.size() < wanted) {
             insert(undo_collapse(s_));
-            if (alive_.size() % 4096 == 0)
+            if (alive_.size() % check_every == 0)
                 progress.check();
         }
         // A level that would add little more is joined to this one.
@@ -63,13 +64,13 @@ public:
     // `rest` has the areas and cotangents of the full chart; other levels measure their own faces.
     void relax(const FlatteningProblem* rest, const Progress& progress) {
         measure(rest);
-        for (int i = 0; i < sweeps; ++i) {
-            progress.check();
-            for (const Index v : alive_) {
-                gather(v);
-                uv_[at(v)] = relax_vertex(star_, uv_[at(v)]);
+        for (int i = 0; i < sweeps; ++i)
+            for (std::size_t k = 0; k < alive_.size(); ++k) {
+                if (k % check_every == 0)
+                    progress.check();
+                gather(alive_[k]);
+                uv_[at(alive_[k])] = relax_vertex(star_, uv_[at(alive_[k])]);
             }
-        }
     }
 
     std::vector<Vec2> take() { return std::move(uv_); }

@@ -31,7 +31,8 @@ double VertexStar::energy(const Vec2& p) const {
         const double d = cross(f.from - p, f.to - p) / (2.0 * f.area);
         if (!(d > 0.0))
             return std::numeric_limits<double>::infinity();
-        const double density = 0.25 * squared_norm(f, p) * (1.0 + 1.0 / (d * d));
+        const double inverse = 1.0 / d; // as in relax_vertex, to the last bit
+        const double density = 0.25 * squared_norm(f, p) * (1.0 + inverse * inverse);
         sum += f.area * (steepness > 0.0 ? std::exp(steepness * (density - 1.0)) : density);
     }
     return sum;

@@ -16,7 +16,6 @@ constexpr double boundary_weight = 10.0; // of planes that stand on boundary edg
 constexpr double least_turn = 0.3;   // cosine of the angle that a face may turn in one collapse
 constexpr double least_shape = 0.05; // of a new triangle; 1 is equilateral, 0 is a needle
 constexpr Index check_every = 1 << 14;
-constexpr std::size_t least_tries = 64; // vertices that a round looks at, if there are as many
 
 // Σ area (n·x + d)² over planes, as a symmetric form.
 struct Quadric {
@@ -66,7 +65,9 @@ public:
             add_face_quadric(f);
     }
 
-    // One round of independent collapses; false if none was possible.
+    // One round of independent collapses; false if none was possible. A round without any is
+    // followed by one that looks at all vertices anew: what happens two edges away can make a
+    // collapse legal without making it stale.
     bool round(Index removable, const Progress& progress) {
         choose_candidates(removable, progress);
         std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
@@ -79,8 +80,14 @@ public:
             if (++removed % check_every == 0)
                 progress.check();
         }
-        s_.rounds.push_back(s_.collapses.size());
-        return removed > 0;
+        if (removed == 0 && thorough_)
+            return false;
+        thorough_ = removed == 0;
+        if (thorough_)
+            std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+        else
+            s_.rounds.push_back(s_.collapses.size());
+        return true;
     }
 
 private:
@@ -138,8 +145,8 @@ private:
                                                           : a < b;
         };
         // The dearer half waits: what goes next to a vertex may make it cheaper.
-        const std::size_t count = std::min(
-            order_.size(), std::max(least_tries, std::min(order_.size() / 2, 8 * at(removable))));
+        const std::size_t count =
+            thorough_ ? order_.size() : std::min((order_.size() + 1) / 2, 8 * at(removable));
         std::nth_element(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
                          order_.end(), cheaper);
         order_.resize(count);
@@ -283,6 +290,7 @@ private:
     std::vector<std::uint8_t> touched_; // #V: a neighbour was removed in this round
     std::vector<std::uint32_t> mark_;   // #V: scratch of keeps_topology
     std::uint32_t stamp_ = 0;
+    bool thorough_ = false;    // the last round removed nothing
     std::vector<Index> order_; // candidates, the cheapest first
 };
 
