@@ -8,6 +8,8 @@
 namespace devseg {
 
 std::vector<FilterDeclaration> segmentation_filters();
+std::vector<FilterDeclaration> t_flooding_filters();
+std::vector<FilterDeclaration> baseline_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> measure_filters();
 
