@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "devseg/cut/handle_cutter.h"
 #include "devseg/cut/join_loops.h"
 
 namespace devseg {
@@ -25,22 +26,16 @@ double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
-PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
-                      Index root) {
-    PathForest forest;
-    forest.distance.assign(s.vertex.size(), infinity);
-    forest.toward.assign(s.vertex.size(), -1);
+// Lowers distances by paths that end at the sources.
+void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
+                 const std::vector<Index>& sources, PathForest& forest) {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    const auto start_at = [&](Index v) {
+    for (const Index v : sources) {
         forest.distance[at(v)] = 0.0;
+        forest.toward[at(v)] = -1;
         queue.emplace(0.0, v);
-    };
-    if (s.loops.empty())
-        start_at(root);
-    else
-        for (const Index h : s.loops.front())
-            start_at(s.origin(h));
+    }
     while (!queue.empty()) {
         const auto [d, v] = queue.top();
         queue.pop();
@@ -58,6 +53,20 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
             }
         }
     }
+}
+
+PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
+                      Index root) {
+    PathForest forest;
+    forest.distance.assign(s.vertex.size(), infinity);
+    forest.toward.assign(s.vertex.size(), -1);
+    std::vector<Index> sources;
+    if (s.loops.empty())
+        sources.push_back(root);
+    else
+        for (const Index h : s.loops.front())
+            sources.push_back(s.origin(h));
+    relax_paths(mesh, s, edges, sources, forest);
     return forest;
 }
 
@@ -67,10 +76,18 @@ public:
         : mesh_(mesh), s_(surface), seam_(seam) {}
 
     // For charts with several boundary loops. Returns the length of the cuts, as all of these.
-    double join() {
-        for (const Index h : join_loops(mesh_, s_))
+    double join() { return cut(join_loops(mesh_, s_)); }
+
+    double cut(const std::vector<Index>& half_edges) {
+        for (const Index h : half_edges)
             cut_edge(h);
         return length_;
+    }
+
+    static Index farthest(const PathForest& forest) {
+        return static_cast<Index>(
+            std::max_element(forest.distance.begin(), forest.distance.end()) -
+            forest.distance.begin());
     }
 
     // For charts with at most one loop.
@@ -195,10 +212,6 @@ private:
         const PathForest from_far = grow_paths(mesh_, s_, edges, far);
         cut_path(from_far, farthest(from_far));
     }
-    static Index farthest(const PathForest& forest) {
-        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
-                                  forest.distance.begin());
-    }
 
     const Mesh& mesh_;
     const ChartSurface& s_;
@@ -207,18 +220,58 @@ private:
     bool any_cut_ = false;
 };
 
+// Cuts of one way to open a chart.
+struct Opening {
+    std::vector<std::uint8_t> seam; // 3 #F
+    ChartSurface surface;           // may have a boundary of two edges
+    double length = 0.0;
+};
+
+void join(const Mesh& mesh, Opening& opening) {
+    if (opening.surface.loops.size() < 2)
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam).join();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [EHP04], once all loops are joined.
+void open_joined_first(const Mesh& mesh, Opening& opening) {
+    join(mesh, opening);
+    if (opening.surface.is_disk())
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam).cut_handles();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [YGZS05]: a loop through each handle, then the loops are joined.
+void open_handles_first(const Mesh& mesh, Opening& opening) {
+    opening.length += Cutter(mesh, opening.surface, opening.seam)
+                          .cut(cut_handles(mesh, opening.surface));
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+    join(mesh, opening);
+}
+
+bool has_handles(const ChartSurface& surface) {
+    return surface.euler_characteristic() + static_cast<Index>(surface.loops.size()) < 2;
+}
+
 } // namespace
 
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
                          double* cut_length) {
     double length = 0.0;
-    if (surface.loops.size() > 1) {
-        length += Cutter(mesh, surface, seam).join();
-        surface = extract_surface(mesh, std::move(surface.face), seam);
-    }
     if (!surface.is_disk()) {
-        length += Cutter(mesh, surface, seam).cut_handles();
-        surface = extract_surface(mesh, std::move(surface.face), seam);
+        Opening best{seam, surface, 0.0};
+        open_joined_first(mesh, best);
+        if (has_handles(surface)) {
+            Opening other{seam, surface, 0.0};
+            open_handles_first(mesh, other);
+            if (other.surface.is_disk() && other.length < best.length)
+                best = std::move(other);
+        }
+        seam = std::move(best.seam);
+        surface = std::move(best.surface);
+        length += best.length;
     }
     if (surface.loops.front().size() < 3) {
         length += Cutter(mesh, surface, seam).lengthen();
@@ -229,18 +282,49 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
     return surface;
 }
 
-DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
+Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
+                  double& cut_length) {
+    const double far = loop_length(mesh, disk, disk.loops.front());
+    const VertexEdges edges(disk);
+    PathForest forest = grow_paths(mesh, disk, edges, 0);
+    Index tips = 0;
+    while (true) {
+        const Index tip = Cutter::farthest(forest);
+        if (!(forest.distance[at(tip)] >= far))
+            return tips;
+        ++tips;
+        std::vector<Index> path;
+        for (Index v = tip; forest.toward[at(v)] >= 0; v = disk.target(path.back()))
+            path.push_back(forest.toward[at(v)]);
+        cut_length += Cutter(mesh, disk, seam).cut(path);
+        std::vector<Index> sources{tip};
+        for (const Index h : path)
+            sources.push_back(disk.target(h));
+        relax_paths(mesh, disk, edges, sources, forest);
+    }
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
+                             Progress& progress) {
     DiskCuts result;
     result.charts = charts;
     std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
-        if (surfaces[c].is_disk() && surfaces[c].loops.front().size() > 2)
-            continue;
-        ++result.cut_charts;
-        cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
+        const double before = result.cut_length;
+        if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
+            surfaces[c] = cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam,
+                                      &result.cut_length);
+        if (options.cut_tips)
+            result.cut_tips +=
+                cut_to_tips(mesh, surfaces[c], result.charts.seam, result.cut_length);
+        result.cut_charts += result.cut_length > before ? 1 : 0;
     }
     return result;
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
+    return cut_charts_to_disks(mesh, charts, DiskOptions{false}, progress);
 }
 
 } // namespace devseg

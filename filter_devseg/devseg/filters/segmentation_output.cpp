@@ -11,10 +11,9 @@ namespace devseg {
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
                                  std::vector<double> face_quality, bool cut_tips,
                                  Progress& progress) {
-    (void)cut_tips;
     progress.begin_phase("cutting charts to disks", 0.1);
     DiskCuts cuts =
-        cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false), progress);
+        cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false), DiskOptions{cut_tips}, progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
