@@ -84,10 +84,17 @@ public:
         return length_;
     }
 
+    void cut_path(const PathForest& forest, Index v) {
+        while (forest.toward[at(v)] >= 0) {
+            cut_edge(forest.toward[at(v)]);
+            v = s_.target(forest.toward[at(v)]);
+        }
+    }
+    double length() const { return length_; }
+
     static Index farthest(const PathForest& forest) {
-        return static_cast<Index>(
-            std::max_element(forest.distance.begin(), forest.distance.end()) -
-            forest.distance.begin());
+        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
+                                  forest.distance.begin());
     }
 
     // For charts with at most one loop.
@@ -150,13 +157,6 @@ private:
             seam_[at(s_.mesh_half_edge(only))] = 0;
             seam_[at(s_.mesh_half_edge(s_.twin[at(only)]))] = 0;
             v = s_.target(only);
-        }
-    }
-
-    void cut_path(const PathForest& forest, Index v) {
-        while (forest.toward[at(v)] >= 0) {
-            cut_edge(forest.toward[at(v)]);
-            v = s_.target(forest.toward[at(v)]);
         }
     }
 
@@ -245,8 +245,8 @@ void open_joined_first(const Mesh& mesh, Opening& opening) {
 
 // [YGZS05]: a loop through each handle, then the loops are joined.
 void open_handles_first(const Mesh& mesh, Opening& opening) {
-    opening.length += Cutter(mesh, opening.surface, opening.seam)
-                          .cut(cut_handles(mesh, opening.surface));
+    opening.length +=
+        Cutter(mesh, opening.surface, opening.seam).cut(cut_handles(mesh, opening.surface));
     opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
     join(mesh, opening);
 }
@@ -283,25 +283,15 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
 }
 
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
-                  double& cut_length) {
-    const double far = loop_length(mesh, disk, disk.loops.front());
+                  const TipRule& rule, double& cut_length) {
     const VertexEdges edges(disk);
-    PathForest forest = grow_paths(mesh, disk, edges, 0);
-    Index tips = 0;
-    while (true) {
-        const Index tip = Cutter::farthest(forest);
-        if (!(forest.distance[at(tip)] >= far))
-            return tips;
-        ++tips;
-        std::vector<Index> path;
-        for (Index v = tip; forest.toward[at(v)] >= 0; v = disk.target(path.back()))
-            path.push_back(forest.toward[at(v)]);
-        cut_length += Cutter(mesh, disk, seam).cut(path);
-        std::vector<Index> sources{tip};
-        for (const Index h : path)
-            sources.push_back(disk.target(h));
-        relax_paths(mesh, disk, edges, sources, forest);
-    }
+    const PathForest forest = grow_paths(mesh, disk, edges, 0);
+    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule);
+    Cutter cutter(mesh, disk, seam);
+    for (const Index tip : tips)
+        cutter.cut_path(forest, tip);
+    cut_length += cutter.length();
+    return static_cast<Index>(tips.size());
 }
 
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
@@ -313,18 +303,18 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
         const double before = result.cut_length;
         if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
-            surfaces[c] = cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam,
-                                      &result.cut_length);
+            surfaces[c] =
+                cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
         if (options.cut_tips)
-            result.cut_tips +=
-                cut_to_tips(mesh, surfaces[c], result.charts.seam, result.cut_length);
+            result.cut_tips += cut_to_tips(mesh, surfaces[c], result.charts.seam, options.tip_rule,
+                                           result.cut_length);
         result.cut_charts += result.cut_length > before ? 1 : 0;
     }
     return result;
 }
 
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
-    return cut_charts_to_disks(mesh, charts, DiskOptions{false}, progress);
+    return cut_charts_to_disks(mesh, charts, {false, {}}, progress);
 }
 
 } // namespace devseg

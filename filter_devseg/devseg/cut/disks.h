@@ -9,6 +9,7 @@
 //           (loops through handles first, then joining; tips)
 #pragma once
 
+#include "devseg/cut/tips.h"
 #include "devseg/mesh/charts.h"
 #include "devseg/progress.h"
 
@@ -16,6 +17,7 @@ namespace devseg {
 
 struct DiskOptions {
     bool cut_tips = true; // cut up to tips as well
+    TipRule tip_rule;     // what counts as a tip
 };
 
 struct DiskCuts {
@@ -30,11 +32,10 @@ struct DiskCuts {
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
                          double* cut_length = nullptr);
 
-/// Cuts a chart that is a disk open along shortest paths to its tips [YGZS05]: the vertices farthest
-/// from the boundary, as long as they are at least as far away as the boundary is long. Marks the
-/// seams, adds their length to `cut_length` and returns their number.
+/// Cuts a chart that is a disk open along shortest paths from its boundary to its tips (see
+/// tips.h). Marks the seams, adds their length to `cut_length` and returns their number.
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
-                  double& cut_length);
+                  const TipRule& rule, double& cut_length);
 
 /// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop):
 /// shortest paths between boundary loops, short cycles through handles, and for a sphere a path

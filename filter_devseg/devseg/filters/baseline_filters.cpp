@@ -56,8 +56,8 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
 
 FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progress& progress) {
     VsaResult result = segment_vsa(input.mesh, options, progress);
-    FilterOutput output =
-        segmentation_output(input, result.chart, std::move(result.face_error), false, progress);
+    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_error),
+                                              {false, {}}, progress);
     output.values.insert(
         output.values.end(),
         {{"rounds_number", result.rounds},
@@ -71,8 +71,8 @@ FilterOutput run_mcgim(const FilterInput& input, const McgimOptions& options, Pr
     McgimResult result = segment_mcgim(input.mesh, options, progress);
     for (double& cost : result.face_cost)
         cost *= input.mesh.unit_length;
-    FilterOutput output =
-        segmentation_output(input, result.chart, std::move(result.face_cost), false, progress);
+    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_cost),
+                                              {false, {}}, progress);
     output.values.insert(output.values.end(),
                          {{"rounds_number", result.rounds}, {"converged", result.converged}});
     return output;

@@ -2,18 +2,17 @@
 
 #include <utility>
 
-#include "devseg/cut/disks.h"
 #include "devseg/filters/chart_colors.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg {
 
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
-                                 std::vector<double> face_quality, bool cut_tips,
+                                 std::vector<double> face_quality, const DiskOptions& options,
                                  Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.1);
-    DiskCuts cuts =
-        cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false), DiskOptions{cut_tips}, progress);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false),
+                                        options, progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},

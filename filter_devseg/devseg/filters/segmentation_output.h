@@ -3,14 +3,15 @@
 
 #include <vector>
 
+#include "devseg/cut/disks.h"
 #include "devseg/filters/filter.h"
 
 namespace devseg {
 
-/// Cuts the charts of `labels` to disks, with their tips where `cut_tips`; charts, colours and
-/// `face_quality`, and the values charts_number, cut_length and seam_length.
+/// Cuts the charts of `labels` to disks; charts, colours and `face_quality`, and the values
+/// charts_number, cut_length and seam_length.
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
-                                 std::vector<double> face_quality, bool cut_tips,
+                                 std::vector<double> face_quality, const DiskOptions& cuts,
                                  Progress& progress);
 
 } // namespace devseg

@@ -21,14 +21,17 @@ constexpr const char* t_flooding_help =
     "<b>\"Mesh Segmentation Driven by Gaussian Curvature\"</b><br>"
     "The Visual Computer 21, 2005, doi:10.1007/s00371-005-0319-x";
 
+constexpr double all_horns = 1.0; // of cut/tips.h: tips as wide as the chart as well
+
 struct Options : TFloodingOptions {
-    bool cut_tips = true; // see cut/disks.h
+    bool cut_tips = true;
 };
 
 FilterOutput run_t_flooding(const FilterInput& input, const Options& options, Progress& progress) {
     TFloodingResult result = segment_t_flooding(input.mesh, options, progress);
-    FilterOutput output = segmentation_output(
-        input, result.chart, std::move(result.face_gauss_area), options.cut_tips, progress);
+    FilterOutput output =
+        segmentation_output(input, result.chart, std::move(result.face_gauss_area),
+                            {options.cut_tips, {all_horns}}, progress);
     // Charts are numbered anew by their first face: the values follow.
     std::vector<double> gauss_area(result.chart_gauss_area.size());
     for (std::size_t f = 0; f < result.chart.size(); ++f)
@@ -67,8 +70,8 @@ std::vector<FilterDeclaration> t_flooding_filters() {
             .boolean(&O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
                      "Make the borders between charts short while the charts stay balanced.")
             .boolean(&O::cut_tips, "cut_tips", "Cut tips",
-                     "Cut charts open up to tips that are farther from the border than the border "
-                     "is long.")
+                     "Cut charts open up to tips that are at least half as high as the loop around "
+                     "them is long: horns, fingers and limbs.")
             .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                      "The rounds of flooding and reseeding end here at the latest; usually the "
                      "balance stops to improve before.")

@@ -204,15 +204,16 @@ private:
     Partition now_;
 };
 
-// Farthest-point start [CSAD04, section 3.2]: one chart more at a time, where the error is largest.
-// What no error tells apart (planes) gets seeds that are far from each other.
+// The start of [CSAD04, section 3.2]: one chart more at a time, where the error is largest; what no
+// error tells apart (planes) gets seeds that are far from each other. Random starts take the latter
+// everywhere.
 void start(const Mesh& mesh, Index count, int random_seed, Approximation& approximation,
            Progress& progress) {
     const Index components = face_components(mesh, [](Index) { return true; }).count;
     const std::vector<Index> far =
         farthest_point_seeds(mesh, count, static_cast<std::uint32_t>(random_seed), progress);
     Index charts = 0;
-    for (; charts < components; ++charts)
+    for (; charts < (random_seed != 0 ? count : components); ++charts)
         approximation.add(far[at(charts)]);
     for (;; ++charts) {
         approximation.partition();
