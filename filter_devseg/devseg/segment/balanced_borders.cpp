@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "devseg/cut/min_cut.h"
@@ -15,6 +16,10 @@ namespace {
 // The first price of Gauss area that is tried, as a share of the price of all the difference.
 constexpr double first_price = 1.0 / 64.0;
 
+// Strips are at most this many faces wide on each side: the time for their cuts grows much faster
+// than their width.
+constexpr double strip_steps = 4.0;
+
 constexpr double worthwhile = 1.0 - 1e-9; // lower than rounding would explain
 
 using Pair = std::pair<Index, Index>;
@@ -26,7 +31,7 @@ public:
         : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
           crease_(long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
           depth_(mesh.faces.size()), node_(mesh.faces.size(), -1), reached_(mesh.faces.size(), 0),
-          corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0) {
+          corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0), changes_(at(count), 0) {
         for (Index h = 0; h < mesh.half_edge_count(); ++h) {
             border_cost_.push_back(static_cast<float>(
                 mesh.edge_length(h) * (areas.crease[at(h)] != 0 ? options.crease_cost : 1.0)));
@@ -45,6 +50,10 @@ public:
         for (Index h = 0; h < mesh.half_edge_count(); ++h)
             if (mesh.twin[at(h)] < 0)
                 valence_[at(mesh.origin(h))] = valence_[at(mesh.target(h))] = -1;
+        double steps = 0.0;
+        for (const float step : step_)
+            steps += step;
+        widest_ = static_cast<float>(strip_steps * steps / static_cast<double>(step_.size()));
         const double average = areas.total / count;
         if (average > 0.0)
             stiffness_ =
@@ -67,7 +76,17 @@ public:
             const Pair pair = borders[i].first;
             for (; i < borders.size() && borders[i].first == pair; ++i)
                 edges.push_back(borders[i].second);
-            move_border(pair, edges);
+            // Nothing new since a try that failed: it would fail again.
+            const int now = changes_[at(pair.first)] + changes_[at(pair.second)];
+            const auto tried = settled_.find(pair);
+            if (tried != settled_.end() && tried->second == now)
+                continue;
+            if (move_border(pair, edges)) {
+                ++changes_[at(pair.first)];
+                ++changes_[at(pair.second)];
+            } else {
+                settled_[pair] = now;
+            }
             progress.update(0.0);
         }
     }
@@ -125,20 +144,24 @@ private:
     }
 
     // Faces on both sides that are near this border; the deepest face of a chart stays.
-    std::vector<Index> strip(const std::vector<Index>& edges) {
+    std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges) {
         std::vector<Index> faces;
         std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
         const auto offer = [&](Index f, float d) {
             const std::size_t c = at(chart_[at(f)]);
             if (fixed_[at(f)] != 0 || f == anchor_[c] ||
-                d > static_cast<float>(options_.reach) * deepest_[c])
+                d > std::min(static_cast<float>(options_.reach) * deepest_[c], widest_))
                 return;
             front.emplace_back(-d, f);
             std::push_heap(front.begin(), front.end());
         };
         for (const Index h : edges) {
+            const Index twin = mesh_.twin[at(h)];
+            // Other borders that moved in this sweep may have given a side to a third chart.
+            if (chart_[at(h / 3)] != pair.first || chart_[at(twin / 3)] != pair.second)
+                continue;
             offer(h / 3, 0.0F);
-            offer(mesh_.twin[at(h)] / 3, 0.0F);
+            offer(twin / 3, 0.0F);
         }
         while (!front.empty()) {
             std::pop_heap(front.begin(), front.end());
@@ -218,7 +241,7 @@ private:
 
     // The least cut for growing prices of Gauss area, from none to one that agrees with the
     // difference of the charts that is left.
-    Parting best_parting(const Pair& pair, const std::vector<Index>& faces) const {
+    Parting best_parting(const Pair& pair, const std::vector<Index>& faces) {
         const Index core_a = static_cast<Index>(faces.size());
         std::vector<CutSide> sides(faces.size() + 2, CutSide::open);
         sides[at(core_a)] = CutSide::source;
@@ -231,8 +254,13 @@ private:
         std::vector<Index> links(faces.size());
         for (std::size_t i = 0; i < faces.size(); ++i)
             links[i] = cut.link(static_cast<Index>(i), core, 0.0);
+        // The price that served last time is near; otherwise a small share of the whole.
+        double& last = last_price_[pair];
         double price = 0.0;
-        for (double next = std::abs(due) * first_price; next < std::abs(due); next *= 2.0) {
+        double next = std::abs(due) * first_price;
+        if (last > next && last < std::abs(due))
+            next = 0.5 * last;
+        for (; next < std::abs(due); next *= 2.0) {
             for (std::size_t i = 0; i < faces.size(); ++i)
                 cut.raise(links[i], (next - price) * face_area_[at(faces[i])]);
             price = next;
@@ -243,11 +271,12 @@ private:
             if (std::abs(left) < price || (left > 0.0) != (due > 0.0))
                 break;
         }
+        last = price;
         return best;
     }
 
-    void move_border(const Pair& pair, const std::vector<Index>& edges) {
-        const std::vector<Index> faces = strip(edges);
+    bool move_border(const Pair& pair, const std::vector<Index>& edges) {
+        const std::vector<Index> faces = strip(pair, edges);
         Parting now;
         now.side.assign(faces.size() + 2, CutSide::source);
         now.side.back() = CutSide::sink;
@@ -259,8 +288,7 @@ private:
         const bool improves = energy(pair, best) < energy(pair, now) * worthwhile;
         for (const Index f : faces)
             node_[at(f)] = -1;
-        if (improves)
-            apply(pair, faces, best);
+        return improves && apply(pair, faces, best);
     }
 
     struct Topology {
@@ -297,7 +325,7 @@ private:
     }
 
     // Takes the new sides unless a chart would fall apart or change its topology.
-    void apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
+    bool apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
         const Topology before_a = topology(anchor_[at(pair.first)]);
         const Topology before_b = topology(anchor_[at(pair.second)]);
         std::vector<Pair> undo; // (face, chart)
@@ -316,17 +344,18 @@ private:
             size_b -= to_a ? 1U : 0U;
         }
         if (undo.empty())
-            return;
+            return false;
         const Topology a = topology(anchor_[at(pair.first)]);
         const Topology b = topology(anchor_[at(pair.second)]);
         if (a.faces == size_a && b.faces == size_b && a.doubled_euler == before_a.doubled_euler &&
             b.doubled_euler == before_b.doubled_euler) {
             gauss_area_[at(pair.first)] -= parting.moved;
             gauss_area_[at(pair.second)] += parting.moved;
-            return;
+            return true;
         }
         for (const auto& [f, c] : undo)
             chart_[at(f)] = c;
+        return false;
     }
 
     const Mesh& mesh_;
@@ -334,6 +363,7 @@ private:
     const BorderBalance& options_;
     std::vector<Index>& chart_;
     Index count_;
+    float widest_ = 0.0F;                // bound of the strips' width: their cuts cost time
     std::vector<double> face_area_;     // #F: Gauss area with its share of edges and corners
     std::vector<double> gauss_area_;    // of each chart
     double stiffness_ = 0.0;            // κ: length per Gauss area squared
@@ -348,6 +378,9 @@ private:
     std::vector<std::uint8_t> reached_; // #F: scratch of topology()
     std::vector<Index> corners_;        // #V: scratch of topology()
     std::vector<Index> valence_;        // #V: faces of an inner vertex, −1 on the boundary
+    std::vector<int> changes_;           // of each chart: borders moved so far
+    std::map<Pair, int> settled_;        // changes of both charts when nothing could be gained
+    std::map<Pair, double> last_price_;
     std::vector<Index> stack_;
     CandidateHeap heap_;
 };

@@ -9,7 +9,7 @@
 namespace devseg {
 
 struct BorderBalance {
-    int sweeps = 8;            // over all pairs of neighbours
+    int sweeps = 6;            // over all pairs of neighbours
     double reach = 0.2;        // how far borders may move in one sweep, share of the charts' depth
     double crease_cost = 0.05; // cost of a border along a crease, share of its length
     double stiffness = 30.0;   // weight of balance against length, without unit

@@ -20,9 +20,9 @@ namespace {
 constexpr int patience = 10;
 
 // Charts whose Gauss areas deviate by less than this share of the average need no further rounds.
-constexpr double balanced = 0.01;
+constexpr double balanced = 0.05;
 // Above this share another start is tried, which lets the seeds settle before there are offsets.
-constexpr double unbalanced = 0.1;
+constexpr double unbalanced = 0.15;
 // Seeds that rest: the damping factor shrinks by this whenever the balance gets worse.
 constexpr double calming = 0.8;
 
