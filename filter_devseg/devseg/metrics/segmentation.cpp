@@ -12,6 +12,19 @@ namespace {
 // [YGZS05, section 4]: the threshold of all its examples.
 constexpr double crease_angle = 45.0 * 3.14159265358979323846 / 180.0;
 
+double share_of_creases(const Mesh& mesh, const std::vector<std::uint8_t>& crease,
+                        const std::vector<std::uint8_t>& seam) {
+    double all = 0.0;
+    double cut = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (crease[at(h)] == 0)
+            continue;
+        all += mesh.edge_length(h);
+        cut += seam[at(h)] != 0 ? mesh.edge_length(h) : 0.0;
+    }
+    return all > 0.0 ? cut / all : 1.0;
+}
+
 } // namespace
 
 SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& charts) {
@@ -30,8 +43,12 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& char
         result.largest_chart_area_share =
             std::max(result.largest_chart_area_share, moments.area / mesh.total_area);
     }
-    result.gauss_area_std = standard_deviation(chart_gauss_areas(
-        mesh, compute_gauss_areas(mesh, crease_angle), charts.chart, charts.count));
+    const GaussAreas areas = compute_gauss_areas(mesh, crease_angle);
+    const std::vector<double> sums = chart_gauss_areas(mesh, areas, charts.chart, charts.count);
+    result.gauss_area_std = standard_deviation(sums);
+    for (const double sum : sums)
+        result.gauss_area_mean += sum / static_cast<double>(charts.count);
+    result.crease_share = share_of_creases(mesh, areas.crease, charts.seam);
     return result;
 }
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int patience = 10;
 
 // Charts whose Gauss areas deviate by less than this share of the average need no further rounds.
-constexpr double balanced = 0.05;
+constexpr double balanced = 0.08;
 // Above this share another start is tried, which lets the seeds settle before there are offsets.
 constexpr double unbalanced = 0.15;
 // Seeds that rest: the damping factor shrinks by this whenever the balance gets worse.
