@@ -20,6 +20,11 @@ constexpr double first_price = 1.0 / 64.0;
 // than their width.
 constexpr double strip_steps = 4.0;
 
+constexpr Index update_every = 4096; // faces between two looks at the progress object
+
+// The least share of a strip's width that is tried.
+constexpr double narrowest = 0.2;
+
 constexpr double worthwhile = 1.0 - 1e-9; // lower than rounding would explain
 
 using Pair = std::pair<Index, Index>;
@@ -62,7 +67,7 @@ public:
 
     void sweep(Progress& progress) {
         fix_creases();
-        measure_depths();
+        measure_depths(progress);
         gauss_area_ = chart_gauss_areas(mesh_, areas_, chart_, count_);
         std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
         for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
@@ -100,7 +105,7 @@ private:
                 fixed_[at(h / 3)] = 1;
     }
 
-    void measure_depths() {
+    void measure_depths(Progress& progress) {
         std::fill(depth_.begin(), depth_.end(), std::numeric_limits<float>::infinity());
         heap_.clear();
         for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
@@ -112,45 +117,38 @@ private:
         }
         deepest_.assign(at(count_), 0.0F);
         anchor_.assign(at(count_), -1);
-        spread(std::numeric_limits<float>::infinity(), [&](Index f, float depth) {
-            const Index c = chart_[at(f)];
-            if (anchor_[at(c)] < 0 || depth > deepest_[at(c)]) {
-                deepest_[at(c)] = depth;
-                anchor_[at(c)] = f;
-            }
-        });
-    }
-
-    // Dijkstra inside the charts from what is in the heap; visits faces in order.
-    template <class Visit>
-    void spread(float limit, Visit visit) {
-        while (!heap_.empty()) {
+        for (Index settled = 1; !heap_.empty(); ++settled) {
             const CandidateHeap::Entry entry = heap_.top();
             heap_.pop();
             if (entry.key > depth_[at(entry.face)])
                 continue;
-            visit(entry.face, entry.key);
+            if (settled % update_every == 0)
+                progress.update(0.0);
+            const Index c = chart_[at(entry.face)];
+            if (anchor_[at(c)] < 0 || entry.key > deepest_[at(c)]) {
+                deepest_[at(c)] = entry.key;
+                anchor_[at(c)] = entry.face;
+            }
             for (Index h = 3 * entry.face; h < 3 * entry.face + 3; ++h) {
                 const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || chart_[at(twin / 3)] != chart_[at(entry.face)])
-                    continue;
                 const float through = entry.key + step_[at(h)];
-                if (through < limit && through < depth_[at(twin / 3)]) {
-                    depth_[at(twin / 3)] = through;
-                    heap_.push({through, through, twin / 3});
-                }
+                if (twin < 0 || chart_[at(twin / 3)] != c || through >= depth_[at(twin / 3)])
+                    continue;
+                depth_[at(twin / 3)] = through;
+                heap_.push({through, through, twin / 3});
             }
         }
     }
 
     // Faces on both sides that are near this border; the deepest face of a chart stays.
-    std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges) {
+    std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges, double share) {
         std::vector<Index> faces;
         std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
+        const float reach = static_cast<float>(share * options_.reach);
+        const float widest = static_cast<float>(share) * widest_;
         const auto offer = [&](Index f, float d) {
             const std::size_t c = at(chart_[at(f)]);
-            if (fixed_[at(f)] != 0 || f == anchor_[c] ||
-                d > std::min(static_cast<float>(options_.reach) * deepest_[c], widest_))
+            if (fixed_[at(f)] != 0 || f == anchor_[c] || d > std::min(reach * deepest_[c], widest))
                 return;
             front.emplace_back(-d, f);
             std::push_heap(front.begin(), front.end());
@@ -235,8 +233,46 @@ private:
     Parting solve(const Pair& pair, const std::vector<Index>& faces, MinCut& cut) const {
         Parting result;
         result.side = cut.solve();
+        drop_islands(pair, faces, CutSide::source, result.side);
+        drop_islands(pair, faces, CutSide::sink, result.side);
         evaluate(pair, faces, result);
         return result;
+    }
+
+    // Faces of the strip that hang together with their chart's core only through the other chart
+    // go to that one. A price on Gauss area makes islands of single curved faces.
+    void drop_islands(const Pair& pair, const std::vector<Index>& faces, CutSide which,
+                      std::vector<CutSide>& side) const {
+        const Index own = which == CutSide::source ? pair.first : pair.second;
+        std::vector<std::uint8_t> held(faces.size(), 0);
+        std::vector<Index> stack;
+        const auto hold = [&](std::size_t i) {
+            if (held[i] == 0 && side[i] == which) {
+                held[i] = 1;
+                stack.push_back(faces[i]);
+            }
+        };
+        const auto for_neighbours = [&](Index f, auto visit) {
+            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+                if (mesh_.twin[at(h)] >= 0)
+                    visit(mesh_.twin[at(h)] / 3);
+        };
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            for_neighbours(faces[i], [&](Index g) {
+                if (node_[at(g)] < 0 && chart_[at(g)] == own)
+                    hold(i);
+            });
+        while (!stack.empty()) {
+            const Index f = stack.back();
+            stack.pop_back();
+            for_neighbours(f, [&](Index g) {
+                if (node_[at(g)] >= 0)
+                    hold(at(node_[at(g)]));
+            });
+        }
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            if (held[i] == 0 && side[i] == which)
+                side[i] = which == CutSide::source ? CutSide::sink : CutSide::source;
     }
 
     // The least cut for growing prices of Gauss area, from none to one that agrees with the
@@ -275,21 +311,29 @@ private:
         return best;
     }
 
+    // A wide strip may take a chart apart where a narrow one does not.
     bool move_border(const Pair& pair, const std::vector<Index>& edges) {
-        const std::vector<Index> faces = strip(pair, edges);
-        Parting now;
-        now.side.assign(faces.size() + 2, CutSide::source);
-        now.side.back() = CutSide::sink;
-        for (std::size_t i = 0; i < faces.size(); ++i)
-            if (chart_[at(faces[i])] == pair.second)
-                now.side[i] = CutSide::sink;
-        evaluate(pair, faces, now);
-        const Parting best = best_parting(pair, faces);
-        const bool improves = energy(pair, best) < energy(pair, now) * worthwhile;
-        for (const Index f : faces)
-            node_[at(f)] = -1;
-        return improves && apply(pair, faces, best);
+        bool improves = true;
+        for (double share = 1.0; improves && share > narrowest; share *= 0.5) {
+            const std::vector<Index> faces = strip(pair, edges, share);
+            Parting now;
+            now.side.assign(faces.size() + 2, CutSide::source);
+            now.side.back() = CutSide::sink;
+            for (std::size_t i = 0; i < faces.size(); ++i)
+                if (chart_[at(faces[i])] == pair.second)
+                    now.side[i] = CutSide::sink;
+            evaluate(pair, faces, now);
+            const Parting best = best_parting(pair, faces);
+            improves = energy(pair, best) < energy(pair, now) * worthwhile;
+            for (const Index f : faces)
+                node_[at(f)] = -1;
+            if (improves && apply(pair, faces, best))
+                return true;
+        }
+        return false;
     }
+
+    static constexpr Index disk = 2; // twice the Euler characteristic
 
     struct Topology {
         std::size_t faces = 0;
@@ -347,8 +391,12 @@ private:
             return false;
         const Topology a = topology(anchor_[at(pair.first)]);
         const Topology b = topology(anchor_[at(pair.second)]);
-        if (a.faces == size_a && b.faces == size_b && a.doubled_euler == before_a.doubled_euler &&
-            b.doubled_euler == before_b.doubled_euler) {
+        const auto keeps = [](const Topology& after, std::size_t size, const Topology& before) {
+            return after.faces == size &&
+                   (after.doubled_euler == before.doubled_euler ||
+                    (after.doubled_euler > before.doubled_euler && after.doubled_euler <= disk));
+        };
+        if (keeps(a, size_a, before_a) && keeps(b, size_b, before_b)) {
             gauss_area_[at(pair.first)] -= parting.moved;
             gauss_area_[at(pair.second)] += parting.moved;
             return true;
@@ -363,7 +411,7 @@ private:
     const BorderBalance& options_;
     std::vector<Index>& chart_;
     Index count_;
-    float widest_ = 0.0F;                // bound of the strips' width: their cuts cost time
+    float widest_ = 0.0F;               // bound of the strips' width: their cuts cost time
     std::vector<double> face_area_;     // #F: Gauss area with its share of edges and corners
     std::vector<double> gauss_area_;    // of each chart
     double stiffness_ = 0.0;            // κ: length per Gauss area squared
@@ -378,8 +426,8 @@ private:
     std::vector<std::uint8_t> reached_; // #F: scratch of topology()
     std::vector<Index> corners_;        // #V: scratch of topology()
     std::vector<Index> valence_;        // #V: faces of an inner vertex, −1 on the boundary
-    std::vector<int> changes_;           // of each chart: borders moved so far
-    std::map<Pair, int> settled_;        // changes of both charts when nothing could be gained
+    std::vector<int> changes_;          // of each chart: borders moved so far
+    std::map<Pair, int> settled_;       // changes of both charts when nothing could be gained
     std::map<Pair, double> last_price_;
     std::vector<Index> stack_;
     CandidateHeap heap_;
