@@ -51,7 +51,7 @@ TEST(HandleCutter, CutsThroughTheThinPart) {
 
 TEST(Tips, AFingerIsCutOnceItIsLongerThanItsRim) {
     const double rim = 2.0 * 12.0 * std::sin(pi / 12.0);
-    for (const double length : {0.8 * rim, 1.2 * rim}) {
+    for (const double length : {0.6 * rim, 1.2 * rim}) {
         const Mesh mesh = checks::gated(shapes::finger(12, 40, 1.0, length));
         const DiskCuts cuts = cut(mesh, DiskOptions{});
         const bool is_tip = length > rim;
@@ -98,25 +98,12 @@ TEST(CircleMaps, ADiscKeepsItsShape) {
     EXPECT_NEAR(flat[0], 1.0, 1e-9);
 }
 
-TEST(CircleMaps, AConeIsStretchedAsInTheClosedForm) {
-    // A cone of slant s and rim r maps to the disc by ρ = (t/s)^(s/r): conformal, with the scale
-    // dρ/dt = (s/r) t^(s/r − 1) / s^(s/r). L2² = mean of 1/scale² times (disc / cone area).
-    const double slant = std::sqrt(5.0); // radius 1, height 2
-    const Mesh mesh = checks::gated(shapes::cone(96, 48, 1.0, 2.0));
+TEST(CircleMaps, AHemisphereIsStretchedAsByStereographicProjection) {
+    // ρ = tan(θ/2) has the scale 1 / (1 + cos θ): L2² = ½ ∫ (1 + u)² du from 0 to 1 = 7/6.
+    const Mesh mesh = checks::gated(shapes::hemisphere(128, 48));
     Progress progress;
     const std::vector<double> found = circle_map_stretch(mesh, checks::components(mesh), progress);
-    const double k = slant; // s / r
-    double mean = 0.0;
-    constexpr int steps = 200000;
-    // Inner rings of the mesh cannot follow the pole: compare from its second ring on.
-    const double from = 1.0 / 48.0;
-    for (int i = 0; i < steps; ++i) {
-        const double t = from + (1.0 - from) * (i + 0.5) / steps; // of the slant
-        const double scale = k * std::pow(t, k - 1.0) / slant;
-        mean += 2.0 * t * (1.0 - from) / steps / (scale * scale);
-    }
-    const double expected = std::sqrt(mean * pi / (pi * slant));
-    EXPECT_NEAR(found[0], expected, 0.15 * expected);
+    EXPECT_NEAR(found[0], std::sqrt(7.0 / 6.0), 2e-3);
 }
 
 TEST(CircleMaps, ChartsMustBeDisks) {

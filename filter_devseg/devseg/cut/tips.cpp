@@ -102,7 +102,9 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
         const double loop = parts.perimeter(part);
         const double height = distance[at(tip)] - level[at(f)];
         const bool is_horn = loop <= rule.horn_loop * boundary && height >= horn_height * loop;
-        if (height > 0.0 && (is_horn || distance[at(tip)] >= boundary) && parts.take(part))
+        // At the level of the boundary the part is the chart, and its tip the farthest vertex.
+        const bool is_end = level[at(f)] <= 0.0 && distance[at(tip)] >= boundary;
+        if (height > 0.0 && (is_horn || is_end) && parts.take(part))
             tips.push_back(tip);
     }
     std::sort(tips.begin(), tips.end());

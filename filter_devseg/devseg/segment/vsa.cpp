@@ -115,14 +115,16 @@ public:
         }
     }
 
-    // A new chart where the worst one fits worst; false where every face fits.
+    // Two charts in place of the worst one: around its best face, and around the face that differs
+    // most from that. Both start from their own normal, as the mean of two flat sides would keep
+    // one chart from reaching its side. False where all faces agree.
     bool split_worst() {
         const Index worst = now_.worst();
+        const Vec3 normal = mesh_.face_normals[at(seeds_[at(worst)])];
         Index farthest = -1;
         double largest = 0.0;
         for (Index f = 0; f < mesh_.face_count(); ++f) {
-            const double error =
-                mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, proxies_[at(worst)]);
+            const double error = mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, normal);
             if (now_.chart[at(f)] == worst && f != seeds_[at(worst)] && error > largest) {
                 largest = error;
                 farthest = f;
@@ -130,6 +132,7 @@ public:
         }
         if (farthest < 0)
             return false;
+        proxies_[at(worst)] = normal;
         add(farthest);
         return true;
     }
