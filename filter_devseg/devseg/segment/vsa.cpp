@@ -246,7 +246,7 @@ void approximate(const VsaOptions& options, Approximation& approximation, VsaRes
             result.chart = now.chart;
         }
         approximation.fit();
-        const bool settled = now.total > (1.0 - least_gain) * before;
+        const bool settled = now.total >= (1.0 - least_gain) * before;
         before = now.total;
         if (!settled)
             continue;
