@@ -16,36 +16,15 @@ constexpr double no_area = 1e-12;
 // Distance of pieces that had to be moved, as a share of the layout's size.
 constexpr double shelf_gap = 0.02;
 
-double perimeter(const std::vector<Vec2>& points) {
-    double length = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        length += (points[(i + 1) % points.size()] - points[i]).norm();
-    return length;
-}
-
-// A fan of triangles from the first point: as exact for pieces that lie far from the origin.
-double signed_area(const std::vector<Vec2>& points) {
-    double twice = 0.0;
-    for (std::size_t i = 2; i < points.size(); ++i) {
-        const Vec2 p = points[i - 1] - points.front();
-        const Vec2 q = points[i] - points.front();
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
-    return 0.5 * twice;
-}
-
 // Corners of the texture coordinates along a boundary loop; `place` brings them to paper.
 template <class Place>
 PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
                 Place place) {
     PiecePath path;
     for (const Index h : loop) {
-        const Vec2 p = place(uv[at(surface.mesh_half_edge(h))]);
-        if (path.points.empty() || p != path.points.back())
-            path.points.push_back(p);
+        path.half_edge.push_back(surface.mesh_half_edge(h));
+        path.points.push_back(place(uv[at(path.half_edge.back())]));
     }
-    while (path.points.size() > 1 && path.points.back() == path.points.front())
-        path.points.pop_back();
     path.area = signed_area(path.points);
     return path;
 }
@@ -100,6 +79,24 @@ void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& t
 }
 
 } // namespace
+
+double perimeter(const std::vector<Vec2>& points) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        length += (points[(i + 1) % points.size()] - points[i]).norm();
+    return length;
+}
+
+// A fan of triangles from the first point: as exact for pieces that lie far from the origin.
+double signed_area(const std::vector<Vec2>& points) {
+    double twice = 0.0;
+    for (std::size_t i = 2; i < points.size(); ++i) {
+        const Vec2 p = points[i - 1] - points.front();
+        const Vec2 q = points[i] - points.front();
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
 
 void move_piece(PatternPiece& piece, const Vec2& offset) {
     const auto shift = [&](PiecePath& path) {

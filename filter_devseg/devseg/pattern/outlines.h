@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "devseg/mesh/charts.h"
-#include "devseg/pattern/pieces.h"
+#include "devseg/mesh/texture.h"
+#include "devseg/pattern/pattern.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -15,6 +16,10 @@ namespace devseg {
 std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress);
+
+/// Of a closed polygon: the length around it, and its area, positive if counterclockwise.
+double perimeter(const std::vector<Vec2>& points);
+double signed_area(const std::vector<Vec2>& points);
 
 /// Moves outlines and box.
 void move_piece(PatternPiece& piece, const Vec2& offset);

@@ -8,6 +8,7 @@
 #include "devseg/errors.h"
 #include "devseg/pattern/label_point.h"
 #include "devseg/pattern/outlines.h"
+#include "devseg/pattern/seams.h"
 
 namespace devseg {
 
@@ -231,6 +232,9 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces =
         trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale * mm, progress);
+    std::vector<Chain> chains = find_chains(mesh, pattern.pieces);
+    measure_surface(mesh, pattern.pieces, mm, chains);
+    drop_empty_edges(pattern.pieces, chains);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     progress.begin_phase("naming pieces", 0.4);
@@ -243,6 +247,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
         place_label(piece);
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
     }
+    set_seams(pattern, chains);
     note_folds(pattern, areas);
     note_scale_errors(pattern);
     return pattern;
