@@ -121,6 +121,29 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
     return changed;
 }
 
+/// Fills a new, empty mesh.
+inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
+    CMeshO& m = model.cm;
+    model.updateDataMask(MeshModel::MM_FACECOLOR | MeshModel::MM_FACEQUALITY);
+    auto vertex = vcg::tri::Allocator<CMeshO>::AddVertices(m, layer.geometry.points.size());
+    for (const Vec3& p : layer.geometry.points) {
+        vertex->P() = CMeshO::CoordType(static_cast<Scalarm>(p.x()), static_cast<Scalarm>(p.y()),
+                                        static_cast<Scalarm>(p.z()));
+        ++vertex;
+    }
+    auto face = vcg::tri::Allocator<CMeshO>::AddFaces(m, layer.geometry.faces.size());
+    for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f, ++face) {
+        for (int k = 0; k < 3; ++k)
+            face->V(k) = &m.vert[at(layer.geometry.faces[f][static_cast<std::size_t>(k)])];
+        const Color& c = layer.face_color[f];
+        face->C() = vcg::Color4b(c[0], c[1], c[2], 255);
+        face->Q() = static_cast<Scalarm>(layer.face_quality[f]);
+    }
+    for (const auto& [name, values] : layer.face_attributes)
+        write_face_attribute(m, name, values);
+    model.updateBoxAndNormals();
+}
+
 /// Selects exactly the given live faces, so that the user sees which ones are meant.
 inline void select_faces(CMeshO& m, const std::vector<Index>& faces) {
     std::vector<bool> wanted(static_cast<std::size_t>(m.fn), false);

@@ -52,7 +52,17 @@ enum Writes : unsigned {
     writes_charts = 1, // chart_id, seam_edges and the face-edge selection
     writes_quality = 2,
     writes_color = 4,
-    writes_uv = 8
+    writes_uv = 8,
+    writes_layer = 16 // a new mesh; the host's own stays as it is
+};
+
+/// A mesh of its own, in model units or millimetres as the filter says.
+struct LayerMesh {
+    std::string name;
+    RawMesh geometry;
+    std::vector<Color> face_color;                                         // #F
+    std::vector<double> face_quality;                                      // #F
+    std::vector<std::pair<std::string, std::vector<int>>> face_attributes; // by name, #F each
 };
 
 /// What filters see of a mesh: checked, in internal units.
@@ -68,6 +78,7 @@ struct FilterOutput {
     std::optional<std::vector<double>> face_quality; // #F
     std::optional<std::vector<Color>> face_color;    // #F
     std::optional<CornerUv> uv;
+    std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
 };
@@ -102,6 +113,7 @@ struct HostResult {
     std::vector<double> face_quality;
     std::vector<Color> face_color;
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes;
 };

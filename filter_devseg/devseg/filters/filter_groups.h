@@ -9,6 +9,7 @@ namespace devseg {
 
 std::vector<FilterDeclaration> segmentation_filters();
 std::vector<FilterDeclaration> flattening_filters();
+std::vector<FilterDeclaration> pattern_filters();
 std::vector<FilterDeclaration> measure_filters();
 
 /// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,

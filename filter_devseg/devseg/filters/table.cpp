@@ -7,7 +7,8 @@ namespace devseg {
 const std::vector<FilterDeclaration>& filter_table() {
     static const std::vector<FilterDeclaration> table = [] {
         std::vector<FilterDeclaration> all;
-        for (auto group : {segmentation_filters(), flattening_filters(), measure_filters()})
+        for (auto group :
+             {segmentation_filters(), flattening_filters(), pattern_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();

@@ -21,9 +21,7 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, con
 double perimeter(const std::vector<Vec2>& points);
 double signed_area(const std::vector<Vec2>& points);
 
-/// Moves outlines and box.
-void move_piece(PatternPiece& piece, const Vec2& offset);
-
-Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces);
+/// Sets the areas of the outlines and of the piece, and its box.
+void measure_outlines(PatternPiece& piece);
 
 } // namespace devseg

@@ -32,6 +32,16 @@ struct PiecePath {
     std::vector<OutlineCurve> curves; // the whole outline in order, within the curve tolerance
 };
 
+/// From the texture coordinates to the sheet, for one piece: `scale` is negative where the chart
+/// was turned over. Outlines follow it up to their simplification.
+struct PaperMap {
+    Vec2 origin = Vec2::Zero(); // in the texture coordinates
+    Vec2 scale = Vec2::Ones();  // mm for one unit, along x and y
+    Vec2 offset = Vec2::Zero(); // mm
+
+    Vec2 operator()(const Vec2& p) const { return scale.cwiseProduct(p - origin) + offset; }
+};
+
 /// An edge inside a piece along which the surface bends, for creasing.
 struct PieceFold {
     Vec2 from = Vec2::Zero(); // mm
@@ -61,6 +71,8 @@ struct PatternPiece {
     double label_radius = 0.0;          // mm, its distance from them
     Eigen::AlignedBox2d box;            // mm
 
+    PaperMap place; // where the chart's texture coordinates come to lie
+
     // Pieces of one shape are cut together. The first of them is the model of the others.
     Index model = -1;            // position of that piece, the piece's own for the first
     bool mirrored = false;       // it is the mirror image of its model
@@ -88,6 +100,7 @@ struct Pattern {
     double width = 0.0;             // mm
     double height = 0.0;            // mm
     double mm_per_unit = 1.0;       // as used, from height_mm where that was given
+    std::vector<Index> face_piece;  // #F: piece that each face of the mesh lies in, −1 = none
     std::vector<std::string> notes; // what the user should know, one sentence each
 };
 

@@ -18,8 +18,9 @@ struct EdgePlace {
 // The outlines as they are traced: one edge for each half-edge.
 class TracedEdges {
 public:
-    TracedEdges(const Mesh& mesh, const std::vector<PatternPiece>& pieces)
-        : mesh_(mesh), pieces_(pieces), place_(mesh.twin.size()) {
+    TracedEdges(const Mesh& mesh, const std::vector<PatternPiece>& pieces,
+                const std::vector<std::uint8_t>& cut)
+        : mesh_(mesh), pieces_(pieces), cut_(cut), place_(mesh.twin.size()) {
         for (std::size_t p = 0; p < pieces.size(); ++p)
             for (Index l = 0; l < pieces[p].path_count(); ++l) {
                 const std::vector<Index>& half_edges = pieces[p].path(l).half_edge;
@@ -48,8 +49,10 @@ public:
         const Index there = partner(after);
         if (here < 0 || there < 0)
             return here < 0 && there < 0;
-        return here != after && next(there) == here;
+        return here != after && next(there) == here && is_cut(h) == is_cut(after);
     }
+
+    bool is_cut(Index h) const { return !cut_.empty() && cut_[at(h)] != 0; }
 
     const PiecePath& path_of(Index h) const {
         return pieces_[at(place_[at(h)].piece)].path(place_[at(h)].path);
@@ -58,6 +61,7 @@ public:
 private:
     const Mesh& mesh_;
     const std::vector<PatternPiece>& pieces_;
+    const std::vector<std::uint8_t>& cut_;
     std::vector<EdgePlace> place_; // #half-edges
 };
 
@@ -76,6 +80,7 @@ Chain chain_along(const TracedEdges& edges, const std::vector<Index>& run, bool 
     const Index count = static_cast<Index>(run.size());
     Chain chain;
     chain.is_closed = closed;
+    chain.is_cut = edges.is_cut(run.front());
     chain.sides[0] = side_from(edges.place(run.front()), count, false);
     if (edges.partner(run.front()) < 0) {
         chain.side_count = 1;
@@ -104,8 +109,9 @@ std::size_t subscript(const PiecePath& path, const SeamSide& side, Index k) {
 
 } // namespace
 
-std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>& pieces) {
-    const TracedEdges edges(mesh, pieces);
+std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>& pieces,
+                               const std::vector<std::uint8_t>& cut) {
+    const TracedEdges edges(mesh, pieces, cut);
     std::vector<std::uint8_t> done(mesh.twin.size(), 0);
     std::vector<Chain> chains;
     const auto add_run = [&](const std::vector<Index>& run, bool closed) {

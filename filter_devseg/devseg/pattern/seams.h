@@ -1,6 +1,7 @@
 // Finding the seams of traced pieces through the mesh, and following their sides.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "devseg/pattern/pattern.h"
@@ -14,14 +15,17 @@ struct Chain {
     int side_count = 2;
     bool is_dart = false;
     bool is_closed = false;
+    bool is_cut = false;         // made to split a piece
     double surface_length = 0.0; // mm
 
     Index count() const { return sides[0].count; }
 };
 
 /// All chains of traced pieces, in the order of the pieces and their outlines: maximal runs of
-/// edges that face the same other run. Every edge of every outline belongs to one chain.
-std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>& pieces);
+/// edges that face the same other run. Every edge of every outline belongs to one chain. `cut`
+/// (3 #F, may be empty): 1 where pieces were split.
+std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>& pieces,
+                               const std::vector<std::uint8_t>& cut);
 
 /// Sets the chains' lengths on the model; `mm` is the length of the mesh's internal unit on paper.
 void measure_surface(const Mesh& mesh, const std::vector<PatternPiece>& pieces, double mm,

@@ -7,7 +7,7 @@
 #include <queue>
 #include <tuple>
 
-#include "devseg/flatten/map_tools.h"
+#include "devseg/pattern/layout.h"
 
 namespace devseg {
 
@@ -16,6 +16,10 @@ namespace {
 // A vertex that is left out may move the outline by this share of the outline's size (the square
 // root of its area) at most: the areas of small pieces stay true to better than half a percent.
 constexpr double size_share = 1e-3;
+
+// Cuts that were made to split a piece are straightened: along them, what one part loses the other
+// gains, within this share of their size.
+constexpr double cut_share = 0.05;
 
 // Bends that are smaller than half an edge of the mesh are its staircase, those smaller than this
 // share of the outline's size cannot be felt: neither makes a corner.
@@ -179,17 +183,6 @@ std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
     return segments;
 }
 
-bool cross(const OutlineSegment& a, const OutlineSegment& b) {
-    if (std::max(a.from.y(), a.to.y()) < std::min(b.from.y(), b.to.y()) ||
-        std::max(b.from.y(), b.to.y()) < std::min(a.from.y(), a.to.y()))
-        return false;
-    const auto opposite = [](double p, double q) {
-        return (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
-    };
-    return opposite(orientation(a.from, a.to, b.from), orientation(a.from, a.to, b.to)) &&
-           opposite(orientation(b.from, b.to, a.from), orientation(b.from, b.to, a.to));
-}
-
 } // namespace
 
 std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides,
@@ -201,7 +194,9 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
                                   const std::vector<Chain>& chains, double corner_angle) {
     std::vector<Chain> result;
     for (const Chain& chain : chains) {
-        std::vector<Index> ends = corners_of(pieces, chain, corner_angle);
+        std::vector<Index> ends;
+        if (!chain.is_cut)
+            ends = corners_of(pieces, chain, corner_angle);
         if (ends.empty()) {
             result.push_back(chain);
             continue;
@@ -216,6 +211,25 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
             result.push_back(part_of(pieces, chain, ends[i - 1], ends[i]));
     }
     return result;
+}
+
+void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  double corner_angle) {
+    for (PatternPiece& piece : pieces)
+        for (Index l = 0; l < piece.path_count(); ++l)
+            piece.path(l).corner.assign(piece.path(l).points.size(), 0);
+    // Every end of a chain is the start of an edge of one: its own first, or the next one's.
+    for (const Chain& chain : chains)
+        for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+            const SeamSide& side = chain.sides[s];
+            PiecePath& path = pieces[at(side.piece)].path(side.path);
+            const std::size_t size = path.points.size();
+            const std::size_t i = at(side.first);
+            if (!chain.is_closed && side.count > 0 &&
+                turn(path.points[(i + size - 1) % size], path.points[i],
+                     path.points[(i + 1) % size]) > corner_angle)
+                path.corner[i] = 1;
+        }
 }
 
 void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
@@ -257,7 +271,7 @@ bool crosses_itself(const PatternPiece& piece) {
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (std::size_t j = i + 1; j < segments.size() && segments[j].left <= segments[i].right;
              ++j)
-            if (cross(segments[i], segments[j]))
+            if (edges_cross(segments[i].from, segments[i].to, segments[j].from, segments[j].to))
                 return true;
     return false;
 }

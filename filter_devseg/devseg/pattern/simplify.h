@@ -23,6 +23,10 @@ std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides
 std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
                                   const std::vector<Chain>& chains, double corner_angle);
 
+/// Marks the ends of chains at which an outline turns by more than `corner_angle` (radians).
+void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  double corner_angle);
+
 /// Leaves vertices out of all outlines, by `tolerance` mm and a thousandth of each piece's size at
 /// most. An outline that would cross itself for that keeps all of them.
 void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,

@@ -187,6 +187,8 @@ std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* a
         const devseg::HostResult result =
             devseg::run_filter(filter, devseg::read_host_mesh(*model), values, progress);
         post_condition_mask = devseg::write_host_result(*model, result);
+        if (result.layer)
+            devseg::fill_layer(*document.addNewMesh("", text(result.layer->name)), *result.layer);
         for (const std::string& note : result.notes)
             log(note);
         std::map<std::string, QVariant> returned;
