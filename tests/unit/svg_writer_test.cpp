@@ -5,13 +5,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "devseg/errors.h"
 #include "devseg/pattern/pieces.h"
+#include "unit/temporary_folder.h"
+#include "writers/file.h"
 #include "writers/pattern_drawing.h"
 
 namespace devseg {
@@ -20,34 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double pi = 3.14159265358979323846;
-
-// A directory of its own for each test, gone afterwards.
-class TemporaryFolder {
-public:
-    TemporaryFolder()
-        : path_(fs::temp_directory_path() /
-                ("devseg_svg_" +
-                 std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    ~TemporaryFolder() { fs::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-    std::ptrdiff_t count() const {
-        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-    }
-
-private:
-    fs::path path_;
-};
-
-std::string read(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 Drawing small_drawing() {
     Drawing drawing;
@@ -126,7 +99,7 @@ TEST(SvgWriter, WritesTheseBytes) {
   <path d="M 1,0 L 0,28" fill="none" stroke="#00a000" stroke-width="0.1" stroke-dasharray="3 1.5"/>
  </g>
  <g id="text" inkscape:groupmode="layer" inkscape:label="Text">
-  <text x="20" y="18.6" font-family="sans-serif" font-size="10" text-anchor="middle" fill="#000000">A&lt;B&gt; &amp; &quot;é&quot;</text>
+  <text x="20" y="18.6" font-family="Helvetica, Arial, sans-serif" font-size="10" text-anchor="middle" fill="#000000">A&lt;B&gt; &amp; &quot;é&quot;</text>
  </g>
 </svg>
 )";
@@ -157,18 +130,18 @@ TEST(SvgWriter, SavesTheBytesAndReplacesAnOlderFile) {
     const TemporaryFolder folder;
     const std::string path = folder.file("n\xc3\xa4me with space.svg");
     for (int i = 0; i < 2; ++i) {
-        save_svg(path, small_drawing());
-        EXPECT_EQ(read(path), svg_bytes(small_drawing()));
+        save_file(path, svg_bytes(small_drawing()));
+        EXPECT_EQ(read_bytes(path), svg_bytes(small_drawing()));
         EXPECT_EQ(folder.count(), 1);
     }
 }
 
 TEST(SvgWriter, LeavesNothingAfterAFailure) {
     const TemporaryFolder folder;
-    EXPECT_THROW(save_svg(folder.file("missing/x.svg"), small_drawing()), FileError);
+    EXPECT_THROW(save_file(folder.file("missing/x.svg"), "x"), FileError);
     EXPECT_EQ(folder.count(), 0);
     fs::create_directory(folder.file("folder.svg"));
-    EXPECT_THROW(save_svg(folder.file("folder.svg"), small_drawing()), FileError);
+    EXPECT_THROW(save_file(folder.file("folder.svg"), "x"), FileError);
     EXPECT_EQ(folder.count(), 1);
 
     // Root writes everywhere: this part has something to test for other users only.
@@ -176,7 +149,7 @@ TEST(SvgWriter, LeavesNothingAfterAFailure) {
     fs::create_directory(closed);
     fs::permissions(closed, fs::perms::owner_read | fs::perms::owner_exec);
     if (!std::ofstream(closed + "/probe")) {
-        EXPECT_THROW(save_svg(closed + "/x.svg", small_drawing()), FileError);
+        EXPECT_THROW(save_file(closed + "/x.svg", "x"), FileError);
         EXPECT_TRUE(fs::is_empty(closed));
     }
     fs::permissions(closed, fs::perms::owner_all);

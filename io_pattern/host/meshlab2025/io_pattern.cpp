@@ -8,6 +8,7 @@
 #include "devseg/mesh/input_gate.h"
 #include "devseg/pattern/pieces.h"
 #include "host/vcg_bridge.h"
+#include "writers/file.h"
 #include "writers/pattern_drawing.h"
 #include "writers/svg_writer.h"
 
@@ -167,7 +168,8 @@ void PatternIOPlugin::save(const QString& format, const QString& file_name, Mesh
         const devseg::GatedMesh gated = devseg::gate_mesh(devseg::read_raw_mesh(model.cm));
         const devseg::Pattern pattern =
             make_pattern(gated, gated_uv(gated, host_uv), options, progress);
-        devseg::save_svg(file_name.toStdString(), devseg::draw_pattern(pattern, options));
+        devseg::save_file(file_name.toStdString(),
+                          devseg::svg_bytes(devseg::draw_pattern(pattern, options)));
         for (const std::string& note : gated.notes)
             log(note);
         for (const std::string& note : pattern.notes)
