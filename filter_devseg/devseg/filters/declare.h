@@ -40,6 +40,19 @@ public:
         return add(ParameterKind::boolean, field, std::move(name), std::move(label), 0.0, 1.0, {},
                    std::move(help));
     }
+    Declare& text(std::string Options::*field, std::string name, std::string label,
+                  std::string help) {
+        return add(ParameterKind::text, field, std::move(name), std::move(label), 0.0, 0.0, {},
+                   std::move(help));
+    }
+    /// `example`: what a dialog proposes.
+    Declare& file(std::string Options::*field, std::string name, std::string label,
+                  const std::string& example, std::string help) {
+        add(ParameterKind::output_file, field, std::move(name), std::move(label), 0.0, 0.0, {},
+            std::move(help));
+        filter_.parameters.back().default_value = example;
+        return *this;
+    }
     /// `Enum` must count from 0 in the order of `choices`.
     template <class Enum>
     Declare& choice(Enum Options::*field, std::string name, std::string label,

@@ -20,8 +20,9 @@ namespace devseg {
 
 using Color = std::array<std::uint8_t, 3>; // red, green, blue
 
-enum class ParameterKind { boolean, integer, real, choice };
-using ParameterValue = std::variant<bool, int, double>; // a choice is the int of its position
+enum class ParameterKind { boolean, integer, real, choice, text, output_file };
+// A choice is the int of its position, texts and file names are UTF-8.
+using ParameterValue = std::variant<bool, int, double, std::string>;
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 struct Parameter {
