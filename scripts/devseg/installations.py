@@ -54,7 +54,7 @@ class Installation:
 
 
 def find_installations() -> list[Installation]:
-    """pymeshlab of this Python and every MeshLab at a usual place, each once."""
+    """The pymeshlab of this Python and every MeshLab at a usual place, each once."""
     found = []
     wheel = _wheel_library()
     if wheel is not None:
