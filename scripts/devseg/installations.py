@@ -6,10 +6,12 @@ flavour, folder of the library and folder of the plugins, separated by tabs.
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
 import re
 import shutil
+import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,9 +50,7 @@ class Installation:
     @property
     def programs(self) -> list[Path]:
         """The programs that use this library, where they are at their usual places."""
-        folders = [*self.library.parents[:5], *(parent / "bin" for parent in self.library.parents)]
-        found = [folder / name for folder in folders for name in ("meshlab", "meshlabserver")]
-        return [path for path in found if path.is_file()]
+        return _programs(self.library)
 
 
 def find_installations() -> list[Installation]:
@@ -72,8 +72,27 @@ def find_installations() -> list[Installation]:
 
 def library_version(library: Path) -> str:
     """The version that MeshLab's library was built as: 2020.09, 2025.07d."""
-    found = re.findall(rb"(?<![\w.])20\d\d\.\d\dd?(?![\w.])", library.read_bytes())
+    version = re.compile(rb"(?<![\w.])20\d\d\.\d\dd?(?![\w.])")
+    found = version.search(library.read_bytes())
+    if found is None:
+        # Compilers may take such a short text apart. Versions as new as that answer this without
+        # opening a window.
+        for program in _programs(library):
+            with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+                asked = subprocess.run([program, "--version"], capture_output=True, timeout=10)
+                found = found or version.search(asked.stdout)
     return found[0].decode() if found else "unknown"
+
+
+def _programs(library: Path) -> list[Path]:
+    # From usr/lib/<machine>/meshlab upwards: the nearest folder with programs is meant.
+    for parent in library.parents:
+        for folder in (parent, parent / "bin"):
+            found = [folder / name for name in ("meshlab", "meshlabserver")]
+            found = [path for path in found if path.is_file()]
+            if found:
+                return found
+    return []
 
 
 def plugin_flavour(plugin: Path) -> str | None:

@@ -11,8 +11,6 @@
 #include <QLocalServer>
 #include <QLocalSocket>
 #include <QMenu>
-#include <QProgressBar>
-#include <QTextEdit>
 #include <QTimer>
 
 namespace {
@@ -36,7 +34,7 @@ QJsonObject describe(QWidget& widget) {
         {"tip", widget.toolTip()},
         {"box", QJsonArray{corner.x(), corner.y(), widget.width(), widget.height()}}};
     // Labels, buttons, line edits, spin boxes and docks say what they show under these names.
-    for (const char* name : {"text", "title", "currentText", "html", "checked", "value"}) {
+    for (const char* name : {"text", "title", "currentText", "plainText", "checked", "value"}) {
         const QVariant value = widget.property(name);
         if (value.isValid())
             record[name] = QJsonValue::fromVariant(value);
