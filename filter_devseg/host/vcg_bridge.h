@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <common/ml_document/mesh_model.h>
-
 #include "devseg/filters/filter.h"
+#include "host/meshlab_api.h"
 
 namespace devseg {
 
@@ -43,9 +42,9 @@ inline std::vector<std::array<Vec2, 3>> read_wedge_uv(const CMeshO& m) {
 }
 
 /// A custom scalar attribute of the live faces; empty when the mesh does not have it.
-inline std::vector<double> read_face_attribute(const CMeshO& m, const std::string& name) {
+inline std::vector<double> read_face_attribute(CMeshO& m, const std::string& name) {
     std::vector<double> values;
-    const auto handle = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<Scalarm>(m, name);
+    auto handle = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<Scalarm>(m, name);
     if (!vcg::tri::Allocator<CMeshO>::IsValidHandle(m, handle))
         return values;
     values.reserve(static_cast<std::size_t>(m.fn));
@@ -64,7 +63,7 @@ inline void write_face_attribute(CMeshO& m, const std::string& name,
             handle[f] = static_cast<Scalarm>(values[i++]);
 }
 
-inline HostMesh read_host_mesh(const MeshModel& model) {
+inline HostMesh read_host_mesh(MeshModel& model) {
     HostMesh host;
     host.geometry = read_raw_mesh(model.cm);
     host.chart_id = read_face_attribute(model.cm, "chart_id");
