@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
+
+#include <Eigen/SparseCholesky>
 
 #include "devseg/errors.h"
 #include "devseg/flatten/lpfb.h"
@@ -20,12 +23,13 @@ constexpr double largest_share = 0.002; // of the length
 constexpr double largest_mm = 0.5;
 // Seams that are better than this share of it are left alone.
 constexpr double good_enough = 0.5;
-// Sides that differ by more do not belong to charts at one scale: there is no mean to sew by.
-constexpr double largest_ratio = 1.25;
-// An outline that would have to move by more, as a share of its size, keeps its lengths.
-constexpr double largest_move = 0.05;
-// Every round pins further pieces; what is still mismatched after some is left to be reported.
-constexpr int most_rounds = 4;
+// Every round leaves one more piece as it is; what is still mismatched then is reported.
+constexpr int most_rounds = 8;
+// Newton steps for positions, the share of the outline's length that edges may be off, and what
+// keeps the equations solvable on straight outlines.
+constexpr int most_steps = 60;
+constexpr double closed_share = 1e-9;
+constexpr double softness = 1e-9;
 
 double side_length(const std::vector<PatternPiece>& pieces, const SeamSide& side) {
     double length = 0.0;
@@ -66,21 +70,16 @@ Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<
         const double length_a = side_length(pieces, a);
         const double length_b = side_length(pieces, b);
         const bool may_move = pinned[at(a.piece)] == 0 || pinned[at(b.piece)] == 0;
-        if (!may_move || !differ(length_a, length_b, good_enough) ||
-            std::max(length_a, length_b) > largest_ratio * std::min(length_a, length_b))
+        if (!may_move || !differ(length_a, length_b, good_enough))
             continue;
         for (Index k = 0; k < chain.count(); ++k) {
-            const double own = (side_point(pieces, a, k + 1) - side_point(pieces, a, k)).norm();
-            const double other = (side_point(pieces, b, k + 1) - side_point(pieces, b, k)).norm();
-            double length = 0.5 * (own + other);
-            if (pinned[at(a.piece)] != 0)
-                length = own;
-            if (pinned[at(b.piece)] != 0)
-                length = other;
-            if (pinned[at(a.piece)] == 0)
-                set_target(pieces, a, k, length, targets);
-            if (pinned[at(b.piece)] == 0)
-                set_target(pieces, b, k, length, targets);
+            double length = chain.true_length[at(k)];
+            for (const SeamSide& side : chain.sides)
+                if (pinned[at(side.piece)] != 0)
+                    length = (side_point(pieces, side, k + 1) - side_point(pieces, side, k)).norm();
+            for (const SeamSide& side : chain.sides)
+                if (pinned[at(side.piece)] == 0)
+                    set_target(pieces, side, k, length, targets);
         }
     }
     return targets;
@@ -118,46 +117,97 @@ void lay_onto(const std::vector<Vec2>& others, std::vector<Vec2>& points) {
     }
 }
 
-// The outline with edges of the given lengths; nothing where there is none near to it.
-bool close_path(PiecePath& path, std::vector<double> lengths, double size,
-                const Progress& progress) {
-    if (*std::min_element(lengths.begin(), lengths.end()) <= 0.0)
-        return false;
-    std::vector<Vec2> points = path.points;
-    // Holes run clockwise: the other way round they are polygons as well.
-    const bool is_hole = path.area < 0.0;
-    if (is_hole) {
-        std::reverse(points.begin(), points.end());
-        std::reverse(lengths.begin(), lengths.end() - 1);
-    }
-    std::vector<Vec2> closed;
+// The polygon with edges of the given lengths and angles as near as possible to those it has.
+bool close_by_angles(std::vector<Vec2>& points, const std::vector<double>& lengths,
+                     const Progress& progress) {
     try {
-        closed = close_boundary(lengths, inner_angles(points), LpfbOptions{}, progress).points;
+        std::vector<Vec2> closed =
+            close_boundary(lengths, inner_angles(points), LpfbOptions{}, progress).points;
+        lay_onto(points, closed);
+        points = std::move(closed);
     } catch (const NumericalFailure&) {
         return false;
     }
-    lay_onto(points, closed);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!((closed[i] - points[i]).norm() <= largest_move * size))
-            return false;
-    if (is_hole)
-        std::reverse(closed.begin(), closed.end());
-    path.points = std::move(closed);
-    path.area = signed_area(path.points);
     return true;
 }
 
+// The polygon with edges of the given lengths whose points move as little as possible: steps of
+// least norm that fulfil the linearised conditions |x[i + 1] − x[i]| = lengths[i].
+bool close_by_positions(std::vector<Vec2>& points, const std::vector<double>& lengths) {
+    const std::size_t n = points.size();
+    const double enough = closed_share * std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    for (int step = 0; step < most_steps; ++step) {
+        std::vector<Vec2> along(n);
+        Eigen::VectorXd missing(static_cast<Eigen::Index>(n));
+        for (std::size_t i = 0; i < n; ++i) {
+            along[i] = points[(i + 1) % n] - points[i];
+            const double length = along[i].norm();
+            if (!(length > 0.0))
+                return false;
+            along[i] /= length;
+            missing[static_cast<Eigen::Index>(i)] = lengths[i] - length;
+        }
+        if (missing.lpNorm<Eigen::Infinity>() <= enough)
+            return true;
+        std::vector<Eigen::Triplet<double>> entries;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto row = static_cast<Eigen::Index>(i);
+            const auto next = static_cast<Eigen::Index>((i + 1) % n);
+            const double common = -along[i].dot(along[(i + 1) % n]);
+            entries.emplace_back(row, row, 2.0 + softness);
+            entries.emplace_back(row, next, common);
+            entries.emplace_back(next, row, common);
+        }
+        Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(n),
+                                           static_cast<Eigen::Index>(n));
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        const Eigen::VectorXd pull =
+            Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(missing);
+        if (!pull.allFinite())
+            return false;
+        for (std::size_t i = 0; i < n; ++i) {
+            points[i] -= pull[static_cast<Eigen::Index>(i)] * along[i];
+            points[(i + 1) % n] += pull[static_cast<Eigen::Index>(i)] * along[i];
+        }
+    }
+    return false;
+}
+
+// The outline with edges of the given lengths; false where there is none.
+bool close_path(PiecePath& path, std::vector<double> lengths, bool by_angles,
+                const Progress& progress) {
+    if (*std::min_element(lengths.begin(), lengths.end()) <= 0.0)
+        return false;
+    // Holes run clockwise: the other way round they are polygons as well.
+    const auto turn_over = [&] {
+        if (path.area < 0.0)
+            std::reverse(path.points.begin(), path.points.end());
+    };
+    turn_over();
+    if (path.area < 0.0)
+        std::reverse(lengths.begin(), lengths.end() - 1);
+    const bool closed = by_angles ? close_by_angles(path.points, lengths, progress)
+                                  : close_by_positions(path.points, lengths);
+    turn_over();
+    return closed;
+}
+
+// Both ways in turn; the first outline that does not cross itself is taken.
 bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& targets,
                  const Progress& progress) {
-    PatternPiece changed = piece;
-    const double size = std::sqrt(piece.area);
-    for (Index l = 0; l < piece.path_count(); ++l)
-        if (!targets[at(l)].empty() && !close_path(changed.path(l), targets[at(l)], size, progress))
-            return false;
-    if (crosses_itself(changed) && !crosses_itself(piece))
-        return false;
-    piece = std::move(changed);
-    return true;
+    const bool crossed = crosses_itself(piece);
+    for (const bool by_angles : {true, false}) {
+        PatternPiece changed = piece;
+        bool closed = true;
+        for (Index l = 0; l < piece.path_count() && closed; ++l)
+            closed = targets[at(l)].empty() ||
+                     close_path(changed.path(l), targets[at(l)], by_angles, progress);
+        if (!closed || (crosses_itself(changed) && !crossed))
+            continue;
+        piece = std::move(changed);
+        return true;
+    }
+    return false;
 }
 
 } // namespace
@@ -169,30 +219,28 @@ bool sides_agree(double length_a, double length_b) {
 Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
                   const Progress& progress) {
     std::vector<std::uint8_t> pinned(pieces.size(), 0);
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0;; ++round) {
         const Targets targets = find_targets(pieces, chains, pinned);
         std::vector<PatternPiece> changed = pieces;
         Index count = 0;
-        bool again = false;
+        std::size_t failed = pieces.size(); // the largest piece that must stay as it is
         for (std::size_t p = 0; p < pieces.size(); ++p) {
             const bool wanted = std::any_of(targets[p].begin(), targets[p].end(),
                                             [](const auto& t) { return !t.empty(); });
             if (!wanted)
                 continue;
             progress.check();
-            if (close_piece(changed[p], targets[p], progress)) {
+            if (close_piece(changed[p], targets[p], progress))
                 ++count;
-            } else {
-                pinned[p] = 1;
-                again = true;
-            }
+            else if (failed == pieces.size() || pieces[p].area > pieces[failed].area)
+                failed = p;
         }
-        if (!again || round + 1 == most_rounds) {
+        if (failed == pieces.size() || round == most_rounds) {
             pieces = std::move(changed);
             return count;
         }
+        pinned[failed] = 1;
     }
-    return 0;
 }
 
 } // namespace devseg

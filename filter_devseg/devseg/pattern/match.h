@@ -10,11 +10,10 @@
 namespace devseg {
 
 /// Gives the edges of seams whose sides differ by more than half of what sewing bears (0.2 % and
-/// 0.5 mm) the mean of both sides' lengths, and closes the outlines again with angles as near as
-/// possible to those they had, as LPFB does. Outlines that would cross themselves for that, or
-/// move by more than a twentieth of their size, stay as they are, and the other side follows them.
-/// Chains must have the same number of edges on both sides. Returns the number of pieces that were
-/// changed.
+/// 0.5 mm) the lengths they have on the model, on both sides, and closes the outlines again with
+/// angles as near as possible to those they had, as LPFB does. Outlines that would cross
+/// themselves for that stay as they are, and the other side follows them. Chains must have the
+/// same number of edges on both sides. Returns the number of pieces that were changed.
 Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
                   const Progress& progress);
 

@@ -317,8 +317,6 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& chart
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         PatternPiece& piece = pattern.pieces[i];
         const std::size_t c = at(piece.chart);
-        if (areas.surface[c] > 0.0)
-            piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
         const std::vector<Index> faces(groups.faces.begin() + groups.begin[c],
                                        groups.faces.begin() + groups.begin[c + 1]);
         for (const Index f : faces)
@@ -352,7 +350,12 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
 
     progress.begin_phase("placing pieces", 0.2);
     for (PatternPiece& piece : pattern.pieces) {
+        const double traced = piece.area;
         measure_outlines(piece);
+        if (areas.surface[at(piece.chart)] > 0.0)
+            piece.length_scale = areas.scale * std::sqrt(areas.covered[at(piece.chart)] /
+                                                         areas.surface[at(piece.chart)] *
+                                                         std::max(0.0, piece.area) / traced);
         place_label(piece);
         progress.check();
     }

@@ -153,8 +153,12 @@ void measure_surface(const Mesh& mesh, const std::vector<PatternPiece>& pieces, 
         const SeamSide& side = chain.sides[0];
         const PiecePath& path = pieces[at(side.piece)].path(side.path);
         chain.surface_length = 0.0;
-        for (Index k = 0; k < chain.count(); ++k)
-            chain.surface_length += mm * mesh.edge_length(path.half_edge[subscript(path, side, k)]);
+        chain.true_length.clear();
+        for (Index k = 0; k < chain.count(); ++k) {
+            const Index h = path.half_edge[subscript(path, side, k)];
+            chain.true_length.push_back(mm * mesh.edge_length(h));
+            chain.surface_length += chain.true_length.back();
+        }
     }
 }
 
@@ -177,6 +181,35 @@ Chain part_of(const std::vector<PatternPiece>& pieces, const Chain& chain, Index
     return part;
 }
 
+namespace {
+
+// Lengths on the model of what remains of a chain's edges.
+std::vector<double> kept_lengths(const std::vector<PatternPiece>& pieces, const Chain& chain,
+                                 const std::vector<Index>& kept) {
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
+        double length = 0.0;
+        for (Index k = kept[i]; k < kept[i + 1]; ++k)
+            length += chain.true_length[at(k)];
+        double shorter = 0.0;
+        for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+            double path = 0.0;
+            for (Index k = kept[i]; k < kept[i + 1]; ++k)
+                path += (side_point(pieces, chain.sides[s], k + 1) -
+                         side_point(pieces, chain.sides[s], k))
+                            .norm();
+            const double chord = (side_point(pieces, chain.sides[s], kept[i + 1]) -
+                                  side_point(pieces, chain.sides[s], kept[i]))
+                                     .norm();
+            shorter += path > 0.0 ? chord / path : 1.0;
+        }
+        lengths.push_back(length * shorter / chain.side_count);
+    }
+    return lengths;
+}
+
+} // namespace
+
 void keep_points(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
                  const std::vector<std::vector<Index>>& kept) {
     // The sides of each outline in the order of its edges.
@@ -188,6 +221,8 @@ void keep_points(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
             order[{side.piece, side.path, side.first}] = {c, s};
         }
     std::vector<PatternPiece> old = pieces;
+    for (std::size_t c = 0; c < chains.size(); ++c)
+        chains[c].true_length = kept_lengths(old, chains[c], kept[c]);
     for (PatternPiece& piece : pieces)
         for (Index l = 0; l < piece.path_count(); ++l) {
             piece.path(l).points.clear();

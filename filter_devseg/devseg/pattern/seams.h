@@ -17,6 +17,9 @@ struct Chain {
     bool is_closed = false;
     bool is_cut = false;         // made to split a piece
     double surface_length = 0.0; // mm
+    // #count: length that each edge has on the model, in mm; when vertices are left out, as much
+    // shorter as the outlines on paper become, in the mean of both sides.
+    std::vector<double> true_length;
 
     Index count() const { return sides[0].count; }
 };
@@ -27,7 +30,8 @@ struct Chain {
 std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>& pieces,
                                const std::vector<std::uint8_t>& cut);
 
-/// Sets the chains' lengths on the model; `mm` is the length of the mesh's internal unit on paper.
+/// Sets surface_length and true_length of all chains; `mm` is the length of the mesh's internal
+/// unit on paper.
 void measure_surface(const Mesh& mesh, const std::vector<PatternPiece>& pieces, double mm,
                      std::vector<Chain>& chains);
 

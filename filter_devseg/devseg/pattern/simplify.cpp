@@ -22,9 +22,13 @@ constexpr double size_share = 1e-3;
 constexpr double cut_share = 0.05;
 
 // Bends that are smaller than half an edge of the mesh are its staircase, those smaller than this
-// share of the outline's size cannot be felt: neither makes a corner.
+// share of the outline's size belong to no corner.
 constexpr double staircase = 0.5;
-constexpr double unfelt = 3e-3;
+constexpr double no_corner = 0.01;
+// A corner turns by this share of its angle within so many of these sizes on both sides of it; a
+// curve turns by less.
+constexpr double corner_share = 0.6;
+constexpr double corner_reach = 2.0;
 
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
     const Vec2 along = b - a;
@@ -137,6 +141,30 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
     return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
 }
 
+// The point `reach` along the polyline from point i, or its end; backwards for step −1. Closed ones
+// go on behind their end.
+Vec2 walk(const std::vector<Vec2>& points, std::size_t i, double reach, int step) {
+    const Index last = static_cast<Index>(points.size()) - 1;
+    const bool closed = points.front() == points.back();
+    Index k = static_cast<Index>(i);
+    Vec2 here = points[i];
+    for (Index steps = 0; steps < last; ++steps) {
+        Index next = k + step;
+        if (next < 0 || next > last) {
+            if (!closed)
+                break;
+            next = next < 0 ? last - 1 : 1;
+        }
+        const double length = (points[at(next)] - here).norm();
+        if (length >= reach)
+            return here + reach / length * (points[at(next)] - here);
+        reach -= length;
+        here = points[at(next)];
+        k = next;
+    }
+    return here;
+}
+
 // Points of the chain where a side has a corner, its ends not among them (0 on closed chains).
 std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Chain& chain,
                               double corner_angle) {
@@ -145,17 +173,22 @@ std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Cha
     for (std::size_t k = 1; k < sides.front().size(); ++k)
         length += (sides.front()[k] - sides.front()[k - 1]).norm();
     const double tolerance = std::max(staircase * length / static_cast<double>(chain.count()),
-                                      unfelt * size_of(pieces, chain));
+                                      no_corner * size_of(pieces, chain));
     const std::vector<Index> coarse = collapse_vertices(sides, tolerance);
+    const double reach = corner_reach * tolerance;
     std::vector<Index> corners;
     const std::size_t last = coarse.size() - 1;
     for (std::size_t i = chain.is_closed ? 0 : 1; i < last; ++i)
-        for (const std::vector<Vec2>& points : sides)
-            if (turn(points[at(coarse[i > 0 ? i - 1 : last - 1])], points[at(coarse[i])],
-                     points[at(coarse[i + 1])]) > corner_angle) {
+        for (const std::vector<Vec2>& points : sides) {
+            const std::size_t k = at(coarse[i]);
+            if (turn(points[at(coarse[i > 0 ? i - 1 : last - 1])], points[k],
+                     points[at(coarse[i + 1])]) > corner_angle &&
+                turn(walk(points, k, reach, -1), points[k], walk(points, k, reach, 1)) >
+                    corner_share * corner_angle) {
                 corners.push_back(coarse[i]);
                 break;
             }
+        }
     return corners;
 }
 
