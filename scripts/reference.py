@@ -37,6 +37,8 @@ RICH_TYPES = {
     "integer": "RichInt",
     "real": "RichFloat",
     "choice": "RichEnum",
+    "text": "RichString",
+    "output file": "RichFileSave",
 }
 
 INTRODUCTION = """# Filters
@@ -115,6 +117,8 @@ def _parameter_row(parameter: dict[str, Any]) -> str:
         limits = ", ".join(parameter["choices"])
     elif parameter["kind"] == "boolean":
         limits = "true, false"
+    elif parameter["kind"] in ("text", "output file"):
+        limits = parameter["kind"]
     meaning = f"{parameter['label']}. {markdown(parameter['help'])}".replace("  \n", " ")
     return _row(f"`{parameter['name']}`", default, limits, meaning)
 

@@ -8,3 +8,8 @@
 #include <common/filter_parameter/rich_parameter_list.h>
 #include <common/meshmodel.h>
 #endif
+
+// Its name before 2023.
+#if __has_include(<common/parameters/rich_parameter/rich_file_save.h>)
+using RichSaveFile = RichFileSave;
+#endif

@@ -15,11 +15,10 @@ namespace {
 FilterDeclaration without_file() {
     FilterDeclaration filter = export_filter();
     std::vector<Parameter>& parameters = filter.parameters;
-    parameters.erase(std::remove_if(parameters.begin(), parameters.end(),
-                                    [](const Parameter& p) {
-                                        return p.kind == ParameterKind::output_file;
-                                    }),
-                     parameters.end());
+    parameters.erase(
+        std::remove_if(parameters.begin(), parameters.end(),
+                       [](const Parameter& p) { return p.kind == ParameterKind::output_file; }),
+        parameters.end());
     return filter;
 }
 

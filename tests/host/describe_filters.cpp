@@ -104,8 +104,10 @@ std::string describe(const FilterDeclaration& filter) {
 } // namespace devseg
 
 int main() {
-    std::cout << devseg::list(devseg::plugin_filters(), [](const devseg::FilterDeclaration& filter) {
-        return "\n " + devseg::describe(filter);
-    }) << "\n";
+    std::cout << devseg::list(devseg::plugin_filters(),
+                              [](const devseg::FilterDeclaration& filter) {
+                                  return "\n " + devseg::describe(filter);
+                              })
+              << "\n";
     return std::cout.good() ? 0 : 1;
 }
