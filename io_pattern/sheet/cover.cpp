@@ -24,7 +24,7 @@ constexpr double least_label = 1.6;
 constexpr double azimuths[] = {-35.0 * pi / 180.0, 145.0 * pi / 180.0}; // front, back
 
 // Where the columns of the table start, as shares of the width.
-constexpr double columns[] = {0.0, 0.1, 0.3, 0.42, 0.62};
+constexpr double columns[] = {0.0, 0.1, 0.26, 0.36, 0.56};
 
 struct Row {
     std::array<std::string, 4> cells; // piece, size, page, how many to cut
@@ -48,19 +48,34 @@ std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
     return text;
 }
 
+// Seams in a row that join the same piece are one entry: "3 to 7: P02".
 std::string seam_list(const Pattern& pattern, Index piece) {
     std::string text;
+    std::string first;
+    std::string last;
+    std::string target;
+    const auto finish = [&] {
+        if (!first.empty())
+            text += (text.empty() ? "" : ", ") + first + (first == last ? "" : " to " + last) +
+                    ": " + target;
+    };
     for (const Seam& seam : pattern.seams) {
         const Index a = seam.sides[0].piece;
         const Index b = seam.sides[1].piece;
         if (a != piece && b != piece)
             continue;
         const Index other = a == piece ? b : a;
-        text += (text.empty() ? "" : ", ") + seam.label +
-                (seam.is_dart     ? " (dart)"
-                 : other == piece ? " (to itself)"
-                                  : " to " + pattern.pieces[at(other)].name);
+        const std::string name = seam.is_dart     ? "dart"
+                                 : other == piece ? "itself"
+                                                  : pattern.pieces[at(other)].name;
+        if (name != target || first.empty()) {
+            finish();
+            first = seam.label;
+            target = name;
+        }
+        last = seam.label;
     }
+    finish();
     return text;
 }
 
@@ -153,7 +168,7 @@ void add_pictures(const Mesh& mesh, const Pattern& pattern, Book& book) {
 void add_table(const std::vector<Row>& rows, Book& book) {
     const auto column = [&](std::size_t i) { return columns[i] * book.width(); };
     const char* const heads[] = {"Piece", "Size in mm", "Page", "Cut",
-                                 "Seams: number, joins piece"};
+                                 "Seams: numbers, joined piece"};
     book.advance(line_pitch);
     for (std::size_t i = 0; i < 5; ++i)
         book.write(column(i), text_size, heads[i]);

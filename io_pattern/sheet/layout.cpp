@@ -104,32 +104,46 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
                            "max_piece_mm");
 }
 
-// Pieces larger than a page share a sheet of several pages.
+Index pages_along(double length, double step) {
+    return static_cast<Index>(std::max(1.0, std::ceil((length - tile_overlap) / step - 1e-9)));
+}
+
+// Pieces larger than a page share a sheet of several pages: as wide as it takes the fewest.
 void nest_tiles(PatternLayout& layout, const std::vector<std::size_t>& large, bool keep_grain,
                 Progress& progress) {
     const PageFormat& page = *layout.page;
     double widest = 0.0;
     for (const std::size_t i : large)
         widest = std::max(widest, layout.pieces[i].box().sizes().norm() + piece_gap);
-    const auto pages = [](double length, double step) {
-        return static_cast<Index>(std::max(1.0, std::ceil((length - tile_overlap) / step - 1e-9)));
-    };
-    PatternSheet sheet;
-    sheet.columns = pages(widest, page.step().x());
-    NestingOptions nesting;
-    nesting.width = sheet.columns * page.step().x() + tile_overlap;
-    nesting.gap = piece_gap;
-    nesting.keep_grain = keep_grain;
-    place(layout.pieces, large, nest_pieces(pointers(layout.pieces, large), nesting, progress), 0,
-          page.margin);
-    Eigen::AlignedBox2d box;
-    for (const std::size_t i : large)
-        box.extend(layout.pieces[i].box());
-    sheet.columns = pages(box.max().x() - page.margin, page.step().x());
-    sheet.rows = pages(box.max().y() - page.margin, page.step().y());
-    sheet.size = Vec2(sheet.columns * page.step().x(), sheet.rows * page.step().y()) +
-                 Vec2::Constant(tile_overlap + 2.0 * page.margin);
-    layout.sheets.push_back(sheet);
+    const Index most = pages_along(widest, page.step().x());
+    std::vector<SheetPiece> best;
+    PatternSheet best_sheet;
+    for (Index columns = 1; columns <= most; ++columns) {
+        NestingOptions nesting;
+        nesting.width = columns * page.step().x() + tile_overlap;
+        nesting.gap = piece_gap;
+        nesting.keep_grain = keep_grain;
+        const Nesting nested = nest_pieces(pointers(layout.pieces, large), nesting, progress);
+        if (std::count(nested.sheet.begin(), nested.sheet.end(), -1) > 0)
+            continue;
+        std::vector<SheetPiece> placed = layout.pieces;
+        place(placed, large, nested, 0, page.margin);
+        Eigen::AlignedBox2d box;
+        for (const std::size_t i : large)
+            box.extend(placed[i].box());
+        PatternSheet sheet;
+        sheet.columns = pages_along(box.max().x() - page.margin, page.step().x());
+        sheet.rows = pages_along(box.max().y() - page.margin, page.step().y());
+        if (best.empty() || sheet.columns * sheet.rows < best_sheet.columns * best_sheet.rows) {
+            best = std::move(placed);
+            best_sheet = sheet;
+        }
+    }
+    layout.pieces = std::move(best);
+    best_sheet.size =
+        Vec2(best_sheet.columns * page.step().x(), best_sheet.rows * page.step().y()) +
+        Vec2::Constant(tile_overlap + 2.0 * page.margin);
+    layout.sheets.push_back(best_sheet);
 }
 
 void nest_on_pages(PatternLayout& layout, const ExportOptions& options, Progress& progress) {

@@ -179,8 +179,9 @@ Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
     drawing.width = plan.size.x();
     drawing.height = plan.size.y();
     drawing.decimals = decimals_for(cut);
-    drawing.layers = {cut,   mountain, valley, sew,     notch,
-                      grain, numbers,  text,   engrave, scale_layer(layout, plan)};
+    drawing.layers = {cut,     mountain, valley,  sew,
+                      notch,   grain,    engrave, scale_layer(layout, plan),
+                      numbers, text};
     for (std::size_t i = 0; i < layout.sheets.size() && layout.page; ++i)
         drawing.sheets.push_back({plan.sheets[i], layout.sheets[i].size});
     return drawing;

@@ -97,6 +97,9 @@ ParameterValue other_value(const Parameter& p) {
         return now == 0.0 ? 1 : 0;
     case ParameterKind::integer:
         return static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum);
+    case ParameterKind::text:
+    case ParameterKind::output_file:
+        return std::get<std::string>(p.default_value) + " 2";
     case ParameterKind::real:
         break;
     }

@@ -11,9 +11,9 @@
 
 #include "devseg/errors.h"
 #include "devseg/pattern/pieces.h"
+#include "sheet/pattern_drawing.h"
 #include "unit/temporary_folder.h"
 #include "writers/file.h"
-#include "writers/pattern_drawing.h"
 
 namespace devseg {
 namespace {
@@ -155,10 +155,15 @@ TEST(SvgWriter, LeavesNothingAfterAFailure) {
     fs::permissions(closed, fs::perms::owner_all);
 }
 
+Drawing drawn(const Pattern& pattern, const ExportOptions& options = {}) {
+    Progress progress;
+    return draw_sheets(lay_out_pattern(pattern, options, progress), options);
+}
+
 TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
     for (const double radius : {1e-9, 1e-3, 0.05, 2.0, 90.0, 1e5, 1e9}) {
         const Pattern pattern = two_pieces(radius);
-        const Drawing drawing = draw_pattern(pattern, {});
+        const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
         for (const PatternPiece& piece : pattern.pieces) {
             const double area = area_of(points_in_file(svg, piece.name + "-cut"));
@@ -172,7 +177,7 @@ TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
 TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
     for (const double radius : {0.05, 20.0, 300.0}) {
         const Pattern pattern = two_pieces(radius);
-        const Drawing drawing = draw_pattern(pattern, {});
+        const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
         const std::vector<Vec2> square = points_in_file(svg, "check-square");
         ASSERT_EQ(square.size(), 4u);
@@ -198,7 +203,7 @@ TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
 
 TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
     const Pattern pattern = two_pieces(5.0);
-    const Drawing drawing = draw_pattern(pattern, {});
+    const Drawing drawing = drawn(pattern);
     const DrawingLayer& layer = drawing.layers.back();
     ASSERT_EQ(layer.id, "text");
     ASSERT_EQ(layer.texts.size(), 2u);
@@ -208,11 +213,11 @@ TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
                   pattern.pieces[i].label_radius);
         EXPECT_GT(layer.texts[i].size, 0.3 * pattern.pieces[i].label_radius);
     }
-    EXPECT_LE(draw_pattern(two_pieces(500.0), {}).layers.back().texts[0].size, 8.0);
+    EXPECT_LE(drawn(two_pieces(500.0)).layers.back().texts[0].size, 8.0);
 
-    PatternOptions silent;
+    ExportOptions silent;
     silent.labels = false;
-    const std::string svg = svg_bytes(draw_pattern(pattern, silent));
+    const std::string svg = svg_bytes(drawn(pattern, silent));
     EXPECT_EQ(svg.find("id=\"text\""), std::string::npos);
     EXPECT_NE(svg.find(">50 mm<"), std::string::npos);
 }
