@@ -7,6 +7,7 @@
 #include "unit/checks.h"
 #include "unit/host_checks.h"
 #include "unit/mesh_edits.h"
+#include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
 namespace devseg {
@@ -58,13 +59,24 @@ TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
         expect_written(writes_quality, r.face_quality.size());
         expect_written(writes_color, r.face_color.size());
         expect_written(writes_uv, r.wedge_uv.size());
+        EXPECT_EQ(r.layer.has_value(), (filter.writes & writes_layer) != 0);
     }
+}
+
+bool same_layer(const HostResult& a, const HostResult& b) {
+    if (!a.layer || !b.layer)
+        return a.layer.has_value() == b.layer.has_value();
+    return a.layer->geometry.points == b.layer->geometry.points &&
+           a.layer->geometry.faces == b.layer->geometry.faces &&
+           a.layer->face_color == b.layer->face_color &&
+           a.layer->face_quality == b.layer->face_quality &&
+           a.layer->face_attributes == b.layer->face_attributes;
 }
 
 bool same(const HostResult& a, const HostResult& b) {
     return a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
            a.face_quality == b.face_quality && a.face_color == b.face_color &&
-           a.wedge_uv == b.wedge_uv;
+           a.wedge_uv == b.wedge_uv && same_layer(a, b);
 }
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
@@ -87,33 +99,41 @@ TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
     }
 }
 
-// Another value in the range, as different as can be.
-ParameterValue other_value(const Parameter& p) {
+// Other values in the range, as different as can be.
+std::vector<ParameterValue> other_values(const Parameter& p) {
     const double now = number(p.default_value);
     switch (p.kind) {
     case ParameterKind::boolean:
-        return now == 0.0;
+        return {now == 0.0};
     case ParameterKind::choice:
-        return now == 0.0 ? 1 : 0;
+        return {now == 0.0 ? 1 : 0};
     case ParameterKind::integer:
-        return static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum);
+        return {static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum)};
     case ParameterKind::text:
     case ParameterKind::output_file:
-        return std::get<std::string>(p.default_value) + " 2";
+        return {std::get<std::string>(p.default_value) + " 2"};
     case ParameterKind::real:
         break;
     }
-    return p.maximum;
+    return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
 }
 
 TEST(DeclaredFilters, EveryParameterChangesTheResult) {
-    const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
-        const HostResult plain = run(filter, host, {});
-        for (const Parameter& p : filter.parameters)
-            EXPECT_FALSE(same(plain, run(filter, host, {{p.name, other_value(p)}})))
-                << filter.menu_name << ", " << p.name;
-    }
+    // What one mesh does not have, such as two pieces of one shape, another one has.
+    const std::vector<HostMesh> hosts{prepared(), samples::everything().host()};
+    for (const FilterDeclaration& filter : filter_table())
+        for (const Parameter& p : filter.parameters) {
+            bool changes = false;
+            for (std::size_t i = 0; i < hosts.size() && !changes; ++i) {
+                const HostResult plain = run(filter, hosts[i], {});
+                for (const ParameterValue& value : other_values(p)) {
+                    const HostResult other = run(filter, hosts[i], {{p.name, value}});
+                    changes = changes || !same(plain, other) ||
+                              (filter.writes == writes_nothing && plain.values != other.values);
+                }
+            }
+            EXPECT_TRUE(changes) << filter.menu_name << ", " << p.name;
+        }
 }
 
 TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {

@@ -11,14 +11,12 @@
 #include <variant>
 #include <vector>
 
+#include "devseg/filters/layer_mesh.h"
 #include "devseg/mesh/charts.h"
-#include "devseg/mesh/input_gate.h"
 #include "devseg/mesh/texture.h"
 #include "devseg/progress.h"
 
 namespace devseg {
-
-using Color = std::array<std::uint8_t, 3>; // red, green, blue
 
 enum class ParameterKind { boolean, integer, real, choice, text, output_file };
 // A choice is the int of its position, texts and file names are UTF-8.
@@ -55,15 +53,6 @@ enum Writes : unsigned {
     writes_color = 4,
     writes_uv = 8,
     writes_layer = 16 // a new mesh; the host's own stays as it is
-};
-
-/// A mesh of its own, in model units or millimetres as the filter says.
-struct LayerMesh {
-    std::string name;
-    RawMesh geometry;
-    std::vector<Color> face_color;                                         // #F
-    std::vector<double> face_quality;                                      // #F
-    std::vector<std::pair<std::string, std::vector<int>>> face_attributes; // by name, #F each
 };
 
 /// What filters see of a mesh: checked, in internal units.

@@ -3,7 +3,10 @@
 
 #include "devseg/filters/declare.h"
 #include "devseg/filters/filter_groups.h"
+#include "devseg/filters/sheet_layout.h"
+#include "devseg/metrics/overlap.h"
 #include "devseg/pattern/match.h"
+#include "devseg/pattern/optimize.h"
 #include "devseg/pattern/pieces.h"
 #include "devseg/pattern/strain.h"
 
@@ -28,6 +31,18 @@ constexpr const char* measures_help =
     "are returned to scripts and written to the log.<br>"
     "Lengths are those on paper, in millimetres, after outlines are simplified and seams matched. "
     "Pieces and seams are listed in the order of their numbers in the drawing.";
+
+constexpr const char* optimize_help =
+    "Makes flat charts fit for sewing, whoever made them. Parts of a chart that lie on other parts "
+    "of it are cut off, and small charts are joined to a neighbour where both together are nearly "
+    "developable and come to lie flat without overlap. Darts that hardly open in the plane are "
+    "glued again, from the tip on, as far as they stay closed.<br>"
+    "Charts, darts and slits are read from the texture coordinates; the new ones are written to "
+    "<b>chart_id</b> and <b>seam_edges</b> as well. Charts keep their places and sizes unless some "
+    "were cut off, joined, or lay on each other: then all are packed anew.<br>"
+    "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
+    "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
+    "Computer Graphics Forum 24(3) (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
 
 struct LayerOptions : PatternOptions {
     double strain_range = 0.05; // strain that is drawn in full colour
@@ -216,6 +231,78 @@ FilterOutput run_measures(const FilterInput& input, const PatternOptions& option
     return output;
 }
 
+bool any_overlap(const CornerUv& uv) {
+    const std::vector<std::uint8_t> overlaps = find_overlapping_faces(uv);
+    return std::find(overlaps.begin(), overlaps.end(), 1) != overlaps.end();
+}
+
+bool lies_in_unit_square(const CornerUv& uv) {
+    return std::all_of(uv.begin(), uv.end(),
+                       [](const Vec2& p) { return p.minCoeff() >= 0.0 && p.maxCoeff() <= 1.0; });
+}
+
+FilterOutput run_optimize(const FilterInput& input, const OptimizeOptions& options,
+                          Progress& progress) {
+    const Mesh& mesh = input.mesh;
+    FilterOutput output;
+    CornerUv uv = *input.uv;
+    progress.begin_phase("removing overlaps", 0.2);
+    FlatLayout layout = read_layout(mesh, uv);
+    const bool is_stacked = options.remove_overlaps && any_overlap(uv);
+    if (is_stacked)
+        remove_overlaps(mesh, layout, progress);
+    progress.begin_phase("joining small charts", 0.4);
+    if (options.reattach_gussets)
+        reattach_gussets(mesh, options, layout, progress);
+    progress.begin_phase("packing charts", 0.3);
+    if (is_stacked || layout.reattached > 0) {
+        const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
+        SheetLayout sheet = lay_out(mesh, layout.flat, PackOptions{}, side, progress);
+        note_unsettled(sheet, output);
+        uv = std::move(sheet.uv);
+    }
+    progress.begin_phase("gluing darts", 0.1);
+    const double degree = 3.14159265358979323846 / 180.0;
+    GluedDarts glued = glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degree);
+    output.values = {
+        {"charts_number", glued.charts.count},
+        {"overlap_cuts_number", layout.overlap_cuts},
+        {"reattached_charts_number", layout.reattached},
+        {"glued_darts_number", glued.darts},
+        {"glued_edges_number", glued.edges},
+    };
+    output.charts = std::move(glued.charts);
+    output.uv = std::move(glued.uv);
+    return output;
+}
+
+FilterDeclaration optimize() {
+    using O = OptimizeOptions;
+    return Declare<O>("Pattern: Optimize for Fabrication",
+                      "apply_texcoord_pattern_optimization_per_wedge", FilterCategory::texture,
+                      optimize_help)
+        .boolean(&O::remove_overlaps, "remove_overlaps", "Remove overlaps",
+                 "Cut off the parts of a chart that lie on other parts of it.")
+        .boolean(&O::reattach_gussets, "reattach_gussets", "Reattach small charts",
+                 "Join small charts, such as those cut off, to a neighbour where that is nearly "
+                 "developable and lies flat without overlap.")
+        .real(&O::max_gusset_area, "max_gusset_area", "Largest small chart", 0.0, 1.0,
+              "Charts are small below this share of the model's area: 0.02 = 2 %.")
+        .real(&O::merge_threshold, "merge_threshold", "Merge threshold", 0.0, 4.0,
+              "Largest mean fitting error of a small chart's faces with the conic proxy of both "
+              "charts together, no unit, from 0 (exactly developable) to 4 (anything).")
+        .real(&O::max_dart_angle, "max_dart_angle", "Narrowest dart (degrees)", 0.0, 180.0,
+              "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
+        .needs_uv()
+        .writes(writes_charts | writes_uv)
+        .result("charts_number", "charts afterwards")
+        .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
+        .result("reattached_charts_number", "small charts that were joined to a neighbour")
+        .result("glued_darts_number", "darts that became shorter or vanished")
+        .result("glued_edges_number", "mesh edges along which they were glued")
+        .runs(run_optimize);
+}
+
 FilterDeclaration pieces() {
     using O = LayerOptions;
     return with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
@@ -233,7 +320,7 @@ FilterDeclaration pieces() {
 
 FilterDeclaration measures() {
     using O = PatternOptions;
-    return with_seams(with_scale(Declare<O>("Pattern: Measures", "get_pattern_measures",
+    return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
                                             FilterCategory::measure, measures_help)))
         .needs_uv()
         .result("pieces_number", "pieces")
@@ -268,7 +355,7 @@ FilterDeclaration measures() {
 } // namespace
 
 std::vector<FilterDeclaration> pattern_filters() {
-    return {pieces(), measures()};
+    return {optimize(), pieces(), measures()};
 }
 
 } // namespace devseg

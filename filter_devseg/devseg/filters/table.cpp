@@ -1,5 +1,8 @@
 #include <iterator>
+#include <locale>
+#include <sstream>
 
+#include "devseg/filters/declare.h"
 #include "devseg/filters/filter_groups.h"
 
 namespace devseg {
@@ -13,6 +16,14 @@ const std::vector<FilterDeclaration>& filter_table() {
         return all;
     }();
     return table;
+}
+
+std::string out_of_range(const std::string& name, double minimum, double maximum, double found) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << name << ": expected a number from " << minimum << " to " << maximum << ", found "
+         << found;
+    return text.str();
 }
 
 ChartMap find_charts(const FilterInput& input) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/SparseCholesky>
 
 #include "devseg/errors.h"
 #include "devseg/flatten/lpfb.h"
+#include "devseg/pattern/layout.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/simplify.h"
 
@@ -23,18 +25,25 @@ constexpr double largest_share = 0.002; // of the length
 constexpr double largest_mm = 0.5;
 // Seams that are better than this share of it are left alone.
 constexpr double good_enough = 0.5;
-// Every round leaves one more piece as it is; what is still mismatched then is reported.
+// Every round takes freedom from one more piece; what is still mismatched then is reported.
 constexpr int most_rounds = 8;
 // Newton steps for positions, the share of the outline's length that edges may be off, and what
 // keeps the equations solvable on straight outlines.
 constexpr int most_steps = 60;
 constexpr double closed_share = 1e-9;
 constexpr double softness = 1e-9;
+// Rounds of pushing crossing edges apart, to this share of the outline's length.
+constexpr int most_pushes = 60;
+constexpr double push_share = 2e-5;
+
+double edge_length(const std::vector<PatternPiece>& pieces, const SeamSide& side, Index k) {
+    return (side_point(pieces, side, k + 1) - side_point(pieces, side, k)).norm();
+}
 
 double side_length(const std::vector<PatternPiece>& pieces, const SeamSide& side) {
     double length = 0.0;
     for (Index k = 0; k < side.count; ++k)
-        length += (side_point(pieces, side, k + 1) - side_point(pieces, side, k)).norm();
+        length += edge_length(pieces, side, k);
     return length;
 }
 
@@ -57,8 +66,25 @@ void set_target(const std::vector<PatternPiece>& pieces, const SeamSide& side, I
     own[at(edge) % own.size()] = length;
 }
 
+// How far a piece may be changed: to the lengths on the model, only along its seams with itself,
+// to their mean, or not at all.
+enum class Freedom : std::uint8_t { free, own_seams, fixed };
+
+// The length for edge k of a chain, with sides of the given freedom.
+double target_length(const std::vector<PatternPiece>& pieces, const Chain& chain, Index k,
+                     const std::vector<Freedom>& freedom) {
+    double sum = 0.0;
+    int held = 0; // sides that keep their lengths
+    for (const SeamSide& side : chain.sides)
+        if (freedom[at(side.piece)] != Freedom::free) {
+            sum += edge_length(pieces, side, k);
+            ++held;
+        }
+    return held > 0 ? sum / held : chain.true_length[at(k)];
+}
+
 Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
-                     const std::vector<std::uint8_t>& pinned) {
+                     const std::vector<Freedom>& freedom) {
     Targets targets(pieces.size());
     for (std::size_t p = 0; p < pieces.size(); ++p)
         targets[p].resize(at(pieces[p].path_count()));
@@ -67,20 +93,16 @@ Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<
             continue;
         const SeamSide& a = chain.sides[0];
         const SeamSide& b = chain.sides[1];
-        const double length_a = side_length(pieces, a);
-        const double length_b = side_length(pieces, b);
-        const bool may_move = pinned[at(a.piece)] == 0 || pinned[at(b.piece)] == 0;
-        if (!may_move || !differ(length_a, length_b, good_enough))
+        if (!differ(side_length(pieces, a), side_length(pieces, b), good_enough))
             continue;
-        for (Index k = 0; k < chain.count(); ++k) {
-            double length = chain.true_length[at(k)];
+        const auto may_move = [&](const SeamSide& side) {
+            return freedom[at(side.piece)] == Freedom::free ||
+                   (freedom[at(side.piece)] == Freedom::own_seams && a.piece == b.piece);
+        };
+        for (Index k = 0; k < chain.count(); ++k)
             for (const SeamSide& side : chain.sides)
-                if (pinned[at(side.piece)] != 0)
-                    length = (side_point(pieces, side, k + 1) - side_point(pieces, side, k)).norm();
-            for (const SeamSide& side : chain.sides)
-                if (pinned[at(side.piece)] == 0)
-                    set_target(pieces, side, k, length, targets);
-        }
+                if (may_move(side))
+                    set_target(pieces, side, k, target_length(pieces, chain, k, freedom), targets);
     }
     return targets;
 }
@@ -173,8 +195,58 @@ bool close_by_positions(std::vector<Vec2>& points, const std::vector<double>& le
     return false;
 }
 
+// Moves the ends of two edges that cross until they do not: the end that is nearest to the other
+// edge goes to its other side, and that edge comes towards it.
+void push_apart(std::vector<Vec2>& points, std::size_t i, std::size_t j, double gap) {
+    const std::size_t n = points.size();
+    const std::array<std::array<std::size_t, 3>, 4> ends = {{{i, j, (j + 1) % n},
+                                                             {(i + 1) % n, j, (j + 1) % n},
+                                                             {j, i, (i + 1) % n},
+                                                             {(j + 1) % n, i, (i + 1) % n}}};
+    double least = std::numeric_limits<double>::infinity();
+    Vec2 push = Vec2::Zero();
+    std::array<std::size_t, 3> best{};
+    for (const auto& end : ends) {
+        const Vec2 along = (points[end[2]] - points[end[1]]).normalized();
+        const Vec2 across(-along.y(), along.x());
+        const double distance = across.dot(points[end[0]] - points[end[1]]);
+        if (std::abs(distance) >= least)
+            continue;
+        least = std::abs(distance);
+        push = -0.5 * (distance + std::copysign(gap, distance)) * across;
+        best = end;
+    }
+    points[best[0]] += push;
+    points[best[1]] -= push;
+    points[best[2]] -= push;
+}
+
+// The same, with edges that cross pushed apart in turn with the lengths.
+bool close_without_crossing(std::vector<Vec2>& points, const std::vector<double>& lengths,
+                            const Progress& progress) {
+    const std::size_t n = points.size();
+    const double gap = push_share * std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    for (int round = 0; round < most_pushes; ++round) {
+        progress.check();
+        if (!close_by_positions(points, lengths))
+            return false;
+        bool crosses = false;
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = i + 2; j < n; ++j)
+                if (edges_cross(points[i], points[i + 1], points[j], points[(j + 1) % n])) {
+                    push_apart(points, i, j, gap);
+                    crosses = true;
+                }
+        if (!crosses)
+            return true;
+    }
+    return false;
+}
+
+enum class Closing { by_angles, by_positions, without_crossing };
+
 // The outline with edges of the given lengths; false where there is none.
-bool close_path(PiecePath& path, std::vector<double> lengths, bool by_angles,
+bool close_path(PiecePath& path, std::vector<double> lengths, Closing how,
                 const Progress& progress) {
     if (*std::min_element(lengths.begin(), lengths.end()) <= 0.0)
         return false;
@@ -186,22 +258,33 @@ bool close_path(PiecePath& path, std::vector<double> lengths, bool by_angles,
     turn_over();
     if (path.area < 0.0)
         std::reverse(lengths.begin(), lengths.end() - 1);
-    const bool closed = by_angles ? close_by_angles(path.points, lengths, progress)
-                                  : close_by_positions(path.points, lengths);
+    bool closed = false;
+    switch (how) {
+    case Closing::by_angles:
+        closed = close_by_angles(path.points, lengths, progress);
+        break;
+    case Closing::by_positions:
+        closed = close_by_positions(path.points, lengths);
+        break;
+    case Closing::without_crossing:
+        closed = close_without_crossing(path.points, lengths, progress);
+        break;
+    }
     turn_over();
     return closed;
 }
 
-// Both ways in turn; the first outline that does not cross itself is taken.
+// All ways in turn; the first outline that does not cross itself is taken.
 bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& targets,
                  const Progress& progress) {
     const bool crossed = crosses_itself(piece);
-    for (const bool by_angles : {true, false}) {
+    for (const Closing how :
+         {Closing::by_angles, Closing::by_positions, Closing::without_crossing}) {
         PatternPiece changed = piece;
         bool closed = true;
         for (Index l = 0; l < piece.path_count() && closed; ++l)
             closed = targets[at(l)].empty() ||
-                     close_path(changed.path(l), targets[at(l)], by_angles, progress);
+                     close_path(changed.path(l), targets[at(l)], how, progress);
         if (!closed || (crosses_itself(changed) && !crossed))
             continue;
         piece = std::move(changed);
@@ -218,9 +301,9 @@ bool sides_agree(double length_a, double length_b) {
 
 Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
                   const Progress& progress) {
-    std::vector<std::uint8_t> pinned(pieces.size(), 0);
+    std::vector<Freedom> freedom(pieces.size(), Freedom::free);
     for (int round = 0;; ++round) {
-        const Targets targets = find_targets(pieces, chains, pinned);
+        const Targets targets = find_targets(pieces, chains, freedom);
         std::vector<PatternPiece> changed = pieces;
         Index count = 0;
         std::size_t failed = pieces.size(); // the largest piece that must stay as it is
@@ -239,7 +322,7 @@ Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
             pieces = std::move(changed);
             return count;
         }
-        pinned[failed] = 1;
+        freedom[failed] = freedom[failed] == Freedom::free ? Freedom::own_seams : Freedom::fixed;
     }
 }
 

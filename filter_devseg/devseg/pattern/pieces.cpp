@@ -260,6 +260,27 @@ SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOpti
     return result;
 }
 
+// A flattening keeps areas or the lengths of boundaries; a piece is at another scale only if
+// neither holds. Outlines must be as they were traced.
+void set_length_scales(const Mesh& mesh, const ChartAreas& areas, double mm, Pattern& pattern) {
+    const auto error = [](double scale) { return std::abs(std::log(scale)); };
+    for (PatternPiece& piece : pattern.pieces) {
+        const std::size_t c = at(piece.chart);
+        double on_model = 0.0;
+        double on_paper = 0.0;
+        for (Index l = 0; l < piece.path_count(); ++l) {
+            on_paper += perimeter(piece.path(l).points);
+            for (const Index h : piece.path(l).half_edge)
+                on_model += mm * mesh.edge_length(h);
+        }
+        if (!(areas.surface[c] > 0.0) || !(on_model > 0.0))
+            continue;
+        piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
+        if (error(on_paper / on_model) < error(piece.length_scale))
+            piece.length_scale = on_paper / on_model;
+    }
+}
+
 // Chains that end at corners, with simple outlines and sides of equal length.
 std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint8_t>& cut,
                                    const PatternOptions& options, double mm, Pattern& pattern,
@@ -309,8 +330,8 @@ std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
 
 // Everything that is read off the finished outlines.
 void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
-                     const ChartAreas& areas, const PatternOptions& options, Pattern& pattern,
-                     Progress& progress) {
+                     const ChartAreas& areas, const PatternOptions& options, double mm,
+                     Pattern& pattern, Progress& progress) {
     const std::vector<FaceStrain> strain = measure_strain(mesh, uv, areas.scale);
     const ChartFaces groups = group_faces(charts);
     pattern.face_piece.assign(mesh.faces.size(), -1);
@@ -322,7 +343,8 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& chart
         for (const Index f : faces)
             pattern.face_piece[at(f)] = static_cast<Index>(i);
         set_sizes(piece, options.grain);
-        measure_inside(mesh, uv, faces, charts.seam, strain, options.fold_angle * degree, piece);
+        measure_inside(mesh, uv, faces, charts.seam, strain, options.fold_angle * degree, mm,
+                       piece);
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
     }
     find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
@@ -345,17 +367,13 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces =
         trace_pieces(mesh, uv, split.charts, areas.worth_cutting(), areas.scale * mm, progress);
+    set_length_scales(mesh, areas, mm, pattern);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, progress);
 
     progress.begin_phase("placing pieces", 0.2);
     for (PatternPiece& piece : pattern.pieces) {
-        const double traced = piece.area;
         measure_outlines(piece);
-        if (areas.surface[at(piece.chart)] > 0.0)
-            piece.length_scale = areas.scale * std::sqrt(areas.covered[at(piece.chart)] /
-                                                         areas.surface[at(piece.chart)] *
-                                                         std::max(0.0, piece.area) / traced);
         place_label(piece);
         progress.check();
     }
@@ -368,7 +386,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     set_notches(pattern, options.notch_spacing_mm);
     mark_corners(pattern.pieces, chains, options.corner_angle * degree);
     fit_curves(pattern.pieces, chains, options.curve_mm);
-    describe_pieces(mesh, uv, split.charts, areas, options, pattern, progress);
+    describe_pieces(mesh, uv, split.charts, areas, options, mm, pattern, progress);
     note_folds(pattern, areas);
     note_scale_errors(pattern);
     note_mismatches(pattern);

@@ -10,6 +10,10 @@ namespace devseg {
 
 namespace {
 
+// A cut at the edge of the stretch costs so much more than one of the same length in its middle:
+// it leaves parts that are as large as allowed, and no play for further cuts.
+constexpr double edge_cost = 0.5;
+
 // The cut may move by this share of the allowed length at least, to find a short way.
 constexpr double least_play = 0.1;
 
@@ -51,8 +55,12 @@ std::vector<CutSide> sides_of(const ChartSurface& surface, const CornerUv& uv,
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         if (surface.twin[at(h)] > h) {
             const Index own = surface.mesh_half_edge(h);
+            const Vec2& from = uv[at(own)];
+            const Vec2& to = uv[at(Mesh::next(own))];
+            const double off = (line.along.dot(from + to) - line.low - line.high) /
+                               (line.high - line.low); // −1 … 1 within the stretch
             cut.link(h / 3, surface.twin[at(h)] / 3,
-                     (uv[at(Mesh::next(own))] - uv[at(own)]).norm());
+                     (1.0 + edge_cost * off * off) * (to - from).norm());
         }
     return cut.solve();
 }

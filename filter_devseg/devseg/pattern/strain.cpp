@@ -53,7 +53,7 @@ std::vector<FaceStrain> measure_strain(const Mesh& mesh, const CornerUv& uv, dou
 
 void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Index>& faces,
                     const std::vector<std::uint8_t>& seam, const std::vector<FaceStrain>& strain,
-                    double fold_angle, PatternPiece& piece) {
+                    double fold_angle, double mm, PatternPiece& piece) {
     double area = 0.0;
     double sum = 0.0;
     double worst = -1.0;
@@ -84,9 +84,10 @@ void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Inde
                                    normal.dot(across) < 0.0 ? angle : -angle});
         }
     }
-    if (area > 0.0)
-        piece.strain.mean = sum / area;
-    piece.strain.area_change = piece.length_scale * piece.length_scale - 1.0;
+    if (!(area > 0.0))
+        return;
+    piece.strain.mean = sum / area;
+    piece.strain.area_change = piece.area / (mm * mm * area) - 1.0;
 }
 
 } // namespace devseg

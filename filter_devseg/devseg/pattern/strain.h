@@ -17,9 +17,10 @@ struct FaceStrain {
 /// texture coordinates. Faces without area on the model or in the plane have none.
 std::vector<FaceStrain> measure_strain(const Mesh& mesh, const CornerUv& uv, double scale);
 
-/// Sets strain and folds of the piece that was made of the given faces.
+/// Sets strain and folds of the piece that was made of the given faces; `mm` is the length of the
+/// mesh's internal unit on paper, `fold_angle` is in radians.
 void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Index>& faces,
                     const std::vector<std::uint8_t>& seam, const std::vector<FaceStrain>& strain,
-                    double fold_angle, PatternPiece& piece);
+                    double fold_angle, double mm, PatternPiece& piece);
 
 } // namespace devseg
