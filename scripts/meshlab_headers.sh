@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# MeshLab's headers (src/common, src/vcglib) of exactly the version that the pymeshlab wheel was
-# built from. No registry has a development package; Debian's source package carries them.
+# MeshLab's headers (src/common, vcglib) of exactly the version that a host was built from. No
+# registry has a development package; Debian's source package carries them.
 # Sourced by setup.sh, which provides say, die, logged, find_python and setup_log.
 : "${setup_log:?source setup.sh instead}"
 
@@ -10,7 +10,8 @@ devseg_cache=${XDG_CACHE_HOME:-$HOME/.cache}/devseg
 
 # tree_version DIR: the version of a MeshLab source tree; fails where it is not one.
 tree_version() {
-    [[ -d $1/src/common && -d $1/src/vcglib/vcg && -f $1/ML_VERSION ]] && tr -d '[:space:]' <"$1/ML_VERSION"
+    [[ -d $1/src/common && -f $1/ML_VERSION ]] && [[ -d $1/src/vcglib/vcg || -d $1/vcglib/vcg ]] &&
+        tr -d '[:space:]' <"$1/ML_VERSION"
 }
 
 # debian_mirror APT_DIR CODENAME: the URI in the machine's own apt sources that serves the main
@@ -43,17 +44,27 @@ debian_mirror() {
     done
 }
 
-# extract TARBALL DIR: only the headers, not the 40 times larger rest.
-extract_headers() {
-    logged tar -xf "$1" -C "$2" --strip-components=1 --wildcards \
-        '*/ML_VERSION' '*/src/common/*' '*/src/vcglib/*'
+# suites_of VERSION: the Debian suites that may have it.
+suites_of() {
+    case $1 in
+    2020.09) echo bookworm ;;
+    2022.02) echo trixie ;;
+    *) echo testing unstable ;;
+    esac
 }
 
-# fetch_debian VERSION DIR SUITE...: takes the upstream tarball of Debian's source package. The
+# extract_tree TARBALL DIR [all]: only the headers, not the 40 times larger rest, unless asked to.
+extract_tree() {
+    local -a only=(--wildcards '*/ML_VERSION' '*/src/common/*' '*/vcglib/*')
+    [[ ${3:-} == all ]] && only=()
+    logged tar -xf "$1" -C "$2" --strip-components=1 "${only[@]}"
+}
+
+# fetch_debian VERSION DIR [all]: takes the upstream tarball of Debian's source package. The
 # lists live in a directory of their own: the machine's apt stays as it is.
 fetch_debian() {
-    local version=$1 target=$2 mirror=${DEVSEG_DEBIAN_MIRROR:-} suite work keyring options package
-    shift 2
+    local version=$1 target=$2 parts=${3:-} mirror=${DEVSEG_DEBIAN_MIRROR:-}
+    local suite work keyring options package
     command -v apt-get >/dev/null || return 1
     if [[ -z $mirror ]]; then
         mirror=$(
@@ -65,7 +76,7 @@ fetch_debian() {
     keyring=/usr/share/keyrings/debian-archive-keyring.gpg
     [[ -f $keyring ]] && keyring="[signed-by=$keyring]" || keyring=
     work=$target.apt
-    for suite in "$@"; do
+    for suite in $(suites_of "$version"); do
         rm -rf "$work"
         mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
         printf 'deb-src %s %s %s main\n' "$keyring" "$mirror" "$suite" >"$work/sources.list"
@@ -78,7 +89,7 @@ fetch_debian() {
         [[ -n $package ]] || continue
         (cd "$work" && { fetch_source || fetch_source; }) || continue
         mkdir -p "$target"
-        extract_headers "$work"/meshlab_*.orig.tar.* "$target" && break
+        extract_tree "$work"/meshlab_*.orig.tar.* "$target" "$parts" && break
         rm -rf "$target"
     done
     rm -rf "$work"
@@ -92,36 +103,41 @@ fetch_source() {
 
 # fetch_git VERSION DIR: the tagged upstream sources.
 fetch_git() {
-    local tag
+    local tag vcglib=src/vcglib
+    [[ $1 == 2020.09 ]] && vcglib=vcglib
     command -v git >/dev/null || return 1
     for tag in "MeshLab-$1" "Meshlab-$1"; do
         rm -rf "$2"
         GIT_TERMINAL_PROMPT=0 logged timeout 300 git clone --quiet --depth 1 --branch "$tag" \
             "$meshlab_git" "$2" || continue
         GIT_TERMINAL_PROMPT=0 logged timeout 300 git -C "$2" submodule --quiet update --init \
-            --depth 1 src/vcglib || continue
+            --depth 1 "$vcglib" || continue
         return
     done
     return 1
 }
 
-# cached_headers VERSION SUITE...: sets headers_dir and headers_from, fetching if need be.
+# fetch_tree VERSION DIR [all]: from the first place that has it; sets headers_from.
+fetch_tree() {
+    headers_from="Debian source package"
+    if ! fetch_debian "$@"; then
+        headers_from="upstream git"
+        fetch_git "$1" "$2" || return 1
+    fi
+    [[ $(tree_version "$2") == "$1" ]]
+}
+
+# cached_headers VERSION: sets headers_dir and headers_from, fetching if need be.
 cached_headers() {
     local version=$1 part
-    shift
     headers_dir=$devseg_cache/meshlab-$version
     headers_from=cache
     [[ $(tree_version "$headers_dir") == "$version" ]] && return
     mkdir -p "$devseg_cache" || return 1
-    say "fetching the MeshLab $version headers (once, about 5 MB)"
+    say "fetching the MeshLab $version headers (once, 5 to 12 MB)"
     # Filled beside its final place and renamed: an interrupted run leaves no half tree behind.
     part=$(mktemp -d "$devseg_cache/part.XXXXXX") || return 1
-    headers_from="Debian source package"
-    if ! fetch_debian "$version" "$part/tree" "$@"; then
-        headers_from="upstream git"
-        fetch_git "$version" "$part/tree" || headers_from=
-    fi
-    if [[ -n $headers_from && $(tree_version "$part/tree") == "$version" ]]; then
+    if fetch_tree "$version" "$part/tree"; then
         rm -rf "$headers_dir"
         # Where another run was faster, its tree is as good as ours.
         mv -T "$part/tree" "$headers_dir" 2>/dev/null || true
@@ -130,31 +146,38 @@ cached_headers() {
     [[ $(tree_version "$headers_dir") == "$version" ]]
 }
 
+# source_dir_headers VERSION: takes MESHLAB_SOURCE_DIR, which must be of that version.
+source_dir_headers() {
+    local found
+    found=$(tree_version "$MESHLAB_SOURCE_DIR") ||
+        die "MESHLAB_SOURCE_DIR=$MESHLAB_SOURCE_DIR has no ML_VERSION, src/common and" \
+            "src/vcglib (a git submodule); give a complete MeshLab $1 tree"
+    [[ $found == "$1" ]] ||
+        die "MESHLAB_SOURCE_DIR holds MeshLab $found, but $2 needs" \
+            "$1; unset it to have the headers fetched"
+    headers_dir=$(cd "$MESHLAB_SOURCE_DIR" && pwd)
+    headers_from=MESHLAB_SOURCE_DIR
+}
+
+no_headers() {
+    tail -n 15 "$setup_log" >&2
+    die "found MeshLab headers neither on a Debian mirror nor by git;" \
+        "set MESHLAB_SOURCE_DIR to a MeshLab $1 source tree (with src/vcglib)," \
+        "or DEVSEG_DEBIAN_MIRROR to a Debian mirror"
+}
+
 # find_headers: sets headers_dir, headers_version and wheel_version, which always belong together.
 find_headers() {
     headers_version=2025.07
     wheel_version=2025.7.post1
     if [[ -n ${MESHLAB_SOURCE_DIR:-} ]]; then
-        local found
-        found=$(tree_version "$MESHLAB_SOURCE_DIR") ||
-            die "MESHLAB_SOURCE_DIR=$MESHLAB_SOURCE_DIR has no ML_VERSION, src/common and" \
-                "src/vcglib (a git submodule); give a complete MeshLab $headers_version tree"
-        [[ $found == "$headers_version" ]] ||
-            die "MESHLAB_SOURCE_DIR holds MeshLab $found, but pymeshlab $wheel_version needs" \
-                "$headers_version; unset it to have the headers fetched"
-        headers_dir=$(cd "$MESHLAB_SOURCE_DIR" && pwd)
-        headers_from=MESHLAB_SOURCE_DIR
-    elif ! cached_headers "$headers_version" testing unstable; then
+        source_dir_headers "$headers_version" "pymeshlab $wheel_version"
+    elif ! cached_headers "$headers_version"; then
         say "no source offers MeshLab $headers_version any more; trying the pair of 2022.02"
         headers_version=2022.02
         wheel_version=2022.2.post4
-        if ! find_python "$wheel_version" >/dev/null ||
-            ! cached_headers "$headers_version" trixie; then
-            tail -n 15 "$setup_log" >&2
-            die "found MeshLab headers neither on a Debian mirror nor by git;" \
-                "set MESHLAB_SOURCE_DIR to a MeshLab 2025.07 source tree (with src/vcglib)," \
-                "or DEVSEG_DEBIAN_MIRROR to a Debian mirror"
-        fi
+        find_python "$wheel_version" >/dev/null && cached_headers "$headers_version" ||
+            no_headers 2025.07
     fi
     say "MeshLab headers $headers_version ($headers_from)"
 }

@@ -14,7 +14,7 @@ setup_log=$root/build/setup.log
 source "$root/scripts/meshlab_headers.sh"
 
 system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev libeigen3-dev
-    libgtest-dev libglew-dev pkg-config xz-utils dpkg-dev python3-venv python3-dev)
+    libgtest-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv python3-dev)
 
 # All messages go to stderr: stdout belongs to the results (devseg run --json).
 say() { printf 'devseg: %s\n' "$*" >&2; }
@@ -108,35 +108,49 @@ ensure_venv() {
     printf '%s\n' "$stamp" >"$venv/.devseg-stamp"
 }
 
-# ensure_build HEADERS VERSION: configures when something changed, and builds what is stale.
+# pymeshlab_dir PYTHON: where its pymeshlab is installed.
+pymeshlab_dir() {
+    "$1" -c 'import importlib.util as u; print(u.find_spec("pymeshlab").submodule_search_locations[0])'
+}
+
+# ensure_build PRESET ARGUMENT...: configures when something changed, and builds what is stale.
 ensure_build() {
-    local build=$root/build/release pymeshlab stamp
-    pymeshlab=$("$root/.venv/bin/python" -c \
-        'import importlib.util as u; print(u.find_spec("pymeshlab").submodule_search_locations[0])') ||
-        die "pymeshlab is not in .venv; remove .venv and run this again"
-    local -a arguments=("-DMESHLAB_SOURCE_DIR=$1" "-DDEVSEG_MESHLAB_VERSION=$2"
-        "-DDEVSEG_PYMESHLAB_DIR=$pymeshlab")
-    stamp="$root ${arguments[*]}"
+    local preset=$1 build=$root/build/$1 stamp
+    shift
+    stamp="$root $*"
     cd "$root" || die "cannot enter $root"
     if [[ ! -f $build/build.ninja || $(cat "$build/.devseg-stamp" 2>/dev/null) != "$stamp" ]]; then
-        say "configuring build/release"
+        say "configuring build/$preset"
         rm -f "$build/CMakeCache.txt"
-        or_die "configuring" cmake --preset release "${arguments[@]}"
+        or_die "configuring" cmake --preset "$preset" "$@"
         printf '%s\n' "$stamp" >"$build/.devseg-stamp"
     fi
     # ninja -n tells, without building, whether there is anything to say.
     ninja -C "$build" -n 2>/dev/null | grep -q 'no work to do' && return
-    say "building the plugins (build/release)"
-    or_die "building" cmake --build --preset release
+    say "building the plugins (build/$preset)"
+    or_die "building" cmake --build --preset "$preset"
+}
+
+# ensure_main_build: what quickstart.sh and the tests use.
+ensure_main_build() {
+    local pymeshlab
+    pymeshlab=$(pymeshlab_dir "$root/.venv/bin/python") ||
+        die "pymeshlab is not in .venv; remove .venv and run this again"
+    ensure_build release "-DDEVSEG_FLAVOUR=pymeshlab-$headers_version" \
+        "-DMESHLAB_SOURCE_DIR=$headers_dir" "-DDEVSEG_PYMESHLAB_DIR=$pymeshlab"
+}
+
+start_log() {
+    mkdir -p "$root/build"
+    date >"$setup_log"
 }
 
 devseg_setup() {
-    mkdir -p "$root/build"
-    date >"$setup_log"
+    start_log
     ensure_system_packages
     find_headers
     ensure_venv "$wheel_version"
-    (ensure_build "$headers_dir" "$headers_version") || exit 1
+    (ensure_main_build) || exit 1
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then

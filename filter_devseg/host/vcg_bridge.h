@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <common/ml_document/mesh_model.h>
-
 #include "devseg/filters/filter.h"
+#include "host/meshlab_api.h"
 
 namespace devseg {
 
@@ -43,9 +42,9 @@ inline std::vector<std::array<Vec2, 3>> read_wedge_uv(const CMeshO& m) {
 }
 
 /// A custom scalar attribute of the live faces; empty when the mesh does not have it.
-inline std::vector<double> read_face_attribute(const CMeshO& m, const std::string& name) {
+inline std::vector<double> read_face_attribute(CMeshO& m, const std::string& name) {
     std::vector<double> values;
-    const auto handle = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<Scalarm>(m, name);
+    auto handle = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<Scalarm>(m, name);
     if (!vcg::tri::Allocator<CMeshO>::IsValidHandle(m, handle))
         return values;
     values.reserve(static_cast<std::size_t>(m.fn));
@@ -64,7 +63,7 @@ inline void write_face_attribute(CMeshO& m, const std::string& name,
             handle[f] = static_cast<Scalarm>(values[i++]);
 }
 
-inline HostMesh read_host_mesh(const MeshModel& model) {
+inline HostMesh read_host_mesh(MeshModel& model) {
     HostMesh host;
     host.geometry = read_raw_mesh(model.cm);
     host.chart_id = read_face_attribute(model.cm, "chart_id");
@@ -119,6 +118,29 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
         ++i;
     }
     return changed;
+}
+
+/// Fills a new, empty mesh.
+inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
+    CMeshO& m = model.cm;
+    model.updateDataMask(MeshModel::MM_FACECOLOR | MeshModel::MM_FACEQUALITY);
+    auto vertex = vcg::tri::Allocator<CMeshO>::AddVertices(m, layer.geometry.points.size());
+    for (const Vec3& p : layer.geometry.points) {
+        vertex->P() = CMeshO::CoordType(static_cast<Scalarm>(p.x()), static_cast<Scalarm>(p.y()),
+                                        static_cast<Scalarm>(p.z()));
+        ++vertex;
+    }
+    auto face = vcg::tri::Allocator<CMeshO>::AddFaces(m, layer.geometry.faces.size());
+    for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f, ++face) {
+        for (int k = 0; k < 3; ++k)
+            face->V(k) = &m.vert[at(layer.geometry.faces[f][static_cast<std::size_t>(k)])];
+        const Color& c = layer.face_color[f];
+        face->C() = vcg::Color4b(c[0], c[1], c[2], 255);
+        face->Q() = static_cast<Scalarm>(layer.face_quality[f]);
+    }
+    for (const auto& [name, values] : layer.face_attributes)
+        write_face_attribute(m, name, values);
+    model.updateBoxAndNormals();
 }
 
 /// Selects exactly the given live faces, so that the user sees which ones are meant.

@@ -1,10 +1,11 @@
-// A drawing on one sheet, in millimetres, that every file format can hold: layers with paths and
-// texts. No Qt, no MeshLab.
+// A drawing in millimetres that every file format can hold: layers with paths and texts, on one or
+// several sheets. No Qt, no MeshLab.
 //
-// The origin is the lower left corner of the sheet and y points up, as in PDF, DXF and the plane
+// The origin is the lower left corner of the drawing and y points up, as in PDF, DXF and the plane
 // of the texture coordinates; writers of formats with y down turn it over.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,14 @@ struct DrawingPath {
     std::vector<DrawingPolyline> parts;
 };
 
+enum class TextAnchor { middle, left };
+
 struct DrawingText {
-    Vec2 centre = Vec2::Zero(); // of the capital letters
-    double size = 0.0;          // font size (em), mm
-    std::string text;           // UTF-8
+    Vec2 position = Vec2::Zero(); // of the anchor, at half the height of the capital letters
+    double size = 0.0;            // font size (em), mm
+    std::string text;             // UTF-8
+    double angle = 0.0;           // counterclockwise, radians
+    TextAnchor anchor = TextAnchor::middle;
 };
 
 struct DrawingLayer {
@@ -38,11 +43,50 @@ struct DrawingLayer {
     std::vector<DrawingText> texts;
 };
 
+/// A rectangle of the drawing that is one piece of paper, fabric or board.
+struct DrawingSheet {
+    Vec2 low = Vec2::Zero();
+    Vec2 size = Vec2::Zero();
+};
+
 struct Drawing {
     double width = 0.0;               // mm
     double height = 0.0;              // mm
     int decimals = 3;                 // of all numbers in the file, enough for the smallest path
     std::vector<DrawingLayer> layers; // those without paths and texts are not written
+    std::vector<DrawingSheet> sheets; // none: the whole drawing is one
+};
+
+/// Pixels from the upper left corner, row by row, red, green and blue each.
+struct DrawingImage {
+    Vec2 low = Vec2::Zero(); // lower left corner, mm
+    Vec2 size = Vec2::Zero();
+    int columns = 0;
+    int rows = 0;
+    std::vector<std::uint8_t> rgb; // 3 columns rows
+};
+
+/// A rectangle of a drawing, shown on a page at a scale and cut off at its borders.
+struct PageWindow {
+    Vec2 low = Vec2::Zero(); // of the rectangle, in the drawing
+    Vec2 size = Vec2::Zero();
+    Vec2 position = Vec2::Zero(); // of its lower left corner on the page
+    double scale = 1.0;           // paper / drawing
+};
+
+struct DocumentPage {
+    double width = 0.0;  // mm
+    double height = 0.0; // mm
+    std::vector<PageWindow> windows;
+    std::vector<DrawingLayer> marks; // on top, in page coordinates; the same ids on every page
+    std::vector<DrawingImage> images;
+};
+
+/// A drawing with the pages it is printed on.
+struct Document {
+    std::string title; // UTF-8
+    Drawing drawing;
+    std::vector<DocumentPage> pages;
 };
 
 } // namespace devseg

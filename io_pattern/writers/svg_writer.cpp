@@ -4,12 +4,11 @@
 #include "writers/svg_writer.h"
 
 #include <QByteArray>
-#include <QFileInfo>
-#include <QSaveFile>
 #include <QString>
 #include <QXmlStreamWriter>
 
-#include "devseg/errors.h"
+#include "writers/number_text.h"
+#include "writers/text_metrics.h"
 
 namespace devseg {
 
@@ -20,10 +19,6 @@ const char* const inkscape_namespace = "http://www.inkscape.org/namespaces/inksc
 const char* const sodipodi_namespace = "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd";
 
 constexpr double stroke_width = 0.1; // mm, a hairline that viewers still show
-
-// From the middle of capital letters down to the baseline, in font sizes. Cutters do not know the
-// attribute dominant-baseline.
-constexpr double half_capital = 0.36;
 
 class Writer {
 public:
@@ -44,8 +39,7 @@ public:
         xml_.writeAttribute("width", width + "mm");
         xml_.writeAttribute("height", height + "mm");
         xml_.writeAttribute("viewBox", "0 0 " + width + ' ' + height);
-        xml_.writeEmptyElement(sodipodi_namespace, "namedview");
-        xml_.writeAttribute(inkscape_namespace, "document-units", "mm");
+        write_view();
         for (const DrawingLayer& layer : drawing_.layers)
             if (!layer.paths.empty() || !layer.texts.empty())
                 write_layer(layer);
@@ -54,6 +48,20 @@ public:
     }
 
 private:
+    // Inkscape's pages; others skip them.
+    void write_view() {
+        xml_.writeStartElement(sodipodi_namespace, "namedview");
+        xml_.writeAttribute(inkscape_namespace, "document-units", "mm");
+        for (const DrawingSheet& sheet : drawing_.sheets) {
+            xml_.writeEmptyElement(inkscape_namespace, "page");
+            xml_.writeAttribute("x", number(sheet.low.x()));
+            xml_.writeAttribute("y", number(drawing_.height - sheet.low.y() - sheet.size.y()));
+            xml_.writeAttribute("width", number(sheet.size.x()));
+            xml_.writeAttribute("height", number(sheet.size.y()));
+        }
+        xml_.writeEndElement();
+    }
+
     void write_layer(const DrawingLayer& layer) {
         xml_.writeStartElement(svg_namespace, "g");
         xml_.writeAttribute("id", text(layer.id));
@@ -88,44 +96,38 @@ private:
 
     void write_text(const DrawingText& item, const DrawingLayer& layer) {
         xml_.writeStartElement(svg_namespace, "text");
-        const Vec2 baseline = item.centre - Vec2(0.0, half_capital * item.size);
-        xml_.writeAttribute("x", number(baseline.x()));
-        xml_.writeAttribute("y", number(drawing_.height - baseline.y()));
-        xml_.writeAttribute("font-family", "sans-serif");
+        const Vec2 baseline = text_baseline(item);
+        const QString x = number(baseline.x());
+        const QString y = number(drawing_.height - baseline.y());
+        xml_.writeAttribute("x", x);
+        xml_.writeAttribute("y", y);
+        if (item.angle != 0.0)
+            xml_.writeAttribute("transform", "rotate(" + number(-degrees_per_radian * item.angle) +
+                                                 ' ' + x + ' ' + y + ')');
+        xml_.writeAttribute("font-family", "Helvetica, Arial, sans-serif");
         xml_.writeAttribute("font-size", number(item.size));
-        xml_.writeAttribute("text-anchor", "middle");
+        if (item.anchor == TextAnchor::middle)
+            xml_.writeAttribute("text-anchor", "middle");
         xml_.writeAttribute("fill", text(layer.colour));
         xml_.writeCharacters(text(item.text));
         xml_.writeEndElement();
     }
 
-    // Points that rounding puts onto the one before are left out: cutters stop at each point.
     void append(const DrawingPolyline& line, QString& d) const {
-        QString first;
-        QString last;
-        for (const Vec2& p : line.points) {
-            const QString point = number(p.x()) + ',' + number(drawing_.height - p.y());
-            if (point == last || (&p == &line.points.back() && line.closed && point == first))
-                continue;
-            if (first.isEmpty())
-                first = point;
-            d += (d.isEmpty() ? "" : " ") + QString(last.isEmpty() ? "M " : "L ") + point;
-            last = point;
+        const char* step = d.isEmpty() ? "M " : " M ";
+        for (const std::string& point : point_texts(line, [&](const Vec2& p) {
+                 return number_text(p.x(), drawing_.decimals) + ',' +
+                        number_text(drawing_.height - p.y(), drawing_.decimals);
+             })) {
+            d += step + QString::fromStdString(point);
+            step = " L ";
         }
-        if (line.closed && !last.isEmpty())
+        if (line.closed && !line.points.empty())
             d += " Z";
     }
 
-    // QString::number knows no locale. Trailing zeros are cut, and so is the sign of -0.
     QString number(double value) const {
-        QString digits = QString::number(value, 'f', drawing_.decimals);
-        if (digits.contains('.')) {
-            while (digits.endsWith('0'))
-                digits.chop(1);
-            if (digits.endsWith('.'))
-                digits.chop(1);
-        }
-        return digits == QLatin1String("-0") ? QString("0") : digits;
+        return QString::fromStdString(number_text(value, drawing_.decimals));
     }
 
     // XML has no way to write control characters.
@@ -142,26 +144,10 @@ private:
     QXmlStreamWriter xml_;
 };
 
-[[noreturn]] void refuse(const QString& path, const QString& reason) {
-    throw FileError("expected to write the file '" + path.toStdString() +
-                    "', found: " + reason.toStdString() +
-                    "; choose a folder that exists, can be written and has room");
-}
-
 } // namespace
 
 std::string svg_bytes(const Drawing& drawing) {
     return Writer(drawing).write().toStdString();
-}
-
-void save_svg(const std::string& path, const Drawing& drawing) {
-    const QString name = QString::fromStdString(path);
-    const QByteArray bytes = Writer(drawing).write();
-    QSaveFile file(name);
-    if (!file.open(QIODevice::WriteOnly))
-        refuse(name, file.errorString());
-    if (file.write(bytes) != bytes.size() || !file.commit())
-        refuse(name, file.errorString());
 }
 
 } // namespace devseg

@@ -1,4 +1,4 @@
-// Drawing → SVG 1.1 with Inkscape's layers.
+// Drawing → SVG 1.1 with Inkscape's layers and pages.
 #pragma once
 
 #include <string>
@@ -10,9 +10,5 @@ namespace devseg {
 /// The file's bytes (UTF-8): 1 user unit is 1 mm. The same drawing gives the same bytes, whatever
 /// the locale. All numbers of the drawing must be finite.
 std::string svg_bytes(const Drawing& drawing);
-
-/// Writes under a temporary name and renames: `path` (UTF-8) holds the whole drawing afterwards,
-/// or is as it was. Throws FileError.
-void save_svg(const std::string& path, const Drawing& drawing);
 
 } // namespace devseg

@@ -7,6 +7,7 @@
 #include "unit/checks.h"
 #include "unit/host_checks.h"
 #include "unit/mesh_edits.h"
+#include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
 namespace devseg {
@@ -58,13 +59,24 @@ TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
         expect_written(writes_quality, r.face_quality.size());
         expect_written(writes_color, r.face_color.size());
         expect_written(writes_uv, r.wedge_uv.size());
+        EXPECT_EQ(r.layer.has_value(), (filter.writes & writes_layer) != 0);
     }
+}
+
+bool same_layer(const HostResult& a, const HostResult& b) {
+    if (!a.layer || !b.layer)
+        return a.layer.has_value() == b.layer.has_value();
+    return a.layer->geometry.points == b.layer->geometry.points &&
+           a.layer->geometry.faces == b.layer->geometry.faces &&
+           a.layer->face_color == b.layer->face_color &&
+           a.layer->face_quality == b.layer->face_quality &&
+           a.layer->face_attributes == b.layer->face_attributes;
 }
 
 bool same(const HostResult& a, const HostResult& b) {
     return a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
            a.face_quality == b.face_quality && a.face_color == b.face_color &&
-           a.wedge_uv == b.wedge_uv;
+           a.wedge_uv == b.wedge_uv && same_layer(a, b);
 }
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
@@ -87,20 +99,23 @@ TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
     }
 }
 
-// Another value in the range, as different as can be.
-ParameterValue other_value(const Parameter& p) {
+// Other values in the range, as different as can be.
+std::vector<ParameterValue> other_values(const Parameter& p) {
     const double now = number(p.default_value);
     switch (p.kind) {
     case ParameterKind::boolean:
-        return now == 0.0;
+        return {now == 0.0};
     case ParameterKind::choice:
-        return now == 0.0 ? 1 : 0;
+        return {now == 0.0 ? 1 : 0};
     case ParameterKind::integer:
-        return static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum);
+        return {static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum)};
+    case ParameterKind::text:
+    case ParameterKind::output_file:
+        return {std::get<std::string>(p.default_value) + " 2"};
     case ParameterKind::real:
         break;
     }
-    return p.maximum;
+    return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
 }
 
 // Twenty cubes, for creases, and a finger, for a tip: one chart each.
@@ -111,17 +126,34 @@ HostMesh cubes_and_a_finger() {
     return checks::host_of(all);
 }
 
+// Parameters that work only together with another value.
+ParameterValues needed_for(const std::string& name) {
+    if (name == "max_l2_stretch" || name == "max_linf_stretch")
+        return {{"charts_number", 0}};
+    return {};
+}
+
 TEST(DeclaredFilters, EveryParameterChangesTheResult) {
-    const HostMesh host = prepared();
-    const HostMesh parts = cubes_and_a_finger();
+    // What one mesh does not have, such as two pieces of one shape, another one has.
+    const std::vector<HostMesh> hosts{prepared(), samples::everything().host(),
+                                      cubes_and_a_finger()};
     for (const FilterDeclaration& filter : filter_table())
         for (const Parameter& p : filter.parameters) {
-            const ParameterValues other{{p.name, other_value(p)}};
-            const auto changes = [&](const HostMesh& mesh) {
-                return !same(run(filter, mesh, {}), run(filter, mesh, other));
-            };
-            EXPECT_TRUE(changes(host) || (!filter.needs_uv && changes(parts)))
-                << filter.menu_name << ", " << p.name;
+            bool changes = false;
+            for (std::size_t i = 0; i < hosts.size() && !changes; ++i) {
+                if (filter.needs_uv && hosts[i].wedge_uv.empty())
+                    continue;
+                const ParameterValues others = needed_for(p.name);
+                const HostResult plain = run(filter, hosts[i], others);
+                for (const ParameterValue& value : other_values(p)) {
+                    ParameterValues changed = others;
+                    changed[p.name] = value;
+                    const HostResult other = run(filter, hosts[i], changed);
+                    changes = changes || !same(plain, other) ||
+                              (filter.writes == writes_nothing && plain.values != other.values);
+                }
+            }
+            EXPECT_TRUE(changes) << filter.menu_name << ", " << p.name;
         }
 }
 

@@ -12,10 +12,13 @@
 namespace devseg {
 namespace {
 
-// A plate with one vertex pulled out: a spike that a flat map stretches at one place only.
+// A bowl with one vertex pulled out a little: besides the stretch of the bowl, a flat map has a
+// peak at one place.
 checks::Disk spiked_plate() {
-    RawMesh raw = shapes::grid(24, 24, 24.0, 24.0);
-    raw.points[12 * 25 + 12].z() = 2.0;
+    RawMesh raw = shapes::grid(40, 40, 40.0, 40.0);
+    for (Vec3& p : raw.points)
+        p.z() = 0.012 * ((p.x() - 20.0) * (p.x() - 20.0) + (p.y() - 20.0) * (p.y() - 20.0));
+    raw.points[20 * 41 + 12].z() += 1.0;
     return checks::Disk(raw);
 }
 

@@ -228,7 +228,7 @@ TEST(Pieces, SlitIsPartOfTheOutline) {
                            Vec3(x, y + 1, 0), y > 0.5 ? upper : lower);
     const Pattern pattern = pattern_of(model);
     ASSERT_EQ(pattern.pieces.size(), 1u);
-    EXPECT_EQ(pattern.pieces[0].outer.points.size(), 10u); // 8 around the sheet, 2 for the slit
+    EXPECT_EQ(pattern.pieces[0].outer.points.size(), 7u); // 4 around the sheet, 3 for the slit
     EXPECT_NEAR(length_of(pattern.pieces[0].outer.points), 10.0, 0.1);
 }
 

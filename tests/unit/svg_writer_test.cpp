@@ -5,14 +5,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "devseg/errors.h"
 #include "devseg/pattern/pieces.h"
-#include "writers/pattern_drawing.h"
+#include "sheet/pattern_drawing.h"
+#include "unit/temporary_folder.h"
+#include "writers/file.h"
 
 namespace devseg {
 namespace {
@@ -20,34 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double pi = 3.14159265358979323846;
-
-// A directory of its own for each test, gone afterwards.
-class TemporaryFolder {
-public:
-    TemporaryFolder()
-        : path_(fs::temp_directory_path() /
-                ("devseg_svg_" +
-                 std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    ~TemporaryFolder() { fs::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-    std::ptrdiff_t count() const {
-        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-    }
-
-private:
-    fs::path path_;
-};
-
-std::string read(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 Drawing small_drawing() {
     Drawing drawing;
@@ -126,7 +99,7 @@ TEST(SvgWriter, WritesTheseBytes) {
   <path d="M 1,0 L 0,28" fill="none" stroke="#00a000" stroke-width="0.1" stroke-dasharray="3 1.5"/>
  </g>
  <g id="text" inkscape:groupmode="layer" inkscape:label="Text">
-  <text x="20" y="18.6" font-family="sans-serif" font-size="10" text-anchor="middle" fill="#000000">A&lt;B&gt; &amp; &quot;é&quot;</text>
+  <text x="20" y="18.6" font-family="Helvetica, Arial, sans-serif" font-size="10" text-anchor="middle" fill="#000000">A&lt;B&gt; &amp; &quot;é&quot;</text>
  </g>
 </svg>
 )";
@@ -157,18 +130,18 @@ TEST(SvgWriter, SavesTheBytesAndReplacesAnOlderFile) {
     const TemporaryFolder folder;
     const std::string path = folder.file("n\xc3\xa4me with space.svg");
     for (int i = 0; i < 2; ++i) {
-        save_svg(path, small_drawing());
-        EXPECT_EQ(read(path), svg_bytes(small_drawing()));
+        save_file(path, svg_bytes(small_drawing()));
+        EXPECT_EQ(read_bytes(path), svg_bytes(small_drawing()));
         EXPECT_EQ(folder.count(), 1);
     }
 }
 
 TEST(SvgWriter, LeavesNothingAfterAFailure) {
     const TemporaryFolder folder;
-    EXPECT_THROW(save_svg(folder.file("missing/x.svg"), small_drawing()), FileError);
+    EXPECT_THROW(save_file(folder.file("missing/x.svg"), "x"), FileError);
     EXPECT_EQ(folder.count(), 0);
     fs::create_directory(folder.file("folder.svg"));
-    EXPECT_THROW(save_svg(folder.file("folder.svg"), small_drawing()), FileError);
+    EXPECT_THROW(save_file(folder.file("folder.svg"), "x"), FileError);
     EXPECT_EQ(folder.count(), 1);
 
     // Root writes everywhere: this part has something to test for other users only.
@@ -176,16 +149,21 @@ TEST(SvgWriter, LeavesNothingAfterAFailure) {
     fs::create_directory(closed);
     fs::permissions(closed, fs::perms::owner_read | fs::perms::owner_exec);
     if (!std::ofstream(closed + "/probe")) {
-        EXPECT_THROW(save_svg(closed + "/x.svg", small_drawing()), FileError);
+        EXPECT_THROW(save_file(closed + "/x.svg", "x"), FileError);
         EXPECT_TRUE(fs::is_empty(closed));
     }
     fs::permissions(closed, fs::perms::owner_all);
 }
 
+Drawing drawn(const Pattern& pattern, const ExportOptions& options = {}) {
+    Progress progress;
+    return draw_sheets(lay_out_pattern(pattern, options, progress), options);
+}
+
 TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
     for (const double radius : {1e-9, 1e-3, 0.05, 2.0, 90.0, 1e5, 1e9}) {
         const Pattern pattern = two_pieces(radius);
-        const Drawing drawing = draw_pattern(pattern, {});
+        const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
         for (const PatternPiece& piece : pattern.pieces) {
             const double area = area_of(points_in_file(svg, piece.name + "-cut"));
@@ -199,7 +177,7 @@ TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
 TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
     for (const double radius : {0.05, 20.0, 300.0}) {
         const Pattern pattern = two_pieces(radius);
-        const Drawing drawing = draw_pattern(pattern, {});
+        const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
         const std::vector<Vec2> square = points_in_file(svg, "check-square");
         ASSERT_EQ(square.size(), 4u);
@@ -225,7 +203,7 @@ TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
 
 TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
     const Pattern pattern = two_pieces(5.0);
-    const Drawing drawing = draw_pattern(pattern, {});
+    const Drawing drawing = drawn(pattern);
     const DrawingLayer& layer = drawing.layers.back();
     ASSERT_EQ(layer.id, "text");
     ASSERT_EQ(layer.texts.size(), 2u);
@@ -235,11 +213,11 @@ TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
                   pattern.pieces[i].label_radius);
         EXPECT_GT(layer.texts[i].size, 0.3 * pattern.pieces[i].label_radius);
     }
-    EXPECT_LE(draw_pattern(two_pieces(500.0), {}).layers.back().texts[0].size, 8.0);
+    EXPECT_LE(drawn(two_pieces(500.0)).layers.back().texts[0].size, 8.0);
 
-    PatternOptions silent;
+    ExportOptions silent;
     silent.labels = false;
-    const std::string svg = svg_bytes(draw_pattern(pattern, silent));
+    const std::string svg = svg_bytes(drawn(pattern, silent));
     EXPECT_EQ(svg.find("id=\"text\""), std::string::npos);
     EXPECT_NE(svg.find(">50 mm<"), std::string::npos);
 }

@@ -15,6 +15,9 @@ namespace devseg {
 /// The options of filters without parameters.
 struct NoOptions {};
 
+/// What to say of a number outside its range.
+std::string out_of_range(const std::string& name, double minimum, double maximum, double found);
+
 template <class Options>
 class Declare {
 public:
@@ -31,14 +34,34 @@ public:
         return add(ParameterKind::integer, field, std::move(name), std::move(label), minimum,
                    maximum, {}, std::move(help));
     }
+    /// Values outside of minimum … maximum are refused.
     Declare& real(double Options::*field, std::string name, std::string label, double minimum,
                   double maximum, std::string help) {
-        return add(ParameterKind::real, field, std::move(name), std::move(label), minimum, maximum,
-                   {}, std::move(help));
+        add(ParameterKind::real, field, name, std::move(label), minimum, maximum, {},
+            std::move(help));
+        setters_.back() = [=](Options& options, const ParameterValue& value) {
+            options.*field = std::get<double>(value);
+            if (!(options.*field >= minimum && options.*field <= maximum))
+                throw InvalidParameter(out_of_range(name, minimum, maximum, options.*field));
+        };
+        return *this;
     }
     Declare& boolean(bool Options::*field, std::string name, std::string label, std::string help) {
         return add(ParameterKind::boolean, field, std::move(name), std::move(label), 0.0, 1.0, {},
                    std::move(help));
+    }
+    Declare& text(std::string Options::*field, std::string name, std::string label,
+                  std::string help) {
+        return add(ParameterKind::text, field, std::move(name), std::move(label), 0.0, 0.0, {},
+                   std::move(help));
+    }
+    /// `example`: what a dialog proposes.
+    Declare& file(std::string Options::*field, std::string name, std::string label,
+                  const std::string& example, std::string help) {
+        add(ParameterKind::output_file, field, std::move(name), std::move(label), 0.0, 0.0, {},
+            std::move(help));
+        filter_.parameters.back().default_value = example;
+        return *this;
     }
     /// `Enum` must count from 0 in the order of `choices`.
     template <class Enum>

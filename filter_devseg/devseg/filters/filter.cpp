@@ -72,6 +72,7 @@ int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
 HostResult map_back(const GatedMesh& gated, FilterOutput output) {
     HostResult result;
     result.values = std::move(output.values);
+    result.layer = std::move(output.layer);
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
     for (std::size_t source = 0; source < gated.stand_in.size(); ++source) {

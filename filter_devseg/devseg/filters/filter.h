@@ -11,17 +11,16 @@
 #include <variant>
 #include <vector>
 
+#include "devseg/filters/layer_mesh.h"
 #include "devseg/mesh/charts.h"
-#include "devseg/mesh/input_gate.h"
 #include "devseg/mesh/texture.h"
 #include "devseg/progress.h"
 
 namespace devseg {
 
-using Color = std::array<std::uint8_t, 3>; // red, green, blue
-
-enum class ParameterKind { boolean, integer, real, choice };
-using ParameterValue = std::variant<bool, int, double>; // a choice is the int of its position
+enum class ParameterKind { boolean, integer, real, choice, text, output_file };
+// A choice is the int of its position, texts and file names are UTF-8.
+using ParameterValue = std::variant<bool, int, double, std::string>;
 using ParameterValues = std::map<std::string, ParameterValue>;
 
 struct Parameter {
@@ -52,7 +51,8 @@ enum Writes : unsigned {
     writes_charts = 1, // chart_id, seam_edges and the face-edge selection
     writes_quality = 2,
     writes_color = 4,
-    writes_uv = 8
+    writes_uv = 8,
+    writes_layer = 16 // a new mesh; the host's own stays as it is
 };
 
 /// What filters see of a mesh: checked, in internal units.
@@ -68,6 +68,7 @@ struct FilterOutput {
     std::optional<std::vector<double>> face_quality; // #F
     std::optional<std::vector<Color>> face_color;    // #F
     std::optional<CornerUv> uv;
+    std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
 };
@@ -102,6 +103,7 @@ struct HostResult {
     std::vector<double> face_quality;
     std::vector<Color> face_color;
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes;
 };

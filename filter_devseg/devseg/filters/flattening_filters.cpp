@@ -5,8 +5,8 @@
 #include "devseg/errors.h"
 #include "devseg/filters/declare.h"
 #include "devseg/filters/filter_groups.h"
+#include "devseg/filters/sheet_layout.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/flatten/snap.h"
 #include "devseg/pack/pack.h"
 
 namespace devseg {
@@ -55,39 +55,6 @@ constexpr const char* pack_help =
     "Charts are read from the texture coordinates and keep their shape; they are turned, but never "
     "mirrored.";
 
-// Moves flat charts to their places, rounds them as hosts store them, and spreads them to corners.
-struct Layout {
-    CornerUv uv;
-    Index unsettled = 0; // faces that rounding flattened
-};
-
-Layout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
-               double scale_to_side, Progress& progress) {
-    std::vector<PackItem> items;
-    for (const FlatChart& chart : charts)
-        items.push_back({&chart.surface.corners, &chart.uv});
-    const PackResult packed = pack_charts(items, options, progress);
-    const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
-    Layout layout;
-    layout.uv.assign(mesh.twin.size(), Vec2::Zero());
-    for (std::size_t c = 0; c < charts.size(); ++c) {
-        FlatChart& chart = charts[c];
-        for (Vec2& p : chart.uv)
-            p = scale * packed.placements[c](p);
-        layout.unsettled += snap_to_single(chart.surface.corners, chart.uv);
-        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
-            layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
-    }
-    return layout;
-}
-
-void note_unsettled(const Layout& layout, FilterOutput& output) {
-    if (layout.unsettled > 0)
-        output.notes.push_back(std::to_string(layout.unsettled) +
-                               " faces are too thin for 32-bit texture coordinates and lost their "
-                               "area in the plane");
-}
-
 FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
                          Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.05);
@@ -95,7 +62,7 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     progress.begin_phase("flattening charts", 0.75);
     FlattenResult flattened = flatten_charts(input.mesh, cuts.charts, options.method, progress);
     progress.begin_phase("packing charts", 0.2);
-    const Layout layout =
+    const SheetLayout layout =
         lay_out(input.mesh, flattened.flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
 
     FilterOutput output;
@@ -163,7 +130,7 @@ FilterOutput run_pack(const FilterInput& input, const PackOptions& options, Prog
     std::vector<FlatChart> flat;
     for (ChartSurface& surface : extract_charts(input.mesh, charts))
         flat.push_back(read_flat_chart(input.mesh, *input.uv, std::move(surface)));
-    const Layout layout = lay_out(input.mesh, flat, options, 1.0, progress);
+    const SheetLayout layout = lay_out(input.mesh, flat, options, 1.0, progress);
     FilterOutput output;
     output.values = {{"charts_number", charts.count}};
     note_unsettled(layout, output);

@@ -1,5 +1,8 @@
 #include <iterator>
+#include <locale>
+#include <sstream>
 
+#include "devseg/filters/declare.h"
 #include "devseg/filters/filter_groups.h"
 
 namespace devseg {
@@ -8,11 +11,20 @@ const std::vector<FilterDeclaration>& filter_table() {
     static const std::vector<FilterDeclaration> table = [] {
         std::vector<FilterDeclaration> all;
         for (auto group : {segmentation_filters(), t_flooding_filters(), baseline_filters(),
-                           flattening_filters(), measure_filters(), circle_map_filters()})
+                           flattening_filters(), pattern_filters(), measure_filters(),
+                           circle_map_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();
     return table;
+}
+
+std::string out_of_range(const std::string& name, double minimum, double maximum, double found) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << name << ": expected a number from " << minimum << " to " << maximum << ", found "
+         << found;
+    return text.str();
 }
 
 ChartMap find_charts(const FilterInput& input) {

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "devseg/pattern/layout.h"
+
 namespace devseg {
 
 namespace {
@@ -13,8 +15,47 @@ namespace {
 // such as the gate makes at edges with three faces: nothing to cut out there.
 constexpr double no_area = 1e-12;
 
-// Distance of pieces that had to be moved, as a share of the layout's size.
-constexpr double shelf_gap = 0.02;
+// Corners of the texture coordinates along a boundary loop, brought to paper.
+PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
+                const PaperMap& place) {
+    PiecePath path;
+    for (const Index h : loop) {
+        path.half_edge.push_back(surface.mesh_half_edge(h));
+        path.points.push_back(place(uv[at(path.half_edge.back())]));
+    }
+    path.area = signed_area(path.points);
+    return path;
+}
+
+void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
+    const auto outer =
+        std::max_element(paths.begin(), paths.end(),
+                         [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
+    std::swap(*outer, paths.front());
+    piece.outer = std::move(paths.front());
+    for (std::size_t i = 1; i < paths.size(); ++i) {
+        const double length = perimeter(paths[i].points);
+        if (std::abs(paths[i].area) > no_area * length * length)
+            piece.holes.push_back(std::move(paths[i]));
+    }
+    measure_outlines(piece);
+}
+
+// Pieces that were turned over in their place may stick into their neighbours. Those whose boxes
+// keep clear stay.
+std::vector<std::size_t> not_clear(const std::vector<PatternPiece>& pieces,
+                                   const std::vector<std::size_t>& turned) {
+    std::vector<std::size_t> result;
+    for (const std::size_t i : turned)
+        for (std::size_t j = 0; j < pieces.size(); ++j)
+            if (j != i && !pieces[i].box.intersection(pieces[j].box).isEmpty()) {
+                result.push_back(i);
+                break;
+            }
+    return result;
+}
+
+} // namespace
 
 double perimeter(const std::vector<Vec2>& points) {
     double length = 0.0;
@@ -34,88 +75,17 @@ double signed_area(const std::vector<Vec2>& points) {
     return 0.5 * twice;
 }
 
-// Corners of the texture coordinates along a boundary loop; `place` brings them to paper.
-template <class Place>
-PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
-                Place place) {
-    PiecePath path;
-    for (const Index h : loop) {
-        const Vec2 p = place(uv[at(surface.mesh_half_edge(h))]);
-        if (path.points.empty() || p != path.points.back())
-            path.points.push_back(p);
-    }
-    while (path.points.size() > 1 && path.points.back() == path.points.front())
-        path.points.pop_back();
-    path.area = signed_area(path.points);
-    return path;
-}
-
-void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
-    const auto outer =
-        std::max_element(paths.begin(), paths.end(),
-                         [](const PiecePath& a, const PiecePath& b) { return a.area < b.area; });
-    std::swap(*outer, paths.front());
-    piece.outer = std::move(paths.front());
-    piece.area = piece.outer.area;
-    // Of all loops: in foreign coordinates that fold over, a hole may stick out of the outline.
-    const auto extend_box = [&](const PiecePath& path) {
+void measure_outlines(PatternPiece& piece) {
+    piece.area = 0.0;
+    piece.box.setEmpty();
+    for (Index l = 0; l < piece.path_count(); ++l) {
+        PiecePath& path = piece.path(l);
+        path.area = signed_area(path.points);
+        piece.area += path.area;
+        // Of all loops: in foreign coordinates that fold over, a hole may stick out of the outline.
         for (const Vec2& p : path.points)
             piece.box.extend(p);
-    };
-    extend_box(piece.outer);
-    for (std::size_t i = 1; i < paths.size(); ++i) {
-        const double length = perimeter(paths[i].points);
-        if (std::abs(paths[i].area) <= no_area * length * length)
-            continue;
-        piece.area += paths[i].area;
-        extend_box(paths[i]);
-        piece.holes.push_back(std::move(paths[i]));
     }
-}
-
-// A piece that was turned over in its place may stick into its neighbours. Where even the boxes
-// keep clear it stays; the others go to rows above the layout.
-void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& turned) {
-    const Eigen::AlignedBox2d layout = bounding_box(pieces);
-    const double gap = shelf_gap * layout.sizes().maxCoeff();
-    std::vector<std::size_t> moved;
-    for (const std::size_t i : turned)
-        for (std::size_t j = 0; j < pieces.size(); ++j)
-            if (j != i && !pieces[i].box.intersection(pieces[j].box).isEmpty()) {
-                moved.push_back(i);
-                break;
-            }
-    Vec2 corner(layout.min().x(), layout.max().y() + gap);
-    double row_height = 0.0;
-    for (const std::size_t i : moved) {
-        const Vec2 size = pieces[i].box.sizes();
-        if (corner.x() > layout.min().x() && corner.x() + size.x() > layout.max().x()) {
-            corner = Vec2(layout.min().x(), corner.y() + row_height + gap);
-            row_height = 0.0;
-        }
-        move_piece(pieces[i], corner - pieces[i].box.min());
-        corner.x() += size.x() + gap;
-        row_height = std::max(row_height, size.y());
-    }
-}
-
-} // namespace
-
-void move_piece(PatternPiece& piece, const Vec2& offset) {
-    const auto shift = [&](PiecePath& path) {
-        for (Vec2& p : path.points)
-            p += offset;
-    };
-    shift(piece.outer);
-    std::for_each(piece.holes.begin(), piece.holes.end(), shift);
-    piece.box.translate(offset);
-}
-
-Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces) {
-    Eigen::AlignedBox2d box;
-    for (const PatternPiece& piece : pieces)
-        box.extend(piece.box);
-    return box;
 }
 
 std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
@@ -133,14 +103,13 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, con
         if (uv_areas[c] == 0.0 || surfaces[c].loops.empty())
             continue;
         const double mirror = uv_areas[c] < 0.0 ? -1.0 : 1.0;
-        std::vector<PiecePath> paths;
-        for (const std::vector<Index>& loop : surfaces[c].loops)
-            paths.push_back(trace(surfaces[c], loop, uv, [&](const Vec2& p) {
-                const Vec2 local = mm_per_uv * (p - uv.front());
-                return Vec2(mirror * local.x(), local.y());
-            }));
         PatternPiece piece;
         piece.chart = static_cast<Index>(c);
+        piece.place.origin = uv.front();
+        piece.place.scale = mm_per_uv * Vec2(mirror, 1.0);
+        std::vector<PiecePath> paths;
+        for (const std::vector<Index>& loop : surfaces[c].loops)
+            paths.push_back(trace(surfaces[c], loop, uv, piece.place));
         set_paths(piece, std::move(paths));
         if (mirror != side) {
             move_piece(piece, Vec2(-2.0 * piece.box.center().x(), 0.0));
@@ -148,7 +117,7 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, con
         }
         pieces.push_back(std::move(piece));
     }
-    shelve(pieces, turned);
+    shelve(pieces, not_clear(pieces, turned));
     return pieces;
 }
 

@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "devseg/mesh/charts.h"
-#include "devseg/pattern/pieces.h"
+#include "devseg/mesh/texture.h"
+#include "devseg/pattern/pattern.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -16,9 +17,11 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, con
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress);
 
-/// Moves outlines and box.
-void move_piece(PatternPiece& piece, const Vec2& offset);
+/// Of a closed polygon: the length around it, and its area, positive if counterclockwise.
+double perimeter(const std::vector<Vec2>& points);
+double signed_area(const std::vector<Vec2>& points);
 
-Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces);
+/// Sets the areas of the outlines and of the piece, and its box.
+void measure_outlines(PatternPiece& piece);
 
 } // namespace devseg

@@ -6,8 +6,17 @@
 #include <sstream>
 
 #include "devseg/errors.h"
+#include "devseg/pattern/curves.h"
 #include "devseg/pattern/label_point.h"
+#include "devseg/pattern/layout.h"
+#include "devseg/pattern/match.h"
+#include "devseg/pattern/notches.h"
 #include "devseg/pattern/outlines.h"
+#include "devseg/pattern/seams.h"
+#include "devseg/pattern/shapes.h"
+#include "devseg/pattern/simplify.h"
+#include "devseg/pattern/split.h"
+#include "devseg/pattern/strain.h"
 
 namespace devseg {
 
@@ -34,6 +43,8 @@ constexpr double fold_tolerance = 1e-3;
 // Larger errors of a piece's lengths are reported. 'Charts: Flatten' keeps all areas; other
 // makers of texture coordinates often do not.
 constexpr double scale_tolerance = 0.01;
+
+constexpr double degree = 3.14159265358979323846 / 180.0;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -189,6 +200,25 @@ void note_scale_errors(Pattern& pattern) {
                                 " % of the true ones ('Charts: Flatten' keeps the scale)");
 }
 
+void note_mismatches(Pattern& pattern) {
+    const Seam* worst = nullptr;
+    Index count = 0;
+    for (const Seam& seam : pattern.seams) {
+        if (sides_agree(seam.sides[0].length, seam.sides[1].length))
+            continue;
+        ++count;
+        if (worst == nullptr || std::abs(seam.mismatch()) > std::abs(worst->mismatch()))
+            worst = &seam;
+    }
+    if (worst != nullptr)
+        pattern.notes.push_back("the sides of " + std::to_string(count) + " of " +
+                                std::to_string(pattern.seams.size()) +
+                                " seams differ by more than 0.2 % or 0.5 mm, " + "most on seam " +
+                                worst->label + " by " +
+                                number(std::round(1000.0 * std::abs(worst->mismatch())) / 1000.0) +
+                                " mm ('Charts: Flatten' with the method LPFB keeps their lengths)");
+}
+
 // The layout's lower left corner comes to the origin.
 void place_on_sheet(Pattern& pattern, const char* scale_name) {
     const Eigen::AlignedBox2d box = bounding_box(pattern.pieces);
@@ -213,6 +243,113 @@ void place_label(PatternPiece& piece) {
     piece.label_radius = point.radius;
 }
 
+// The charts, with those that are too large split.
+SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+                         double mm, ChartAreas& areas, Progress& progress) {
+    SplitCharts result;
+    result.charts = charts_from_uv(mesh, uv);
+    areas = measure_charts(mesh, uv, result.charts);
+    check_charts(result.charts, areas);
+    if (options.max_piece_mm > 0.0) {
+        const double scale = areas.scale;
+        result = split_large_charts(mesh, uv, result.charts, options.max_piece_mm / (scale * mm),
+                                    progress);
+        areas = measure_charts(mesh, uv, result.charts);
+        areas.scale = scale;
+    }
+    return result;
+}
+
+// A flattening keeps areas or the lengths of boundaries; a piece is at another scale only if
+// neither holds. Outlines must be as they were traced.
+void set_length_scales(const Mesh& mesh, const ChartAreas& areas, double mm, Pattern& pattern) {
+    const auto error = [](double scale) { return std::abs(std::log(scale)); };
+    for (PatternPiece& piece : pattern.pieces) {
+        const std::size_t c = at(piece.chart);
+        double on_model = 0.0;
+        double on_paper = 0.0;
+        for (Index l = 0; l < piece.path_count(); ++l) {
+            on_paper += perimeter(piece.path(l).points);
+            for (const Index h : piece.path(l).half_edge)
+                on_model += mm * mesh.edge_length(h);
+        }
+        if (!(areas.surface[c] > 0.0) || !(on_model > 0.0))
+            continue;
+        piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
+        if (error(on_paper / on_model) < error(piece.length_scale))
+            piece.length_scale = on_paper / on_model;
+    }
+}
+
+// Chains that end at corners, with simple outlines and sides of equal length.
+std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint8_t>& cut,
+                                   const PatternOptions& options, double mm, Pattern& pattern,
+                                   Progress& progress) {
+    std::vector<PatternPiece>& pieces = pattern.pieces;
+    std::vector<Chain> chains =
+        cut_at_corners(pieces, find_chains(mesh, pieces, cut), options.corner_angle * degree);
+    measure_surface(mesh, pieces, mm, chains);
+    if (options.simplify_mm > 0.0)
+        simplify_outlines(pieces, chains, options.simplify_mm);
+    progress.check();
+    if (options.match_seams)
+        match_sides(pieces, chains, progress);
+    drop_empty_edges(pieces, chains);
+    return chains;
+}
+
+// Pieces that overlap, and the parts of split ones, get places of their own.
+void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part,
+              Pattern& pattern) {
+    std::vector<std::size_t> moved;
+    std::vector<PatternPiece>& pieces = pattern.pieces;
+    if (split.too_large > 0)
+        pattern.notes.push_back(std::to_string(split.too_large) +
+                                " faces alone are larger than max_piece_mm and were not split");
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (is_part[at(pieces[i].chart)] != 0)
+            moved.push_back(i);
+    shelve(pieces, moved);
+    const std::vector<std::size_t> others = overlapping_pieces(pieces);
+    shelve(pieces, others);
+    if (!others.empty())
+        pattern.notes.push_back(std::to_string(others.size()) + " of " +
+                                std::to_string(pieces.size()) +
+                                " pieces lay on others in the texture coordinates and were moved "
+                                "above the layout");
+}
+
+// 1 for every chart that was cut off another one.
+std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
+    std::vector<std::uint8_t> is_part(at(split.charts.count), 0);
+    for (std::size_t h = 0; h < split.cut.size(); ++h)
+        if (split.cut[h] != 0)
+            is_part[at(split.charts.chart[h / 3])] = 1;
+    return is_part;
+}
+
+// Everything that is read off the finished outlines.
+void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
+                     const ChartAreas& areas, const PatternOptions& options, double mm,
+                     Pattern& pattern, Progress& progress) {
+    const std::vector<FaceStrain> strain = measure_strain(mesh, uv, areas.scale);
+    const ChartFaces groups = group_faces(charts);
+    pattern.face_piece.assign(mesh.faces.size(), -1);
+    for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
+        PatternPiece& piece = pattern.pieces[i];
+        const std::size_t c = at(piece.chart);
+        const std::vector<Index> faces(groups.faces.begin() + groups.begin[c],
+                                       groups.faces.begin() + groups.begin[c + 1]);
+        for (const Index f : faces)
+            pattern.face_piece[at(f)] = static_cast<Index>(i);
+        set_sizes(piece, options.grain);
+        measure_inside(mesh, uv, faces, charts.seam, strain, options.fold_angle * degree, mm,
+                       piece);
+        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+    }
+    find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
+}
+
 } // namespace
 
 Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
@@ -222,29 +359,37 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     check_coordinates(uv);
 
     progress.begin_phase("reading charts", 0.2);
-    const ChartMap charts = charts_from_uv(mesh, uv);
-    const ChartAreas areas = measure_charts(mesh, uv, charts);
-    check_charts(charts, areas);
+    ChartAreas areas;
+    const SplitCharts split = limit_charts(mesh, uv, options, mm, areas, progress);
 
-    progress.begin_phase("tracing outlines", 0.4);
+    progress.begin_phase("tracing outlines", 0.3);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces =
-        trace_pieces(mesh, uv, charts, areas.worth_cutting(), areas.scale * mm, progress);
+        trace_pieces(mesh, uv, split.charts, areas.worth_cutting(), areas.scale * mm, progress);
+    set_length_scales(mesh, areas, mm, pattern);
+    const std::vector<Chain> chains =
+        refine_outlines(mesh, split.cut, options, mm, pattern, progress);
+
+    progress.begin_phase("placing pieces", 0.2);
+    for (PatternPiece& piece : pattern.pieces) {
+        measure_outlines(piece);
+        place_label(piece);
+        progress.check();
+    }
+    separate(split, find_parts(split), pattern);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
-    progress.begin_phase("naming pieces", 0.4);
+    progress.begin_phase("describing pieces", 0.3);
     number_pieces(pattern.pieces);
-    for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
-        PatternPiece& piece = pattern.pieces[i];
-        const std::size_t c = at(piece.chart);
-        if (areas.surface[c] > 0.0)
-            piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
-        place_label(piece);
-        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
-    }
+    set_seams(pattern, chains);
+    set_notches(pattern, options.notch_spacing_mm);
+    mark_corners(pattern.pieces, chains, options.corner_angle * degree);
+    fit_curves(pattern.pieces, chains, options.curve_mm);
+    describe_pieces(mesh, uv, split.charts, areas, options, mm, pattern, progress);
     note_folds(pattern, areas);
     note_scale_errors(pattern);
+    note_mismatches(pattern);
     return pattern;
 }
 

@@ -1,49 +1,32 @@
-// Pattern pieces: the outlines of flattened charts on paper, in millimetres and at true scale.
+// Texture coordinates → pattern: the outlines of flattened charts as pieces on paper.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include <Eigen/Geometry>
-
 #include "devseg/mesh/texture.h"
+#include "devseg/pattern/pattern.h"
 #include "devseg/progress.h"
 
 namespace devseg {
+
+/// Where the threads of a woven cloth run in a piece.
+enum class GrainDirection { longest, texture_v };
 
 struct PatternOptions {
     double mm_per_unit = 1.0; // millimetres on paper for one unit of the model, above 0
     double height_mm = 0.0;   // size of the finished model along y (MeshLab's up axis), in mm;
                               // replaces mm_per_unit where it is above 0
     bool labels = true;       // write each piece's name into it
-};
 
-/// A closed outline: the last point is joined to the first one, which is not repeated.
-struct PiecePath {
-    std::vector<Vec2> points; // mm, y up
-    double area = 0.0;        // mm², positive where the points run counterclockwise
-};
-
-struct PatternPiece {
-    std::string name;                   // "P01", "P02", … in the order of the charts
-    Index chart = -1;                   // label in charts_from_uv
-    PiecePath outer;                    // counterclockwise; darts and slits are part of it
-    std::vector<PiecePath> holes;       // clockwise
-    double area = 0.0;                  // mm², without the holes
-    double length_scale = 1.0;          // paper length / true length, from the areas; 1 = true
-    Vec2 label_position = Vec2::Zero(); // the point inside that is farthest from all outlines
-    double label_radius = 0.0;          // mm, its distance from them
-    Eigen::AlignedBox2d box;            // mm
-};
-
-/// The pieces as they lie on the sheet: within [0, width] × [0, height], seen from outside the
-/// model, y up.
-struct Pattern {
-    std::vector<PatternPiece> pieces;
-    double width = 0.0;             // mm
-    double height = 0.0;            // mm
-    double mm_per_unit = 1.0;       // as used, from height_mm where that was given
-    std::vector<std::string> notes; // what the user should know, one sentence each
+    // A vertex of an outline is left out where that moves neither side of the seam by more; also
+    // never more than a thousandth of a piece's size. 0 keeps all vertices.
+    double simplify_mm = 0.1;
+    double corner_angle = 35.0;     // degrees: an outline that turns by more has a corner
+    double curve_mm = 0.1;          // largest distance of the curves from the outline
+    bool match_seams = true;        // make both sides of each seam equally long
+    double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none
+    double fold_angle = 22.5;       // degrees: flatter edges are no folds
+    double max_piece_mm = 0.0;      // longest side of a piece; larger ones are split; 0 = no limit
+    double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
+    GrainDirection grain = GrainDirection::longest;
 };
 
 /// Texture coordinates (3 #F, made by anyone) → pieces. Charts, darts and slits are read off the

@@ -1,77 +1,16 @@
 #include "filter_devseg.h"
 
-#include <charconv>
-#include <cmath>
-
-#include "devseg/errors.h"
-#include "host/vcg_bridge.h"
+#include "filters/export_filter.h"
+#include "host/filter_host.h"
+#include "host/host_errors.h"
+#include "host/rich_parameters.h"
 
 namespace {
 
-using devseg::FilterCategory;
-using devseg::FilterDeclaration;
-using devseg::Parameter;
-using devseg::ParameterKind;
+using devseg::to_qstring;
 
-const FilterDeclaration& declaration(int filter) {
-    return devseg::filter_table().at(static_cast<std::size_t>(filter));
-}
-
-QString text(const std::string& s) {
-    return QString::fromUtf8(s.data(), static_cast<int>(s.size()));
-}
-
-// Hosts carry reals in 32 bit. The shortest decimal that rounds to the same float is what the user
-// wrote: 0.2 and not 0.200000003.
-double as_written(Scalarm value) {
-    const float single = static_cast<float>(value);
-    if (!std::isfinite(single))
-        return static_cast<double>(value);
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, single).ptr;
-    double result = 0.0;
-    std::from_chars(digits, end, result);
-    return result;
-}
-
-void add_parameter(RichParameterList& list, const Parameter& p) {
-    const QString name = text(p.name);
-    const QString label = text(p.label);
-    const QString help = text(p.help);
-    switch (p.kind) {
-    case ParameterKind::boolean:
-        list.addParam(RichBool(name, std::get<bool>(p.default_value), label, help));
-        break;
-    case ParameterKind::integer:
-        list.addParam(RichInt(name, std::get<int>(p.default_value), label, help));
-        break;
-    case ParameterKind::real:
-        list.addParam(
-            RichFloat(name, static_cast<Scalarm>(std::get<double>(p.default_value)), label, help));
-        break;
-    case ParameterKind::choice: {
-        QStringList choices;
-        for (const std::string& choice : p.choices)
-            choices.push_back(text(choice));
-        list.addParam(RichEnum(name, std::get<int>(p.default_value), choices, label, help));
-        break;
-    }
-    }
-}
-
-devseg::ParameterValue read_parameter(const RichParameterList& list, const Parameter& p) {
-    const QString name = text(p.name);
-    switch (p.kind) {
-    case ParameterKind::boolean:
-        return list.getBool(name);
-    case ParameterKind::integer:
-        return list.getInt(name);
-    case ParameterKind::real:
-        return as_written(list.getFloat(name));
-    case ParameterKind::choice:
-        return list.getEnum(name);
-    }
-    return p.default_value;
+const devseg::FilterDeclaration& declaration(int filter) {
+    return devseg::plugin_filters().at(static_cast<std::size_t>(filter));
 }
 
 QVariant to_variant(const devseg::ResultValue& value) {
@@ -88,16 +27,10 @@ QVariant to_variant(const devseg::ResultValue& value) {
     return QVariant(std::get<double>(value));
 }
 
-std::string to_text(const devseg::ResultValue& value) {
-    const QVariant variant = to_variant(value);
-    return variant.canConvert<Eigen::VectorXd>() ? "(one value for each chart)"
-                                                 : variant.toString().toStdString();
-}
-
 } // namespace
 
 DevsegFilterPlugin::DevsegFilterPlugin() {
-    const int count = static_cast<int>(devseg::filter_table().size());
+    const int count = static_cast<int>(devseg::plugin_filters().size());
     for (int filter = 0; filter < count; ++filter) {
         typeList.push_back(filter);
         actionList.push_back(new QAction(filterName(filter), this));
@@ -113,29 +46,19 @@ QString DevsegFilterPlugin::vendor() const {
 }
 
 QString DevsegFilterPlugin::filterName(ActionIDType filter) const {
-    return text(declaration(filter).menu_name);
+    return to_qstring(declaration(filter).menu_name);
 }
 
 QString DevsegFilterPlugin::pythonFilterName(ActionIDType filter) const {
-    return text(declaration(filter).python_name);
+    return to_qstring(declaration(filter).python_name);
 }
 
 QString DevsegFilterPlugin::filterInfo(ActionIDType filter) const {
-    return text(declaration(filter).help);
+    return to_qstring(declaration(filter).help);
 }
 
 FilterPlugin::FilterClass DevsegFilterPlugin::getClass(const QAction* action) const {
-    switch (declaration(ID(action)).category) {
-    case FilterCategory::remeshing:
-        return FilterPlugin::Remeshing;
-    case FilterCategory::texture:
-        return FilterPlugin::Texture;
-    case FilterCategory::color:
-        return FilterPlugin::FaceColoring;
-    case FilterCategory::measure:
-        return FilterPlugin::Measure;
-    }
-    return FilterPlugin::Remeshing;
+    return devseg::filter_class<FilterPlugin>(declaration(ID(action)));
 }
 
 FilterPlugin::FilterArity DevsegFilterPlugin::filterArity(const QAction*) const {
@@ -147,24 +70,11 @@ int DevsegFilterPlugin::getPreConditions(const QAction*) const {
 }
 
 int DevsegFilterPlugin::postCondition(const QAction* action) const {
-    const unsigned writes = declaration(ID(action)).writes;
-    int mask = MeshModel::MM_NONE;
-    if (writes & devseg::writes_charts)
-        mask |= MeshModel::MM_FACEFLAG;
-    if (writes & devseg::writes_quality)
-        mask |= MeshModel::MM_FACEQUALITY;
-    if (writes & devseg::writes_color)
-        mask |= MeshModel::MM_FACECOLOR;
-    if (writes & devseg::writes_uv)
-        mask |= MeshModel::MM_WEDGTEXCOORD;
-    return mask;
+    return devseg::written_elements(declaration(ID(action)));
 }
 
 RichParameterList DevsegFilterPlugin::initParameterList(const QAction* action, const MeshModel&) {
-    RichParameterList list;
-    for (const Parameter& p : declaration(ID(action)).parameters)
-        add_parameter(list, p);
-    return list;
+    return devseg::rich_parameters(declaration(ID(action)));
 }
 
 std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* action,
@@ -172,37 +82,17 @@ std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* a
                                                                 MeshDocument& document,
                                                                 unsigned int& post_condition_mask,
                                                                 vcg::CallBackPos* callback) {
-    const FilterDeclaration& filter = declaration(ID(action));
-    MeshModel* model = document.mm();
-    if (model == nullptr)
-        throw MLException("expected a mesh, found none; load one first");
-
-    devseg::Progress progress([callback](double fraction, const char* phase) {
-        return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
-    });
-    devseg::ParameterValues values;
-    for (const Parameter& p : filter.parameters)
-        values[p.name] = read_parameter(parameters, p);
     try {
-        const devseg::HostResult result =
-            devseg::run_filter(filter, devseg::read_host_mesh(*model), values, progress);
-        post_condition_mask = devseg::write_host_result(*model, result);
-        for (const std::string& note : result.notes)
-            log(note);
+        const devseg::HostRun run =
+            devseg::run_in_host(declaration(ID(action)), document, parameters, callback);
+        post_condition_mask = run.changed;
+        for (const std::string& line : run.log)
+            log(line);
         std::map<std::string, QVariant> returned;
-        for (const auto& [name, value] : result.values) {
+        for (const auto& [name, value] : run.values)
             returned[name] = to_variant(value);
-            log(name + ": " + to_text(value));
-        }
         return returned;
-    } catch (const devseg::InvalidMesh& error) {
-        if (!error.faces.empty())
-            devseg::select_faces(model->cm, error.faces);
-        throw MLException(text(error.what()));
-    } catch (const std::bad_alloc&) {
-        throw MLException("expected enough memory for this mesh, found too little; "
-                          "use a smaller mesh or close other programs");
-    } catch (const std::exception& error) {
-        throw MLException(text(error.what()));
+    } catch (const devseg::HostError& error) {
+        throw MLException(to_qstring(error.what()));
     }
 }

@@ -1,113 +1,8 @@
 #include "io_pattern.h"
 
-#include <algorithm>
-#include <cmath>
-#include <new>
-
-#include "devseg/errors.h"
-#include "devseg/mesh/input_gate.h"
-#include "devseg/pattern/pieces.h"
-#include "host/vcg_bridge.h"
-#include "writers/pattern_drawing.h"
-#include "writers/svg_writer.h"
-
-namespace {
-
-using devseg::Vec2;
-using FaceUv = std::array<Vec2, 3>;
-
-// Distance of two texture pages side by side, as a share of their width.
-constexpr double page_gap = 0.05;
-
-QString text(const std::string& utf8) {
-    return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
-}
-
-// Each texture image has a unit square of its own, and charts on two images may share their
-// coordinates: the images that are in use are laid side by side.
-void spread_pages(const CMeshO& m, std::vector<FaceUv>& uv) {
-    std::vector<int> page_of_face;
-    page_of_face.reserve(uv.size());
-    for (const auto& f : m.face)
-        if (!f.IsD())
-            page_of_face.push_back(f.cWT(0).N());
-    std::vector<int> pages = page_of_face;
-    std::sort(pages.begin(), pages.end());
-    pages.erase(std::unique(pages.begin(), pages.end()), pages.end());
-    if (pages.size() < 2)
-        return;
-    double low = 0.0;
-    double high = 0.0;
-    for (const FaceUv& corners : uv)
-        for (const Vec2& p : corners)
-            if (std::isfinite(p.x())) {
-                low = std::min(low, p.x());
-                high = std::max(high, p.x());
-            }
-    const double pitch = (1.0 + page_gap) * (high - low);
-    for (std::size_t f = 0; f < uv.size(); ++f) {
-        const auto rank =
-            std::lower_bound(pages.begin(), pages.end(), page_of_face[f]) - pages.begin();
-        for (Vec2& p : uv[f])
-            p.x() += pitch * static_cast<double>(rank);
-    }
-}
-
-// Coordinates at the vertices serve as well: they just have no seams of their own.
-std::vector<FaceUv> read_vertex_uv(const CMeshO& m) {
-    std::vector<FaceUv> uv;
-    uv.reserve(static_cast<std::size_t>(m.fn));
-    const auto at_vertex = [](const CVertexO* v) { return Vec2(v->cT().U(), v->cT().V()); };
-    for (const auto& f : m.face)
-        if (!f.IsD())
-            uv.push_back({at_vertex(f.cV(0)), at_vertex(f.cV(1)), at_vertex(f.cV(2))});
-    return uv;
-}
-
-std::vector<FaceUv> read_uv(const MeshModel& model) {
-    if (model.hasDataMask(MeshModel::MM_WEDGTEXCOORD)) {
-        std::vector<FaceUv> uv = devseg::read_wedge_uv(model.cm);
-        spread_pages(model.cm, uv);
-        return uv;
-    }
-    if (model.hasDataMask(MeshModel::MM_VERTTEXCOORD))
-        return read_vertex_uv(model.cm);
-    throw devseg::InvalidMesh("expected a mesh with texture coordinates, from which the pattern "
-                              "pieces are read, found none; run 'Charts: Flatten' first");
-}
-
-devseg::CornerUv gated_uv(const devseg::GatedMesh& gated, const std::vector<FaceUv>& host_uv) {
-    devseg::CornerUv uv;
-    uv.reserve(3 * gated.source_face.size());
-    for (devseg::Index f = 0; f < gated.mesh.face_count(); ++f)
-        for (devseg::Index k = 0; k < 3; ++k)
-            uv.push_back(host_uv[devseg::at(gated.source_face[devseg::at(f)])]
-                                [devseg::at(gated.source_corner(f, k))]);
-    return uv;
-}
-
-// Errors name the faces of the gated mesh: the host knows them by other numbers.
-devseg::Pattern make_pattern(const devseg::GatedMesh& gated, const devseg::CornerUv& uv,
-                             const devseg::PatternOptions& options, devseg::Progress& progress) {
-    try {
-        return devseg::make_pattern(gated.mesh, uv, options, progress);
-    } catch (const devseg::InvalidMesh& error) {
-        std::vector<devseg::Index> faces;
-        for (const devseg::Index f : error.faces)
-            faces.push_back(gated.source_face[devseg::at(f)]);
-        throw devseg::InvalidMesh(error.what(), std::move(faces));
-    }
-}
-
-devseg::PatternOptions read_options(const RichParameterList& parameters) {
-    devseg::PatternOptions options;
-    options.mm_per_unit = static_cast<double>(parameters.getFloat("mm_per_unit"));
-    options.height_mm = static_cast<double>(parameters.getFloat("height_mm"));
-    options.labels = parameters.getBool("labels");
-    return options;
-}
-
-} // namespace
+#include "host/host_errors.h"
+#include "host/pattern_export.h"
+#include "host/rich_parameters.h"
 
 QString PatternIOPlugin::pluginName() const {
     return "IOPattern";
@@ -122,7 +17,7 @@ std::list<FileFormat> PatternIOPlugin::importFormats() const {
 }
 
 std::list<FileFormat> PatternIOPlugin::exportFormats() const {
-    return {FileFormat("SVG pattern", QString("SVG"))};
+    return {FileFormat("SVG pattern", QString("SVG")), FileFormat("PDF pattern", QString("PDF"))};
 }
 
 // Nothing to choose: a pattern has no colours, normals or qualities.
@@ -133,20 +28,7 @@ void PatternIOPlugin::exportMaskCapability(const QString&, int& capability,
 }
 
 RichParameterList PatternIOPlugin::initSaveParameter(const QString&, const MeshModel&) const {
-    const devseg::PatternOptions defaults;
-    RichParameterList list;
-    list.addParam(RichFloat(
-        "mm_per_unit", static_cast<Scalarm>(defaults.mm_per_unit), "Millimetres per unit",
-        "Size on paper of one unit of the model, in millimetres: 1 for a model in millimetres, "
-        "1000 for one in metres. Above 0."));
-    list.addParam(RichFloat(
-        "height_mm", static_cast<Scalarm>(defaults.height_mm), "Height of the finished model (mm)",
-        "Scales the pattern so that the finished model is this high, measured along the y axis, "
-        "in millimetres. 0 = use the millimetres per unit."));
-    list.addParam(RichBool("labels", defaults.labels, "Piece names",
-                           "Write its name (P01, P02, ...) into each piece, on a layer of its "
-                           "own that a cutter can leave out."));
-    return list;
+    return devseg::pattern_parameters();
 }
 
 void PatternIOPlugin::open(const QString&, const QString&, MeshModel&, int&,
@@ -156,30 +38,14 @@ void PatternIOPlugin::open(const QString&, const QString&, MeshModel&, int&,
 
 void PatternIOPlugin::save(const QString& format, const QString& file_name, MeshModel& model, int,
                            const RichParameterList& parameters, vcg::CallBackPos* callback) {
-    if (format.compare("svg", Qt::CaseInsensitive) != 0)
+    if (format.compare("svg", Qt::CaseInsensitive) != 0 &&
+        format.compare("pdf", Qt::CaseInsensitive) != 0)
         wrongSaveFormat(format);
-    devseg::Progress progress([callback](double fraction, const char* phase) {
-        return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
-    });
     try {
-        const devseg::PatternOptions options = read_options(parameters);
-        const std::vector<FaceUv> host_uv = read_uv(model);
-        const devseg::GatedMesh gated = devseg::gate_mesh(devseg::read_raw_mesh(model.cm));
-        const devseg::Pattern pattern =
-            make_pattern(gated, gated_uv(gated, host_uv), options, progress);
-        devseg::save_svg(file_name.toStdString(), devseg::draw_pattern(pattern, options));
-        for (const std::string& note : gated.notes)
-            log(note);
-        for (const std::string& note : pattern.notes)
-            reportWarning(text(note));
-    } catch (const devseg::InvalidMesh& error) {
-        if (!error.faces.empty())
-            devseg::select_faces(model.cm, error.faces);
-        throw MLException(text(error.what()));
-    } catch (const std::bad_alloc&) {
-        throw MLException("expected enough memory for this mesh, found too little; "
-                          "use a smaller mesh or close other programs");
-    } catch (const std::exception& error) {
-        throw MLException(text(error.what()));
+        for (const std::string& note :
+             devseg::save_pattern(file_name.toStdString(), model, parameters, callback))
+            reportWarning(devseg::to_qstring(note));
+    } catch (const devseg::HostError& error) {
+        throw MLException(devseg::to_qstring(error.what()));
     }
 }

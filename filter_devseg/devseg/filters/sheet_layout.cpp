@@ -1,0 +1,36 @@
+#include "devseg/filters/sheet_layout.h"
+
+#include <string>
+
+#include "devseg/flatten/snap.h"
+
+namespace devseg {
+
+SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
+                    double scale_to_side, Progress& progress) {
+    std::vector<PackItem> items;
+    for (const FlatChart& chart : charts)
+        items.push_back({&chart.surface.corners, &chart.uv});
+    const PackResult packed = pack_charts(items, options, progress);
+    const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
+    SheetLayout layout;
+    layout.uv.assign(mesh.twin.size(), Vec2::Zero());
+    for (std::size_t c = 0; c < charts.size(); ++c) {
+        FlatChart& chart = charts[c];
+        for (Vec2& p : chart.uv)
+            p = scale * packed.placements[c](p);
+        layout.unsettled += snap_to_single(chart.surface.corners, chart.uv);
+        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+            layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+    }
+    return layout;
+}
+
+void note_unsettled(const SheetLayout& layout, FilterOutput& output) {
+    if (layout.unsettled > 0)
+        output.notes.push_back(std::to_string(layout.unsettled) +
+                               " faces are too thin for 32-bit texture coordinates and lost their "
+                               "area in the plane");
+}
+
+} // namespace devseg

@@ -1,0 +1,25 @@
+// Flat charts → texture coordinates on one sheet, as hosts store them.
+#pragma once
+
+#include <vector>
+
+#include "devseg/filters/filter.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/pack/pack.h"
+
+namespace devseg {
+
+struct SheetLayout {
+    CornerUv uv;
+    Index unsettled = 0; // faces that rounding flattened
+};
+
+/// Moves flat charts to their places, rounds them to 32 bit, and spreads them to corners. The sheet
+/// has the side `scale_to_side`, or for 0 the size of the model, in model units.
+SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
+                    double scale_to_side, Progress& progress);
+
+/// Tells the user about faces that rounding flattened.
+void note_unsettled(const SheetLayout& layout, FilterOutput& output);
+
+} // namespace devseg

@@ -1,0 +1,23 @@
+// Outlines as smooth curves.
+//
+// References
+//   P. J. Schneider: An Algorithm for Automatically Fitting Digitized Curves. In: Graphics Gems,
+//   Academic Press, 1990: least squares, tangents kept, the worst place becomes a joint.
+#pragma once
+
+#include <vector>
+
+#include "devseg/pattern/seams.h"
+
+namespace devseg {
+
+/// Fills PiecePath::curves of all outlines: between the ends of chains, cubic Bézier curves with
+/// common tangents at their joints, within `tolerance` mm of the outline, and lines where it is
+/// straight. All joints are points of the outline. A tolerance of 0 gives a line for each edge.
+void fit_curves(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                double tolerance);
+
+/// The curves along a polyline that has at least two different points.
+std::vector<OutlineCurve> fit_polyline(const std::vector<Vec2>& points, double tolerance);
+
+} // namespace devseg

@@ -1,0 +1,27 @@
+// Where the pieces lie on the sheet.
+#pragma once
+
+#include <vector>
+
+#include "devseg/pattern/pattern.h"
+
+namespace devseg {
+
+/// Moves the piece and all that is drawn in it.
+void move_piece(PatternPiece& piece, const Vec2& offset);
+
+Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces);
+
+/// Whether the insides of the segments a b and c d cross; exact.
+bool edges_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// Whether a common point lies inside both pieces. Pieces may touch, and lie in each other's holes.
+bool overlap(const PatternPiece& a, const PatternPiece& b);
+
+/// The pieces that overlap one before them.
+std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pieces);
+
+/// Moves these pieces to rows above all others. The pieces' boxes must be set.
+void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& moved);
+
+} // namespace devseg

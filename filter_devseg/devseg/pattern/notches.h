@@ -1,0 +1,13 @@
+// Notches: marks on both sides of a seam that meet when it is sewn.
+#pragma once
+
+#include "devseg/pattern/pattern.h"
+
+namespace devseg {
+
+/// Places the notches of every seam at the same shares of the length on both sides, about
+/// `spacing_mm` apart and away from the seam's ends, where all corners are. Their distances grow
+/// along the seam: it cannot be sewn the other way round without notice. 0 = no notches.
+void set_notches(Pattern& pattern, double spacing_mm);
+
+} // namespace devseg

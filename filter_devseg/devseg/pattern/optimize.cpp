@@ -1,0 +1,253 @@
+#include "devseg/pattern/optimize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "devseg/errors.h"
+#include "devseg/flatten/distortion.h"
+#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/overlaps.h"
+#include "devseg/metrics/overlap.h"
+#include "devseg/segment/conic_proxy.h"
+
+namespace devseg {
+
+namespace {
+
+// What joining may add to the symmetric Dirichlet energy of the worse part.
+constexpr double energy_increase = 0.02;
+
+// Both sides of every seam agree to this share where a flattening kept the lengths.
+constexpr double same_length = 1e-3;
+
+// The map of a chart at the scale of the layout.
+FlatChart read_chart(const CornerUv& uv, double scale, ChartSurface surface) {
+    FlatChart chart;
+    chart.uv.resize(surface.vertex.size());
+    double area = 0.0;
+    for (const Index f : surface.face)
+        area += uv_area(uv, f);
+    for (Index h = 0; h < 3 * surface.face_count(); ++h) {
+        const Vec2 p = scale * uv[at(surface.mesh_half_edge(h))];
+        chart.uv[at(surface.origin(h))] = area < 0.0 ? Vec2(-p.x(), p.y()) : p;
+    }
+    chart.surface = std::move(surface);
+    return chart;
+}
+
+CornerUv spread(const Mesh& mesh, const std::vector<FlatChart>& flat) {
+    CornerUv uv(mesh.twin.size(), Vec2::Zero());
+    for (const FlatChart& chart : flat)
+        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+            uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+    return uv;
+}
+
+// The charts of the layout's seams, with the positions that their corners have.
+void rebuild(const Mesh& mesh, const CornerUv& uv, const std::vector<std::uint8_t>& seam,
+             FlatLayout& layout) {
+    layout.charts = make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, true);
+    layout.flat.clear();
+    for (ChartSurface& surface : extract_charts(mesh, layout.charts))
+        layout.flat.push_back(read_chart(uv, 1.0, std::move(surface)));
+}
+
+bool keeps_lengths(const Mesh& mesh, const FlatLayout& layout, const CornerUv& uv) {
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (layout.charts.seam[at(h)] == 0)
+            continue;
+        const double length = mesh.edge_length(h);
+        if (std::abs((uv[at(Mesh::next(h))] - uv[at(h)]).norm() - length) > same_length * length)
+            return false;
+    }
+    return true;
+}
+
+double energy_of(const Mesh& mesh, const FlatChart& chart) {
+    if (!chart.surface.is_disk())
+        return 1.0;
+    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    Positions x(static_cast<Eigen::Index>(chart.uv.size()), 2);
+    for (std::size_t v = 0; v < chart.uv.size(); ++v)
+        x.row(static_cast<Eigen::Index>(v)) = chart.uv[v].transpose();
+    return distortion(problem, x);
+}
+
+// The surface as a mesh of its own, cut open along its seams.
+Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
+    Mesh part;
+    for (const Index v : surface.vertex)
+        part.points.push_back(mesh.points[at(v)]);
+    part.faces = surface.corners;
+    part.twin = surface.twin;
+    part.unit_length = mesh.unit_length;
+    compute_face_geometry(part);
+    return part;
+}
+
+// A map of the surface without flips and overlaps, if the method finds one without cuts.
+bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart) {
+    const Mesh part = mesh_of(mesh, chart.surface);
+    const ChartMap one = make_chart_map(part, std::vector<Index>(part.faces.size(), 0), {}, false);
+    Progress quiet;
+    const FlattenResult result = flatten_charts(part, one, method, quiet);
+    if (result.flat.size() != 1 || result.cuts > 0 || result.flat.front().mended)
+        return false;
+    const FlatChart& flat = result.flat.front();
+    chart.uv.resize(chart.surface.vertex.size());
+    for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+        chart.uv[at(chart.surface.origin(flat.surface.mesh_half_edge(h)))] =
+            flat.uv[at(flat.surface.origin(h))];
+    return true;
+}
+
+double area_of(const Mesh& mesh, const ChartSurface& surface) {
+    double area = 0.0;
+    for (const Index f : surface.face)
+        area += mesh.face_areas[at(f)];
+    return area;
+}
+
+// Mean fitting error of the small chart's faces with the proxy of both charts together.
+double joint_error(const Mesh& mesh, const ChartSurface& small, const ChartSurface& neighbour) {
+    NormalMoments moments;
+    for (const ChartSurface* surface : {&small, &neighbour})
+        for (const Index f : surface->face)
+            moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+    const ConicProxy proxy = fit_conic(moments);
+    double error = 0.0;
+    for (const Index f : small.face)
+        error += mesh.face_areas[at(f)] * proxy.fitting_error(mesh.face_normals[at(f)]);
+    return error / area_of(mesh, small);
+}
+
+// While charts are joined: labels of faces and the charts that are left, by label.
+class Joiner {
+public:
+    Joiner(const Mesh& mesh, const OptimizeOptions& options, FlatLayout& layout)
+        : mesh_(mesh), options_(options), layout_(layout), label_(layout.charts.chart) {
+        method_ = keeps_lengths(mesh, layout, spread(mesh, layout.flat))
+                      ? FlattenMethod::lpfb
+                      : FlattenMethod::symmetric_dirichlet;
+    }
+
+    bool is_small(std::size_t c) const {
+        return !layout_.flat[c].surface.face.empty() &&
+               area_of(mesh_, layout_.flat[c].surface) <
+                   options_.max_gusset_area * mesh_.total_area;
+    }
+
+    // Joins the chart to the first neighbour that takes it.
+    bool join(std::size_t c) {
+        const FlatChart& small = layout_.flat[c];
+        std::map<Index, double> border; // length, by neighbour
+        for (const Index f : small.surface.face)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin >= 0 && label_[at(twin / 3)] != static_cast<Index>(c))
+                    border[label_[at(twin / 3)]] += mesh_.edge_length(h);
+            }
+        std::vector<std::pair<Index, double>> order(border.begin(), border.end());
+        std::stable_sort(order.begin(), order.end(),
+                         [](const auto& a, const auto& b) { return a.second > b.second; });
+        return std::any_of(order.begin(), order.end(),
+                           [&](const auto& neighbour) { return join(c, at(neighbour.first)); });
+    }
+
+private:
+    bool join(std::size_t c, std::size_t n) {
+        const FlatChart& small = layout_.flat[c];
+        const FlatChart& neighbour = layout_.flat[n];
+        if (joint_error(mesh_, small.surface, neighbour.surface) > options_.merge_threshold)
+            return false;
+        std::vector<std::uint8_t> seam = layout_.charts.seam;
+        for (const Index f : small.surface.face)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin >= 0 && label_[at(twin / 3)] == static_cast<Index>(n))
+                    seam[at(h)] = seam[at(twin)] = 0;
+            }
+        std::vector<Index> faces;
+        std::merge(small.surface.face.begin(), small.surface.face.end(),
+                   neighbour.surface.face.begin(), neighbour.surface.face.end(),
+                   std::back_inserter(faces));
+        FlatChart both;
+        both.surface = extract_surface(mesh_, std::move(faces), seam);
+        const double limit =
+            std::max(energy_of(mesh_, small), energy_of(mesh_, neighbour)) + energy_increase;
+        if (!both.surface.is_disk() || !flatten_whole(mesh_, method_, both) ||
+            energy_of(mesh_, both) > limit)
+            return false;
+        for (const Index f : small.surface.face)
+            label_[at(f)] = static_cast<Index>(n);
+        layout_.charts.seam = std::move(seam);
+        layout_.flat[n] = std::move(both);
+        layout_.flat[c] = FlatChart{};
+        ++layout_.reattached;
+        return true;
+    }
+
+    const Mesh& mesh_;
+    const OptimizeOptions& options_;
+    FlatLayout& layout_;
+    std::vector<Index> label_; // #F
+    FlattenMethod method_ = FlattenMethod::symmetric_dirichlet;
+};
+
+} // namespace
+
+FlatLayout read_layout(const Mesh& mesh, const CornerUv& uv) {
+    FlatLayout layout;
+    layout.charts = charts_from_uv(mesh, uv);
+    const double scale = layout_scale(mesh, layout.charts, uv);
+    if (!(scale > 0.0) || !std::isfinite(scale))
+        throw InvalidMesh("expected texture coordinates that cover an area, found none; run "
+                          "'Charts: Flatten' first");
+    for (ChartSurface& surface : extract_charts(mesh, layout.charts))
+        layout.flat.push_back(read_chart(uv, scale, std::move(surface)));
+    return layout;
+}
+
+void remove_overlaps(const Mesh& mesh, FlatLayout& layout, Progress& progress) {
+    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+    // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
+    for (bool again = true; again;) {
+        again = false;
+        std::vector<std::uint8_t> seam = layout.charts.seam;
+        for (const FlatChart& chart : layout.flat) {
+            progress.check();
+            const auto pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
+            if (pairs.empty())
+                continue;
+            for (const Index local : separating_path(mesh, chart.surface, pairs)) {
+                const Index h = chart.surface.mesh_half_edge(local);
+                seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
+            }
+            ++layout.overlap_cuts;
+            again = true;
+        }
+        if (again)
+            rebuild(mesh, spread(mesh, layout.flat), seam, layout);
+    }
+}
+
+void reattach_gussets(const Mesh& mesh, const OptimizeOptions& options, FlatLayout& layout,
+                      Progress& progress) {
+    std::vector<std::size_t> order(layout.flat.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return area_of(mesh, layout.flat[a].surface) < area_of(mesh, layout.flat[b].surface);
+    });
+    Joiner joiner(mesh, options, layout);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(order.size()));
+        if (joiner.is_small(order[i]))
+            joiner.join(order[i]);
+    }
+    if (layout.reattached > 0)
+        rebuild(mesh, spread(mesh, layout.flat), layout.charts.seam, layout);
+}
+
+} // namespace devseg

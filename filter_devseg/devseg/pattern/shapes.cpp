@@ -1,0 +1,263 @@
+#include "devseg/pattern/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "devseg/pack/outline.h"
+#include "devseg/pattern/outlines.h"
+
+namespace devseg {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+// Places along an outline that are compared at first; afterwards each is brought to the nearest
+// point of the other outline.
+constexpr std::size_t places = 96;
+constexpr int rounds = 12;
+
+// Two pieces of one shape differ by less than this share of their size, whatever the tolerance.
+constexpr double size_share = 0.01;
+
+// Outlines of one shape differ in length by less than this share, however ragged they are.
+constexpr double raggedness = 0.1;
+
+// The grain line leaves this share of its length free at each end.
+constexpr double grain_margin = 0.12;
+
+Complex number(const Vec2& p) {
+    return {p.x(), p.y()};
+}
+
+Vec2 point(const Complex& z) {
+    return {z.real(), z.imag()};
+}
+
+std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t count) {
+    const double step = perimeter(outline) / static_cast<double>(count);
+    std::vector<Vec2> result;
+    double arc = 0.0;
+    for (std::size_t i = 0; i < outline.size() && result.size() < count; ++i) {
+        const Vec2 along = outline[(i + 1) % outline.size()] - outline[i];
+        const double length = along.norm();
+        while (result.size() < count && static_cast<double>(result.size()) * step < arc + length)
+            result.push_back(outline[i] +
+                             (static_cast<double>(result.size()) * step - arc) / length * along);
+        arc += length;
+    }
+    result.resize(count, outline.front());
+    return result;
+}
+
+Vec2 nearest_on(const std::vector<Vec2>& outline, const Vec2& p) {
+    Vec2 best = outline.front();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+        const Vec2 along = outline[i] - outline[j];
+        const double length = along.squaredNorm();
+        const double t =
+            length > 0.0 ? std::clamp((p - outline[j]).dot(along) / length, 0.0, 1.0) : 0.0;
+        const Vec2 q = outline[j] + t * along;
+        if ((p - q).squaredNorm() < least) {
+            least = (p - q).squaredNorm();
+            best = q;
+        }
+    }
+    return best;
+}
+
+// p → turn · p + shift, in complex numbers.
+struct Motion {
+    Complex turn{1.0, 0.0};
+    Complex shift{0.0, 0.0};
+
+    Vec2 operator()(const Vec2& p) const { return point(turn * number(p) + shift); }
+};
+
+// The rigid motion that brings from[i] nearest to to[(i + offset) mod n], in the mean square.
+// `error`: what is left.
+Motion fit_motion(const std::vector<Vec2>& from, const std::vector<Vec2>& to, std::size_t offset,
+                  double& error) {
+    const std::size_t n = from.size();
+    Complex mean_from{0.0, 0.0};
+    Complex mean_to{0.0, 0.0};
+    for (std::size_t i = 0; i < n; ++i) {
+        mean_from += number(from[i]) / static_cast<double>(n);
+        mean_to += number(to[i]) / static_cast<double>(n);
+    }
+    Complex product{0.0, 0.0};
+    double spread = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Complex a = number(from[i]) - mean_from;
+        const Complex b = number(to[(i + offset) % n]) - mean_to;
+        product += std::conj(a) * b;
+        spread += std::norm(a) + std::norm(b);
+    }
+    Motion motion;
+    if (std::abs(product) > 0.0)
+        motion.turn = product / std::abs(product);
+    motion.shift = mean_to - motion.turn * mean_from;
+    error = spread - 2.0 * std::abs(product);
+    return motion;
+}
+
+// Outlines around the piece's own origin, as they are or mirrored, so that they turn the same way.
+std::vector<std::vector<Vec2>> outlines_of(const PatternPiece& piece, bool mirrored) {
+    std::vector<std::vector<Vec2>> outlines;
+    for (Index l = 0; l < piece.path_count(); ++l) {
+        outlines.push_back(piece.path(l).points);
+        for (Vec2& p : outlines.back()) {
+            p -= piece.box.center();
+            if (mirrored)
+                p.x() = -p.x();
+        }
+        if (mirrored)
+            std::reverse(outlines.back().begin(), outlines.back().end());
+    }
+    return outlines;
+}
+
+// Whether all of `a`, moved, lies on an outline of `b`.
+bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
+             const Motion& motion, double tolerance) {
+    for (const std::vector<Vec2>& outline : a)
+        for (const Vec2& p : outline) {
+            const Vec2 moved = motion(p);
+            bool near = false;
+            for (const std::vector<Vec2>& other : b)
+                near = near || (nearest_on(other, moved) - moved).norm() <= tolerance;
+            if (!near)
+                return false;
+        }
+    return true;
+}
+
+// Brings the points to the nearest ones of the other outline, again and again.
+bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
+               const std::vector<Vec2>& even, Motion motion, double tolerance) {
+    for (int round = 0; round < rounds; ++round) {
+        std::vector<Vec2> nearest;
+        for (const Vec2& p : even)
+            nearest.push_back(nearest_on(b.front(), motion(p)));
+        double error = 0.0;
+        motion = fit_motion(even, nearest, 0, error);
+    }
+    const Motion back{std::conj(motion.turn), -std::conj(motion.turn) * motion.shift};
+    return lies_on(a, b, motion, tolerance) && lies_on(b, a, back, tolerance);
+}
+
+bool same_shape(const PatternPiece& piece, const PatternPiece& model, bool mirrored,
+                double tolerance) {
+    const std::vector<std::vector<Vec2>> a = outlines_of(piece, mirrored);
+    const std::vector<std::vector<Vec2>> b = outlines_of(model, false);
+    const std::vector<Vec2> from = even_points(a.front(), places);
+    const std::vector<Vec2> to = even_points(b.front(), places);
+    Motion best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t offset = 0; offset < places; ++offset) {
+        double error = 0.0;
+        const Motion motion = fit_motion(from, to, offset, error);
+        if (error < least) {
+            least = error;
+            best = motion;
+        }
+    }
+    return fits_from(a, b, from, best, tolerance);
+}
+
+// What two pieces of one shape must agree on: cheap to compare.
+bool may_be_same(const PatternPiece& a, const PatternPiece& b, double tolerance) {
+    const double around_a = perimeter(a.outer.points);
+    const double around_b = perimeter(b.outer.points);
+    const auto near = [](double x, double y, double distance) {
+        return std::abs(x - y) <= distance;
+    };
+    // An outline that moves by d changes the area by d times its length at most.
+    return a.holes.size() == b.holes.size() &&
+           near(a.area, b.area, tolerance * std::max(around_a, around_b)) &&
+           near(around_a, around_b, raggedness * around_a);
+}
+
+// The stretch of the line through `p` around p that lies inside the piece.
+std::array<Vec2, 2> chord_through(const PatternPiece& piece, const Vec2& p, const Vec2& along) {
+    double back = -std::numeric_limits<double>::infinity();
+    double ahead = std::numeric_limits<double>::infinity();
+    const auto side = [&](const Vec2& q) {
+        return along.x() * (q - p).y() - along.y() * (q - p).x();
+    };
+    for (Index l = 0; l < piece.path_count(); ++l) {
+        const std::vector<Vec2>& points = piece.path(l).points;
+        for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
+            const double a = side(points[j]);
+            const double b = side(points[i]);
+            if ((a > 0.0) == (b > 0.0))
+                continue;
+            const double t = (points[j] + a / (a - b) * (points[i] - points[j]) - p).dot(along);
+            (t < 0.0 ? back : ahead) = t < 0.0 ? std::max(back, t) : std::min(ahead, t);
+        }
+    }
+    if (!std::isfinite(back) || !std::isfinite(ahead))
+        return {p, p};
+    const double margin = grain_margin * (ahead - back);
+    return {p + (back + margin) * along, p + (ahead - margin) * along};
+}
+
+} // namespace
+
+PieceBox least_box(const std::vector<Vec2>& points) {
+    std::vector<Triangle> fan;
+    for (std::size_t i = 2; i < points.size(); ++i)
+        fan.push_back({0, static_cast<Index>(i) - 1, static_cast<Index>(i)});
+    const double angle = best_box_angle(find_outline(fan, points));
+    const Vec2 along(std::cos(angle), -std::sin(angle));
+    const Vec2 across(-along.y(), along.x());
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : points)
+        box.extend(Vec2(along.dot(p), across.dot(p)));
+    const Vec2 size = box.sizes();
+    PieceBox result{size.maxCoeff(), size.minCoeff(), size.x() >= size.y() ? along : across};
+    if (result.direction.y() < 0.0 || (result.direction.y() == 0.0 && result.direction.x() < 0.0))
+        result.direction = -result.direction;
+    return result;
+}
+
+void set_sizes(PatternPiece& piece, GrainDirection grain) {
+    const PieceBox box = least_box(piece.outer.points);
+    piece.long_side = box.long_side;
+    piece.short_side = box.short_side;
+    piece.grain =
+        chord_through(piece, piece.label_position,
+                      grain == GrainDirection::longest ? box.direction : Vec2(Vec2::UnitY()));
+}
+
+void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm) {
+    std::vector<std::size_t> models;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        PatternPiece& piece = pieces[i];
+        piece.model = static_cast<Index>(i);
+        piece.mirrored = false;
+        piece.quantity = 1;
+        piece.mirrored_quantity = 0;
+        const double tolerance = std::min(tolerance_mm, size_share * std::sqrt(piece.area));
+        for (const std::size_t m : models) {
+            PatternPiece& model = pieces[m];
+            if (!may_be_same(piece, model, tolerance))
+                continue;
+            const bool straight = same_shape(piece, model, false, tolerance);
+            if (!straight && !same_shape(piece, model, true, tolerance))
+                continue;
+            piece.model = static_cast<Index>(m);
+            piece.mirrored = !straight;
+            piece.quantity = 0;
+            ++(straight ? model.quantity : model.mirrored_quantity);
+            break;
+        }
+        if (piece.quantity > 0)
+            models.push_back(i);
+    }
+}
+
+} // namespace devseg

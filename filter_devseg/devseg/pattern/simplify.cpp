@@ -1,0 +1,312 @@
+#include "devseg/pattern/simplify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <tuple>
+
+#include "devseg/pattern/layout.h"
+
+namespace devseg {
+
+namespace {
+
+// A vertex that is left out may move the outline by this share of the outline's size (the square
+// root of its area) at most: the areas of small pieces stay true to better than half a percent.
+constexpr double size_share = 1e-3;
+
+// Cuts that were made to split a piece are straightened: along them, what one part loses the other
+// gains, within this share of their size.
+constexpr double cut_share = 0.05;
+
+// Bends that are smaller than half an edge of the mesh are its staircase, those smaller than this
+// share of the outline's size belong to no corner.
+constexpr double staircase = 0.5;
+constexpr double no_corner = 0.01;
+// A corner turns by this share of its angle within so many of these sizes on both sides of it; a
+// curve turns by less.
+constexpr double corner_share = 0.6;
+constexpr double corner_reach = 2.0;
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 along = b - a;
+    const double length = along.squaredNorm();
+    const double t = length > 0.0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
+    return (p - a - t * along).norm();
+}
+
+double triangle_area(const Vec2& a, const Vec2& b, const Vec2& c) {
+    const Vec2 p = b - a;
+    const Vec2 q = c - a;
+    return 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
+}
+
+// The polylines while their vertices collapse.
+class Collapse {
+public:
+    Collapse(const std::vector<std::vector<Vec2>>& sides, double tolerance)
+        : sides_(sides), tolerance_(tolerance), size_(sides.front().size()), left_(size_),
+          before_(size_), after_(size_), stamp_(size_, 0), inherited_(size_, 0.0), gone_(size_, 0) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            before_[i] = i - 1;
+            after_[i] = i + 1;
+        }
+        closed_ = sides.front().front() == sides.front().back();
+    }
+
+    std::vector<Index> run() {
+        for (std::size_t i = 1; i + 1 < size_; ++i)
+            push(i);
+        const std::size_t least = closed_ ? 4 : 2;
+        while (!queue_.empty() && left_ > least) {
+            const auto [cost, i, stamp] = queue_.top();
+            queue_.pop();
+            if (gone_[i] != 0 || stamp != stamp_[i] || !may_go(i))
+                continue;
+            gone_[i] = 1;
+            --left_;
+            const std::size_t a = before_[i];
+            const std::size_t b = after_[i];
+            after_[a] = b;
+            before_[b] = a;
+            for (const std::size_t j : {a, b}) {
+                inherited_[j] += 0.5 * cost;
+                if (j > 0 && j + 1 < size_)
+                    push(j);
+            }
+        }
+        std::vector<Index> kept;
+        for (std::size_t i = 0; i < size_; ++i)
+            if (gone_[i] == 0)
+                kept.push_back(static_cast<Index>(i));
+        return kept;
+    }
+
+private:
+    void push(std::size_t i) {
+        double cost = inherited_[i];
+        for (const std::vector<Vec2>& points : sides_)
+            cost += triangle_area(points[before_[i]], points[i], points[after_[i]]);
+        queue_.emplace(cost, i, ++stamp_[i]);
+    }
+
+    bool may_go(std::size_t i) const {
+        for (const std::vector<Vec2>& points : sides_)
+            for (std::size_t k = before_[i] + 1; k < after_[i]; ++k)
+                if (distance_to_segment(points[k], points[before_[i]], points[after_[i]]) >
+                    tolerance_)
+                    return false;
+        return true;
+    }
+
+    using Entry = std::tuple<double, std::size_t, int>; // cost, vertex, stamp
+
+    const std::vector<std::vector<Vec2>>& sides_;
+    double tolerance_;
+    std::size_t size_;
+    std::size_t left_;
+    bool closed_ = false;
+    std::vector<std::size_t> before_;
+    std::vector<std::size_t> after_;
+    std::vector<int> stamp_; // of the vertex's entry that counts
+    std::vector<double> inherited_;
+    std::vector<std::uint8_t> gone_;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
+};
+
+std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
+                                         const Chain& chain) {
+    std::vector<std::vector<Vec2>> sides(at(chain.side_count));
+    for (std::size_t s = 0; s < sides.size(); ++s)
+        for (Index k = 0; k <= chain.count(); ++k)
+            sides[s].push_back(side_point(pieces, chain.sides[s], k));
+    return sides;
+}
+
+// Size of the smaller outline that the chain lies on, mm.
+double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
+    double area = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+        const SeamSide& side = chain.sides[s];
+        area = std::min(area, std::abs(pieces[at(side.piece)].path(side.path).area));
+    }
+    return std::sqrt(area);
+}
+
+double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
+    const Vec2 p = b - a;
+    const Vec2 q = c - b;
+    return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
+}
+
+// The point `reach` along the polyline from point i, or its end; backwards for step −1. Closed ones
+// go on behind their end.
+Vec2 walk(const std::vector<Vec2>& points, std::size_t i, double reach, int step) {
+    const Index last = static_cast<Index>(points.size()) - 1;
+    const bool closed = points.front() == points.back();
+    Index k = static_cast<Index>(i);
+    Vec2 here = points[i];
+    for (Index steps = 0; steps < last; ++steps) {
+        Index next = k + step;
+        if (next < 0 || next > last) {
+            if (!closed)
+                break;
+            next = next < 0 ? last - 1 : 1;
+        }
+        const double length = (points[at(next)] - here).norm();
+        if (length >= reach)
+            return here + reach / length * (points[at(next)] - here);
+        reach -= length;
+        here = points[at(next)];
+        k = next;
+    }
+    return here;
+}
+
+// Points of the chain where a side has a corner, its ends not among them (0 on closed chains).
+std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Chain& chain,
+                              double corner_angle) {
+    const std::vector<std::vector<Vec2>> sides = points_of(pieces, chain);
+    double length = 0.0;
+    for (std::size_t k = 1; k < sides.front().size(); ++k)
+        length += (sides.front()[k] - sides.front()[k - 1]).norm();
+    const double tolerance = std::max(staircase * length / static_cast<double>(chain.count()),
+                                      no_corner * size_of(pieces, chain));
+    const std::vector<Index> coarse = collapse_vertices(sides, tolerance);
+    const double reach = corner_reach * tolerance;
+    std::vector<Index> corners;
+    const std::size_t last = coarse.size() - 1;
+    for (std::size_t i = chain.is_closed ? 0 : 1; i < last; ++i)
+        for (const std::vector<Vec2>& points : sides) {
+            const std::size_t k = at(coarse[i]);
+            if (turn(points[at(coarse[i > 0 ? i - 1 : last - 1])], points[k],
+                     points[at(coarse[i + 1])]) > corner_angle &&
+                turn(walk(points, k, reach, -1), points[k], walk(points, k, reach, 1)) >
+                    corner_share * corner_angle) {
+                corners.push_back(coarse[i]);
+                break;
+            }
+        }
+    return corners;
+}
+
+// Edges of all outlines of a piece, from the left to the right.
+struct OutlineSegment {
+    Vec2 from;
+    Vec2 to;
+    double left;
+    double right;
+};
+
+std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
+    std::vector<OutlineSegment> segments;
+    for (Index l = 0; l < piece.path_count(); ++l) {
+        const std::vector<Vec2>& points = piece.path(l).points;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Vec2& a = points[i];
+            const Vec2& b = points[(i + 1) % points.size()];
+            segments.push_back({a, b, std::min(a.x(), b.x()), std::max(a.x(), b.x())});
+        }
+    }
+    std::stable_sort(
+        segments.begin(), segments.end(),
+        [](const OutlineSegment& a, const OutlineSegment& b) { return a.left < b.left; });
+    return segments;
+}
+
+} // namespace
+
+std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides,
+                                     double tolerance) {
+    return Collapse(sides, tolerance).run();
+}
+
+std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
+                                  const std::vector<Chain>& chains, double corner_angle) {
+    std::vector<Chain> result;
+    for (const Chain& chain : chains) {
+        std::vector<Index> ends;
+        if (!chain.is_cut)
+            ends = corners_of(pieces, chain, corner_angle);
+        if (ends.empty()) {
+            result.push_back(chain);
+            continue;
+        }
+        if (chain.is_closed) {
+            ends.push_back(ends.front() + chain.count());
+        } else {
+            ends.insert(ends.begin(), 0);
+            ends.push_back(chain.count());
+        }
+        for (std::size_t i = 1; i < ends.size(); ++i)
+            result.push_back(part_of(pieces, chain, ends[i - 1], ends[i]));
+    }
+    return result;
+}
+
+void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  double corner_angle) {
+    for (PatternPiece& piece : pieces)
+        for (Index l = 0; l < piece.path_count(); ++l)
+            piece.path(l).corner.assign(piece.path(l).points.size(), 0);
+    // Every end of a chain is the start of an edge of one: its own first, or the next one's.
+    for (const Chain& chain : chains)
+        for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+            const SeamSide& side = chain.sides[s];
+            PiecePath& path = pieces[at(side.piece)].path(side.path);
+            const std::size_t size = path.points.size();
+            const std::size_t i = at(side.first);
+            if (!chain.is_closed && side.count > 0 &&
+                turn(path.points[(i + size - 1) % size], path.points[i],
+                     path.points[(i + 1) % size]) > corner_angle)
+                path.corner[i] = 1;
+        }
+}
+
+void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
+                       double tolerance) {
+    std::vector<std::vector<Index>> kept;
+    for (const Chain& chain : chains)
+        kept.push_back(collapse_vertices(points_of(pieces, chain),
+                                         std::min(tolerance, size_share * size_of(pieces, chain))));
+    // Every round keeps all vertices of further pieces: this ends.
+    std::vector<std::uint8_t> whole(pieces.size(), 0);
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        whole[p] = crosses_itself(pieces[p]) ? 1 : 0; // as it is, it is no better than simplified
+    for (bool again = true; again;) {
+        std::vector<PatternPiece> simple = pieces;
+        std::vector<Chain> moved = chains;
+        keep_points(simple, moved, kept);
+        again = false;
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            if (whole[p] != 0 || !crosses_itself(simple[p]))
+                continue;
+            whole[p] = 1;
+            again = true;
+            for (std::size_t c = 0; c < chains.size(); ++c)
+                for (std::size_t s = 0; s < at(chains[c].side_count); ++s)
+                    if (at(chains[c].sides[s].piece) == p) {
+                        kept[c].resize(at(chains[c].count()) + 1);
+                        std::iota(kept[c].begin(), kept[c].end(), 0);
+                    }
+        }
+        if (!again) {
+            pieces = std::move(simple);
+            chains = std::move(moved);
+        }
+    }
+}
+
+bool crosses_itself(const PatternPiece& piece) {
+    const std::vector<OutlineSegment> segments = segments_of(piece);
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        for (std::size_t j = i + 1; j < segments.size() && segments[j].left <= segments[i].right;
+             ++j)
+            if (edges_cross(segments[i].from, segments[i].to, segments[j].from, segments[j].to))
+                return true;
+    return false;
+}
+
+} // namespace devseg

@@ -1,0 +1,38 @@
+// Simple outlines: corners are found, and vertices between them left out on both sides at once.
+//
+// References
+//   [JKS05] D. Julius, V. Kraevoy, A. Sheffer: D-Charts: Quasi-Developable Mesh Segmentation.
+//           Computer Graphics Forum 24(3), 2005, section 4. doi:10.1111/j.1467-8659.2005.00883.x
+#pragma once
+
+#include <vector>
+
+#include "devseg/pattern/seams.h"
+
+namespace devseg {
+
+/// Which points of a polyline stay: the first, the last, and so many between them that those left
+/// out lie within `tolerance` of the polyline that remains. `sides` are one polyline or two with
+/// points in pairs, which stay or go together. Points go in the order of their cost [JKS05,
+/// section 4]: the area of the triangles with their neighbours, on both sides, plus half of the
+/// cost of neighbours that went before. A closed polyline (first point = last point) keeps three.
+std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides, double tolerance);
+
+/// The chains, cut at their corners: where the outline on either side, without bends smaller than
+/// the mesh's edges can show, turns by more than `corner_angle` (radians).
+std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
+                                  const std::vector<Chain>& chains, double corner_angle);
+
+/// Marks the ends of chains at which an outline turns by more than `corner_angle` (radians).
+void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  double corner_angle);
+
+/// Leaves vertices out of all outlines, by `tolerance` mm and a thousandth of each piece's size at
+/// most. An outline that would cross itself for that keeps all of them.
+void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
+                       double tolerance);
+
+/// Whether two edges of the piece's outlines cross in their insides.
+bool crosses_itself(const PatternPiece& piece);
+
+} // namespace devseg

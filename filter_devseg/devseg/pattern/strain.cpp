@@ -1,0 +1,93 @@
+#include "devseg/pattern/strain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace devseg {
+
+namespace {
+
+// Thinner faces, as a share of their longest edge squared, have no shape to compare.
+constexpr double no_area = 1e-12;
+
+// Edges 0 → 1 and 0 → 2 of the face, laid into the plane.
+Eigen::Matrix2d rest_edges(const Mesh& mesh, const Triangle& t) {
+    const Vec3 p = mesh.points[at(t[1])] - mesh.points[at(t[0])];
+    const Vec3 q = mesh.points[at(t[2])] - mesh.points[at(t[0])];
+    const double base = p.norm();
+    Eigen::Matrix2d edges;
+    edges << base, p.dot(q) / base, 0.0, p.cross(q).norm() / base;
+    return edges;
+}
+
+FaceStrain strain_of(const Eigen::Matrix2d& rest, const Eigen::Matrix2d& paper) {
+    const double size = std::max(rest.squaredNorm(), paper.squaredNorm());
+    FaceStrain strain;
+    if (!(rest.determinant() > no_area * size) || !(std::abs(paper.determinant()) > no_area * size))
+        return strain;
+    const Eigen::Matrix2d map = paper * rest.inverse();
+    // σ₁² + σ₂² and σ₁ σ₂ determine σ₁ ± σ₂.
+    const double squares = map.squaredNorm();
+    const double product = std::abs(map.determinant());
+    const double sum = std::sqrt(squares + 2.0 * product);
+    const double difference = std::sqrt(std::max(0.0, squares - 2.0 * product));
+    strain.extension = std::max(0.0, 0.5 * (sum + difference) - 1.0);
+    strain.compression = std::max(0.0, 1.0 - 0.5 * (sum - difference));
+    return strain;
+}
+
+} // namespace
+
+std::vector<FaceStrain> measure_strain(const Mesh& mesh, const CornerUv& uv, double scale) {
+    std::vector<FaceStrain> strain;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        Eigen::Matrix2d paper;
+        paper.col(0) = scale * (uv[at(3 * f + 1)] - uv[at(3 * f)]);
+        paper.col(1) = scale * (uv[at(3 * f + 2)] - uv[at(3 * f)]);
+        strain.push_back(strain_of(rest_edges(mesh, mesh.faces[at(f)]), paper));
+    }
+    return strain;
+}
+
+void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Index>& faces,
+                    const std::vector<std::uint8_t>& seam, const std::vector<FaceStrain>& strain,
+                    double fold_angle, double mm, PatternPiece& piece) {
+    double area = 0.0;
+    double sum = 0.0;
+    double worst = -1.0;
+    for (const Index f : faces) {
+        const FaceStrain& own = strain[at(f)];
+        area += mesh.face_areas[at(f)];
+        sum += mesh.face_areas[at(f)] * own.largest();
+        piece.strain.extension = std::max(piece.strain.extension, own.extension);
+        piece.strain.compression = std::max(piece.strain.compression, own.compression);
+        if (own.largest() > worst) {
+            worst = own.largest();
+            piece.strain.worst_face = f;
+            piece.strain.worst_place =
+                piece.place((uv[at(3 * f)] + uv[at(3 * f + 1)] + uv[at(3 * f + 2)]) / 3.0);
+        }
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = mesh.twin[at(h)];
+            if (twin < h || seam[at(h)] != 0)
+                continue;
+            const Vec3& normal = mesh.face_normals[at(f)];
+            const Vec3& other = mesh.face_normals[at(twin / 3)];
+            const double angle = std::atan2(normal.cross(other).norm(), normal.dot(other));
+            if (!(angle > fold_angle))
+                continue;
+            const Vec3 across = mesh.points[at(mesh.origin(Mesh::previous(twin)))] -
+                                mesh.points[at(mesh.origin(h))];
+            piece.folds.push_back({piece.place(uv[at(h)]), piece.place(uv[at(Mesh::next(h))]),
+                                   normal.dot(across) < 0.0 ? angle : -angle});
+        }
+    }
+    if (!(area > 0.0))
+        return;
+    piece.strain.mean = sum / area;
+    piece.strain.area_change = piece.area / (mm * mm * area) - 1.0;
+}
+
+} // namespace devseg

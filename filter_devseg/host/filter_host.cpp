@@ -1,0 +1,63 @@
+#include "host/filter_host.h"
+
+#include "host/host_errors.h"
+#include "host/layout_uv.h"
+#include "host/rich_parameters.h"
+
+namespace devseg {
+
+namespace {
+
+// Numbers as hosts print them; lists would fill the log.
+std::string to_text(const ResultValue& value) {
+    if (std::holds_alternative<std::vector<double>>(value))
+        return "(one value for each chart)";
+    if (const auto* truth = std::get_if<bool>(&value))
+        return *truth ? "true" : "false";
+    if (const auto* count = std::get_if<int>(&value))
+        return std::to_string(*count);
+    return QString::number(std::get<double>(value)).toStdString();
+}
+
+} // namespace
+
+HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
+                    const RichParameterList& parameters, vcg::CallBackPos* callback) {
+    MeshModel* model = document.mm();
+    if (model == nullptr)
+        throw HostError("expected a mesh, found none; load one first");
+    Progress progress([callback](double fraction, const char* phase) {
+        return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
+    });
+    return with_host_errors(*model, [&] {
+        HostMesh host = read_host_mesh(*model);
+        if (filter.needs_uv)
+            host.wedge_uv = read_layout_uv(*model);
+        HostResult result =
+            run_filter(filter, host, parameter_values(filter, parameters), progress);
+        HostRun run;
+        run.changed = write_host_result(*model, result);
+        if (result.layer)
+            fill_layer(*document.addNewMesh("", to_qstring(result.layer->name)), *result.layer);
+        run.log = std::move(result.notes);
+        for (const auto& [name, value] : result.values)
+            run.log.push_back(name + ": " + to_text(value));
+        run.values = std::move(result.values);
+        return run;
+    });
+}
+
+int written_elements(const FilterDeclaration& filter) {
+    int mask = MeshModel::MM_NONE;
+    if (filter.writes & writes_charts)
+        mask |= MeshModel::MM_FACEFLAG;
+    if (filter.writes & writes_quality)
+        mask |= MeshModel::MM_FACEQUALITY;
+    if (filter.writes & writes_color)
+        mask |= MeshModel::MM_FACECOLOR;
+    if (filter.writes & writes_uv)
+        mask |= MeshModel::MM_WEDGTEXCOORD;
+    return mask;
+}
+
+} // namespace devseg

@@ -1,0 +1,23 @@
+// Between the parameters of the filter table and those of the host.
+#pragma once
+
+#include <string>
+
+#include "devseg/filters/filter.h"
+#include "host/meshlab_api.h"
+
+namespace devseg {
+
+QString to_qstring(const std::string& utf8);
+
+/// What the host asks for: one entry for each declared parameter, in their order.
+RichParameterList rich_parameters(const FilterDeclaration& filter);
+
+/// What the host gives back.
+ParameterValues parameter_values(const FilterDeclaration& filter, const RichParameterList& list);
+
+/// Hosts carry reals in 32 bits. The shortest decimal that rounds to the same float is what the
+/// user wrote: 0.2 and not 0.200000003.
+double as_written(Scalarm value);
+
+} // namespace devseg

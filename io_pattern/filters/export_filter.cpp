@@ -1,0 +1,136 @@
+#include "filters/export_filter.h"
+
+#include "devseg/filters/declare.h"
+#include "filters/export_pattern.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr const char* help =
+    "Writes the pattern of a model with texture coordinates, whoever made them, as a file to sew, "
+    "cut or fold: SVG and DXF for cutters and drawing programs, PDF for printers, DXF for apparel "
+    "CAD (ASTM D6673). Charts, darts and slits are read from the texture coordinates. All lengths "
+    "are in millimetres and true.<br>"
+    "<b>Presets</b> switch on what a craft needs. <b>Sewing</b>: seam allowance, sew line, "
+    "notches, grain line and seam numbers. <b>Papercraft</b>: glue tabs, mountain and valley folds "
+    "and seam numbers. <b>Laser</b>: one layer to cut, one to engrave.<br>"
+    "See:<br><i>ASTM International</i><br>"
+    "<b>\"Standard Practice for Sewn Products Pattern Data Interchange - Data Format\"</b><br>"
+    "ASTM D6673-10, 2010, doi:10.1520/D6673-10";
+
+using O = ExportOptions;
+
+Declare<O> with_scale(Declare<O> filter) {
+    return filter
+        .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
+              "Size on paper of one unit of the model, in millimetres: 1 for a model in "
+              "millimetres, 1000 for one in metres. Above 0.")
+        .real(&O::height_mm, "height_mm", "Height of the finished model (mm)", 0.0, 1e9,
+              "Scales the pattern so that the finished model is this high, measured along the y "
+              "axis, in millimetres. 0 = use the millimetres per unit.")
+        .choice(&O::preset, "preset", "Preset", {"Plain", "Sewing", "Papercraft", "Laser"},
+                "What to make: a preset switches on what the craft needs beside the options "
+                "below. Plain adds nothing.")
+        .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
+              "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
+        .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
+              "Vertices of an outline are left out, on both sides of a seam at once, where that "
+              "moves it by less than this, in millimetres. 0 keeps all vertices.");
+}
+
+Declare<O> with_seams(Declare<O> filter) {
+    return filter
+        .real(&O::seam_allowance_mm, "seam_allowance_mm", "Seam allowance (mm)", 0.0, 1e4,
+              "Width of the allowance around each piece in millimetres. 0 = none (7 mm with the "
+              "preset Sewing).")
+        .choice(&O::corner_style, "corner_style", "Corners of the allowance",
+                {"Miter", "Bevel", "Round"},
+                "Convex corners of the cut line: pointed, cut off, or rounded. Concave ones are "
+                "trimmed.")
+        .boolean(&O::match_seams, "match_seams", "Match seams",
+                 "Make both sides of each seam equally long, where they differ by more than "
+                 "sewing bears.")
+        .real(&O::notch_spacing_mm, "notch_spacing_mm", "Notch spacing (mm)", 0.0, 1e6,
+              "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
+              "preset Sewing).")
+        .boolean(&O::glue_tabs, "glue_tabs", "Glue tabs",
+                 "A flap along one side of each seam. Flaps overlap no piece and no other flap: "
+                 "they are made smaller or put on the other side.")
+        .real(&O::tab_depth_mm, "tab_depth_mm", "Depth of glue tabs (mm)", 0.5, 1e3,
+              "Depth of the flaps in millimetres, where there is room.")
+        .boolean(&O::fold_lines, "fold_lines", "Fold lines",
+                 "Mountain folds (solid) and valley folds (dashed) where the surface bends, seen "
+                 "from the outside.")
+        .real(&O::fold_angle, "fold_angle", "Least fold angle (degrees)", 0.0, 180.0,
+              "Edges that bend by less are no folds, in degrees.");
+}
+
+Declare<O> with_paper(Declare<O> filter) {
+    return filter
+        .text(&O::page, "page", "Page",
+              "Paper to lay the pieces on: none (one sheet as large as it needs to be), a4, "
+              "letter, a3, or width x height in millimetres such as 600x400.")
+        .real(&O::page_margin_mm, "page_margin_mm", "Page margin (mm)", 0.0, 1e3,
+              "Border of each page that stays empty, in millimetres.")
+        .boolean(&O::tiling, "tiling", "Tiling",
+                 "Pieces larger than a page go on several pages that are glued together. Off: "
+                 "they are refused.")
+        .boolean(&O::cover, "cover", "Cover and overview",
+                 "PDF only: pages with the model and the numbers of its pieces, the list of seams, "
+                 "and how the pages lie.")
+        .boolean(&O::labels, "labels", "Piece names",
+                 "Write its name (P01, P02, ...) into each piece, on a layer of its own that a "
+                 "cutter can leave out.")
+        .boolean(&O::edge_numbers, "edge_numbers", "Seam numbers",
+                 "Write the number of each seam next to both of its sides.")
+        .boolean(&O::grain_line, "grain_line", "Grain line",
+                 "Draw an arrow along the threads of the cloth into each piece, and lay pieces "
+                 "with their arrows upright where they are laid out anew.")
+        .boolean(&O::mirror, "mirror", "Mirror", "Draw the pieces as seen from inside the model.")
+        .choice(&O::dxf_kind, "dxf_kind", "Kind of DXF", {"Automatic", "Cutter", "Apparel"},
+                "For cutters and drawing programs, or for apparel CAD (ASTM D6673). Automatic: "
+                "apparel with the preset Sewing.");
+}
+
+FilterOutput run_export(const FilterInput& input, const ExportOptions& options,
+                        Progress& progress) {
+    const ExportReport report = export_pattern(input.mesh, *input.uv, options, progress);
+    FilterOutput output;
+    output.notes = report.notes;
+    output.values = {{"pieces_number", report.pieces},
+                     {"seams_number", report.seams},
+                     {"sheets_number", report.sheets},
+                     {"pages_number", report.pages}};
+    return output;
+}
+
+} // namespace
+
+const FilterDeclaration& export_filter() {
+    static const FilterDeclaration filter =
+        with_paper(
+            with_seams(with_scale(
+                Declare<O>("Pattern: Export", "export_pattern", FilterCategory::texture, help)
+                    .file(&O::output_file, "output_file", "File", "pattern.svg",
+                          "File to write; its extension says the format: .svg, .pdf or "
+                          ".dxf."))))
+            .needs_uv()
+            .result("pieces_number", "pieces in the file")
+            .result("seams_number", "seams, darts among them")
+            .result("sheets_number", "sheets that the pieces lie on")
+            .result("pages_number", "pages of a PDF, cover included; 0 for other formats")
+            .runs(run_export);
+    return filter;
+}
+
+const std::vector<FilterDeclaration>& plugin_filters() {
+    static const std::vector<FilterDeclaration> table = [] {
+        std::vector<FilterDeclaration> all = filter_table();
+        all.push_back(export_filter());
+        return all;
+    }();
+    return table;
+}
+
+} // namespace devseg

@@ -1,0 +1,15 @@
+// The filter 'Pattern: Export', declared next to the writers: the core knows no files.
+#pragma once
+
+#include "devseg/filters/filter.h"
+
+namespace devseg {
+
+/// Writes output_file; its extension says the format: svg, pdf or dxf. Saving a mesh in one of
+/// these formats takes the same parameters but for the file's name.
+const FilterDeclaration& export_filter();
+
+/// All filters of the plugin: those of the core and the export.
+const std::vector<FilterDeclaration>& plugin_filters();
+
+} // namespace devseg

@@ -1,0 +1,116 @@
+#include "filters/export_pattern.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+
+#include "devseg/errors.h"
+#include "sheet/apparel_dxf.h"
+#include "sheet/cover.h"
+#include "sheet/pattern_drawing.h"
+#include "writers/dxf_writer.h"
+#include "writers/file.h"
+#include "writers/pdf_writer.h"
+#include "writers/svg_writer.h"
+
+namespace devseg {
+
+namespace {
+
+enum class Format { svg, pdf, dxf };
+
+std::size_t name_start(const std::string& path) {
+    const std::size_t slash = path.find_last_of("/\\");
+    return slash == std::string::npos ? 0 : slash + 1;
+}
+
+Format format_of(const std::string& path) {
+    if (path.empty())
+        throw InvalidParameter("output_file: expected the name of a file, found none");
+    const std::size_t dot = path.find_last_of('.');
+    std::string extension =
+        dot == std::string::npos || dot < name_start(path) ? "" : path.substr(dot);
+    for (char& c : extension)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (extension == ".svg")
+        return Format::svg;
+    if (extension == ".pdf")
+        return Format::pdf;
+    if (extension == ".dxf")
+        return Format::dxf;
+    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf or .dxf, found '" +
+                           path + "'");
+}
+
+std::string title_of(const std::string& path) {
+    const std::size_t start = name_start(path);
+    return path.substr(start, path.find_last_of('.') - start);
+}
+
+// Builds that must be the same on every day say which day it is.
+std::string today() {
+    std::time_t now = std::time(nullptr);
+    if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH"))
+        now = static_cast<std::time_t>(std::atoll(epoch));
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%d-%m-%Y", &parts);
+    return text;
+}
+
+bool is_apparel(const ExportOptions& options) {
+    return options.dxf_kind == DxfKind::apparel ||
+           (options.dxf_kind == DxfKind::automatic && options.preset == PatternPreset::sewing);
+}
+
+Document make_document(const Mesh& mesh, const Pattern& pattern, const PatternLayout& layout,
+                       const ExportOptions& options) {
+    Document document;
+    document.title = title_of(options.output_file);
+    document.drawing = draw_sheets(layout, options);
+    const std::vector<PrintedPage> printed = printed_pages(layout, document.drawing);
+    if (options.cover)
+        document.pages = cover_pages(mesh, pattern, layout, printed, document.title);
+    if (options.cover && layout.page && printed.size() > 1)
+        document.pages.push_back(overview_page(layout, document.drawing, printed, document.title));
+    for (DocumentPage& page : page_sheets(layout, document.drawing, printed, document.title))
+        document.pages.push_back(std::move(page));
+    return document;
+}
+
+} // namespace
+
+ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOptions& given,
+                            Progress& progress) {
+    const Format format = format_of(given.output_file);
+    const ExportOptions options = resolved(given);
+    page_format(options); // says what is wrong with it before the work begins
+    const Pattern pattern = make_pattern(mesh, uv, options, progress);
+    PatternLayout layout = lay_out_pattern(pattern, options, progress);
+    progress.begin_phase("writing", 0.1);
+    progress.update(0.0);
+    ExportReport report;
+    std::string bytes;
+    if (format == Format::pdf) {
+        const Document document = make_document(mesh, pattern, layout, options);
+        report.pages = static_cast<Index>(document.pages.size());
+        bytes = pdf_bytes(document);
+    } else if (format == Format::dxf && is_apparel(options)) {
+        bytes =
+            apparel_dxf_bytes(pattern, layout, options, {title_of(options.output_file), today()});
+    } else {
+        const Drawing drawing = draw_sheets(layout, options);
+        bytes = format == Format::svg ? svg_bytes(drawing) : dxf_bytes(drawing);
+    }
+    progress.update(0.5);
+    save_file(options.output_file, bytes);
+    report.pieces = static_cast<Index>(pattern.pieces.size());
+    report.seams = static_cast<Index>(pattern.seams.size());
+    report.sheets = static_cast<Index>(layout.sheets.size());
+    report.notes = pattern.notes;
+    report.notes.insert(report.notes.end(), layout.notes.begin(), layout.notes.end());
+    return report;
+}
+
+} // namespace devseg

@@ -1,0 +1,26 @@
+// Texture coordinates → a pattern file, from end to end.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "devseg/mesh/texture.h"
+#include "devseg/progress.h"
+#include "sheet/export_options.h"
+
+namespace devseg {
+
+struct ExportReport {
+    Index pieces = 0;
+    Index seams = 0;
+    Index sheets = 0;
+    Index pages = 0;                // of a PDF; 0 for other formats
+    std::vector<std::string> notes; // for the user, one sentence each
+};
+
+/// Writes options.output_file in the format of its extension. Throws InvalidParameter for options
+/// outside of their range, FileError, InvalidMesh and Cancelled; no file has changed then.
+ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOptions& options,
+                            Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,124 @@
+// References
+//   X. Chen, S. McMains: Polygon offsetting by computing winding numbers. ASME IDETC 2005: the raw
+//   offset curve, and the parts of the plane around which it winds a positive number of times.
+//   A. Johnson: Clipper 6.4.2, which takes these parts.
+#include "sheet/allowance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <polyclipping/clipper.hpp>
+
+namespace devseg {
+
+namespace {
+
+using Ring = std::vector<Vec2>;
+
+// Clipper works on whole numbers: the coordinates may use this many, within its fast range.
+constexpr double grid_size = 5e8;
+
+// Corners of an outline that turns by less are points of a curve, and pointed in every style.
+constexpr double smooth_cosine = 0.94; // 20 degrees
+
+// A pointed corner ends at most this many widths away from the corner of the piece, which allows
+// angles down to 60 degrees.
+constexpr double miter_limit = 2.0;
+
+constexpr double round_tolerance = 0.02; // mm between an arc and its chords
+
+// Holes of the cut line below this many square widths are left over between two seams.
+constexpr double least_hole = 1.0;
+
+Vec2 outward(const Vec2& from, const Vec2& to) {
+    const Vec2 d = to - from;
+    return Vec2(d.y(), -d.x()) / d.norm();
+}
+
+Ring distinct(const Ring& points) {
+    Ring ring;
+    for (const Vec2& p : points)
+        if (ring.empty() || p != ring.back())
+            ring.push_back(p);
+    while (ring.size() > 1 && ring.back() == ring.front())
+        ring.pop_back();
+    return ring;
+}
+
+void add_convex_corner(const Vec2& p, const Vec2& n, const Vec2& m, double width, CornerStyle style,
+                       Ring& curve) {
+    const double cosine = n.dot(m);
+    const bool pointed = cosine >= smooth_cosine || style == CornerStyle::miter;
+    if (pointed && 2.0 / (1.0 + cosine) <= miter_limit * miter_limit) {
+        curve.push_back(p + width * (n + m) / (1.0 + cosine));
+        return;
+    }
+    curve.push_back(p + width * n);
+    if (style == CornerStyle::round) {
+        const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+        const double step = 2.0 * std::acos(1.0 - std::min(0.5, round_tolerance / width));
+        const int count = static_cast<int>(std::ceil(angle / step));
+        for (int i = 1; i < count; ++i)
+            curve.push_back(p + width * (Eigen::Rotation2Dd(angle * i / count) * n));
+    }
+    curve.push_back(p + width * m);
+}
+
+// Runs beside the ring; at concave corners it turns back to the corner, so that what lies beyond
+// both sides is wound around the wrong way and drops out.
+Ring raw_curve(const Ring& ring, double width, CornerStyle style) {
+    Ring curve;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec2& p = ring[i];
+        const Vec2 n = outward(ring[(i + ring.size() - 1) % ring.size()], p);
+        const Vec2 m = outward(p, ring[(i + 1) % ring.size()]);
+        if (n.x() * m.y() - n.y() * m.x() >= 0.0) {
+            add_convex_corner(p, n, m, width, style, curve);
+        } else {
+            curve.push_back(p + width * n);
+            curve.push_back(p);
+            curve.push_back(p + width * m);
+        }
+    }
+    return curve;
+}
+
+} // namespace
+
+std::vector<Ring> add_allowance(const PatternPiece& piece, double width, CornerStyle corners) {
+    const Vec2 centre = piece.box.center();
+    const double grid = (piece.box.sizes().maxCoeff() + 2.0 * miter_limit * width) / grid_size;
+    ClipperLib::Clipper clipper;
+    for (Index i = 0; i < piece.path_count(); ++i) {
+        const Ring ring = distinct(piece.path(i).points);
+        ClipperLib::Path path;
+        if (ring.size() < 3)
+            continue;
+        for (const Vec2& p : raw_curve(ring, width, corners)) {
+            const Vec2 q = (p - centre) / grid;
+            path.emplace_back(std::llround(q.x()), std::llround(q.y()));
+        }
+        clipper.AddPath(path, ClipperLib::ptSubject, true);
+    }
+    ClipperLib::Paths solution;
+    clipper.Execute(ClipperLib::ctUnion, solution, ClipperLib::pftPositive,
+                    ClipperLib::pftPositive);
+    std::sort(solution.begin(), solution.end(),
+              [](const ClipperLib::Path& a, const ClipperLib::Path& b) {
+                  return ClipperLib::Area(a) > ClipperLib::Area(b);
+              });
+    std::vector<Ring> rings;
+    for (const ClipperLib::Path& path : solution) {
+        const double area = ClipperLib::Area(path) * grid * grid;
+        if (!rings.empty() && area > -least_hole * width * width)
+            continue;
+        Ring ring;
+        for (const ClipperLib::IntPoint& p : path)
+            ring.push_back(centre +
+                           grid * Vec2(static_cast<double>(p.X), static_cast<double>(p.Y)));
+        rings.push_back(std::move(ring));
+    }
+    return rings;
+}
+
+} // namespace devseg

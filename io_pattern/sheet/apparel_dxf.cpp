@@ -1,0 +1,150 @@
+// References
+//   ASTM D6673-10: Standard practice for sewn products pattern data interchange, data format.
+//   American Apparel Manufacturers Association: ANSI/AAMA-292-B, 1993.
+#include "sheet/apparel_dxf.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "writers/dxf_text.h"
+#include "writers/number_text.h"
+#include "writers/text_metrics.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double sheet_gap = 20.0; // mm
+constexpr double text_size = 4.0;  // mm
+constexpr double line_pitch = 6.0; // mm
+constexpr int decimals = 4;
+
+// Block and style names: capital letters, digits, underscores and hyphens.
+std::string code(const std::string& text) {
+    std::string name;
+    for (const char c : ascii(text)) {
+        const auto byte = static_cast<unsigned char>(c);
+        name += std::isalnum(byte) != 0 || c == '-' ? static_cast<char>(std::toupper(byte)) : '_';
+    }
+    return name;
+}
+
+double corner_cosine(const ExportOptions& options) {
+    return std::cos(options.corner_angle / degrees_per_radian);
+}
+
+void write_point(DxfText& file, const char* layer, const Vec2& p) {
+    file.group(0, "POINT");
+    file.group(8, layer);
+    file.point(p);
+}
+
+// Corners are turn points, all others lie on curves.
+void write_outline_points(DxfText& file, const std::vector<Vec2>& ring, double smooth_cosine) {
+    const std::size_t count = ring.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 in = ring[i] - ring[(i + count - 1) % count];
+        const Vec2 out = ring[(i + 1) % count] - ring[i];
+        const bool smooth = in.dot(out) >= smooth_cosine * in.norm() * out.norm();
+        write_point(file, smooth ? "3" : "2", ring[i]);
+    }
+}
+
+void write_notch(DxfText& file, const SheetNotch& notch) {
+    const Vec2 d = notch.inner - notch.outer;
+    write_point(file, "4", notch.outer);
+    file.number(30, d.norm()); // depth
+    file.number(39, 0.0);      // width of a slit
+    file.number(50, std::atan2(d.y(), d.x()) * degrees_per_radian);
+}
+
+void write_texts(DxfText& file, const char* layer, Vec2 place,
+                 const std::vector<std::string>& lines) {
+    for (const std::string& line : lines) {
+        file.text(layer, {place, text_size, line, 0.0, TextAnchor::left});
+        place.y() -= line_pitch;
+    }
+}
+
+std::string annotation(const PatternPiece& piece, const Pattern& pattern) {
+    if (piece.model >= 0 && piece.mirrored)
+        return "MIRROR OF " + pattern.pieces[at(piece.model)].name;
+    if (piece.model >= 0 && piece.quantity == 0)
+        return "SAME AS " + pattern.pieces[at(piece.model)].name;
+    return "CUT 1";
+}
+
+void write_lines(DxfText& file, const char* layer, const std::vector<std::vector<Vec2>>& lines,
+                 bool closed) {
+    for (const std::vector<Vec2>& line : lines)
+        file.polyline(layer, {line, closed});
+}
+
+void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
+                 const ExportOptions& options) {
+    const PatternPiece& source = pattern.pieces[at(piece.piece)];
+    file.group(0, "BLOCK");
+    file.group(8, "1");
+    file.group(2, code(piece.name));
+    file.group(70, "64");
+    file.point(Vec2::Zero());
+    file.polyline("1", {piece.cut.front(), true});
+    write_outline_points(file, piece.cut.front(), corner_cosine(options));
+    write_lines(file, "11", {piece.cut.begin() + 1, piece.cut.end()}, true);
+    write_lines(file, piece.has_allowance() ? "14" : "11", piece.slits, false);
+    write_lines(file, "14", piece.sew, true);
+    write_lines(file, "8", piece.mountains, false);
+    write_lines(file, "8", piece.valleys, false);
+    for (const SheetNotch& notch : piece.notches)
+        write_notch(file, notch);
+    if (piece.grain_line[0] != piece.grain_line[1])
+        file.line("7", piece.grain_line[0], piece.grain_line[1]);
+    std::vector<std::string> seams;
+    for (const Seam& seam : pattern.seams)
+        for (const int side : {0, 1})
+            if (seam.sides[at(side)].piece == piece.piece)
+                seams.push_back("SEAM: " + seam.label + " TO " +
+                                pattern.pieces[at(seam.sides[at(1 - side)].piece)].name);
+    const Vec2 place = piece.names.empty() ? piece.box().center() : piece.names.front().position;
+    write_texts(file, "15", place, seams);
+    write_texts(file, "1", place + Vec2(0.0, 6.0 * line_pitch),
+                {"Piece Name: " + piece.name, "Size: M", "Quantity: 1,0",
+                 "Annotation: " + annotation(source, pattern), "Category: PATTERN",
+                 "Fabric: MAIN"});
+    file.group(0, "ENDBLK");
+    file.group(8, "1");
+}
+
+} // namespace
+
+std::string apparel_dxf_bytes(const Pattern& pattern, const PatternLayout& layout,
+                              const ExportOptions& options, const ApparelHeader& header) {
+    std::vector<Placement> shifts(layout.sheets.size());
+    for (std::size_t s = 1; s < shifts.size(); ++s)
+        shifts[s].offset.x() = shifts[s - 1].offset.x() + layout.sheets[s - 1].size.x() + sheet_gap;
+    DxfText file(decimals);
+    file.begin_section("HEADER");
+    file.end_section();
+    file.begin_section("BLOCKS");
+    for (SheetPiece piece : layout.pieces) {
+        piece.move(shifts[at(piece.sheet)]);
+        write_block(file, pattern, piece, options);
+    }
+    file.end_section();
+    file.begin_section("ENTITIES");
+    for (const SheetPiece& piece : layout.pieces) {
+        file.group(0, "INSERT");
+        file.group(8, "1");
+        file.group(2, code(piece.name));
+        file.point(Vec2::Zero());
+    }
+    write_texts(file, "1", Vec2(0.0, -line_pitch),
+                {"Style Name: " + code(header.style), "Creation Date: " + header.date,
+                 "Author: DEVSEG", "Sample Size: M", "Grading Rule Table: NONE", "Units: METRIC",
+                 "ASTM/D13Proposal 1 Version: D 6673-04"});
+    file.end_section();
+    return file.file();
+}
+
+} // namespace devseg

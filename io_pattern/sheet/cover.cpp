@@ -1,0 +1,211 @@
+#include "sheet/cover.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sheet/model_view.h"
+#include "writers/number_text.h"
+#include "writers/text_metrics.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+const Vec2 a4(210.0, 297.0);
+constexpr double margin = 10.0;    // mm, where no page says otherwise
+constexpr double title_size = 7.0; // mm
+constexpr double text_size = 3.2;
+constexpr double line_pitch = 4.6;
+constexpr double picture_share = 0.45; // of the page's height at most
+constexpr int picture_pixels = 480;
+constexpr double largest_label = 4.0;
+constexpr double least_label = 1.6;
+constexpr double azimuths[] = {-35.0 * pi / 180.0, 145.0 * pi / 180.0}; // front, back
+
+// Where the columns of the table start, as shares of the width.
+constexpr double columns[] = {0.0, 0.1, 0.26, 0.36, 0.56};
+
+struct Row {
+    std::array<std::string, 4> cells; // piece, size, page, how many to cut
+    std::string seams;
+};
+
+std::string page_list(Index piece, const std::vector<PrintedPage>& pages) {
+    std::string text;
+    for (std::size_t i = 0; i < pages.size(); ++i)
+        if (std::count(pages[i].pieces.begin(), pages[i].pieces.end(), piece) > 0)
+            text += (text.empty() ? "" : ", ") + std::to_string(i + 1);
+    return text.empty() ? "1" : text;
+}
+
+std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
+    if (piece.model >= 0 && (piece.mirrored || piece.quantity == 0))
+        return (piece.mirrored ? "mirrored " : "same as ") + pattern.pieces[at(piece.model)].name;
+    std::string text = std::to_string(std::max(Index{1}, piece.quantity));
+    if (piece.mirrored_quantity > 0)
+        text += " + " + std::to_string(piece.mirrored_quantity) + " mirrored";
+    return text;
+}
+
+// Seams in a row that join the same piece are one entry: "3 to 7: P02".
+std::string seam_list(const Pattern& pattern, Index piece) {
+    std::string text;
+    std::string first;
+    std::string last;
+    std::string target;
+    const auto finish = [&] {
+        if (!first.empty())
+            text += (text.empty() ? "" : ", ") + first + (first == last ? "" : " to " + last) +
+                    ": " + target;
+    };
+    for (const Seam& seam : pattern.seams) {
+        const Index a = seam.sides[0].piece;
+        const Index b = seam.sides[1].piece;
+        if (a != piece && b != piece)
+            continue;
+        const Index other = a == piece ? b : a;
+        const std::string name = seam.is_dart     ? "dart"
+                                 : other == piece ? "itself"
+                                                  : pattern.pieces[at(other)].name;
+        if (name != target || first.empty()) {
+            finish();
+            first = seam.label;
+            target = name;
+        }
+        last = seam.label;
+    }
+    finish();
+    return text;
+}
+
+std::vector<Row> table_rows(const Pattern& pattern, const PatternLayout& layout,
+                            const std::vector<PrintedPage>& pages) {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
+        const SheetPiece& drawn = layout.pieces[i];
+        const PatternPiece& piece = pattern.pieces[at(drawn.piece)];
+        const Vec2 size = drawn.box().sizes();
+        rows.push_back({{piece.name, number_text(size.x(), 0) + " x " + number_text(size.y(), 0),
+                         page_list(static_cast<Index>(i), pages), cut_text(piece, pattern)},
+                        seam_list(pattern, drawn.piece)});
+    }
+    return rows;
+}
+
+std::vector<std::string> wrapped(const std::string& text, double width) {
+    std::vector<std::string> lines(1);
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t comma = text.find(", ", from);
+        const std::size_t end = comma == std::string::npos ? text.size() : comma + 2;
+        const std::string item = text.substr(from, end - from);
+        if (!lines.back().empty() && text_width(lines.back() + item, text_size) > width)
+            lines.emplace_back();
+        lines.back() += item;
+        from = end;
+    }
+    return lines;
+}
+
+// Pages that are filled with lines of text from the top.
+class Book {
+public:
+    Book(const Vec2& size, double border) : size_(size), border_(border) { begin_page(); }
+
+    double width() const { return size_.x() - 2.0 * border_; }
+    double height() const { return size_.y() - 2.0 * border_; }
+    double left() const { return border_; }
+    double cursor() const { return y_; }
+    DocumentPage& page() { return pages_.back(); }
+    DrawingLayer& marks() { return pages_.back().marks.front(); }
+
+    /// Moves down, to a new page where this one has less room.
+    void advance(double height) {
+        if (y_ - height < border_)
+            begin_page();
+        y_ -= height;
+    }
+    void write(double x, double size, const std::string& text) {
+        marks().texts.push_back({Vec2(border_ + x, y_), size, text, 0.0, TextAnchor::left});
+    }
+    std::vector<DocumentPage> take() { return std::move(pages_); }
+
+private:
+    void begin_page() {
+        pages_.emplace_back();
+        pages_.back().width = size_.x();
+        pages_.back().height = size_.y();
+        pages_.back().marks.push_back({"page", "Page marks", "#000000", {}, {}, {}});
+        y_ = size_.y() - border_;
+    }
+
+    Vec2 size_;
+    double border_;
+    double y_ = 0.0;
+    std::vector<DocumentPage> pages_;
+};
+
+void add_pictures(const Mesh& mesh, const Pattern& pattern, Book& book) {
+    const double side = std::min(0.5 * book.width(), picture_share * book.height());
+    book.advance(side + 0.5 * line_pitch);
+    double x = book.left();
+    for (const double azimuth : azimuths) {
+        ModelView view = draw_model(mesh, pattern, azimuth, picture_pixels);
+        view.image.low = Vec2(x, book.cursor());
+        view.image.size = Vec2::Constant(side);
+        for (const PieceLabel& label : view.labels) {
+            const std::string& name = pattern.pieces[at(label.piece)].name;
+            const double room = side * label.radius / text_width(name, 0.6);
+            const double size = std::min(largest_label, room);
+            if (size >= least_label)
+                book.marks().texts.push_back({view.image.low + side * label.position, size, name});
+        }
+        book.page().images.push_back(std::move(view.image));
+        x += 0.5 * book.width();
+    }
+}
+
+void add_table(const std::vector<Row>& rows, Book& book) {
+    const auto column = [&](std::size_t i) { return columns[i] * book.width(); };
+    const char* const heads[] = {"Piece", "Size in mm", "Page", "Cut",
+                                 "Seams: numbers, joined piece"};
+    book.advance(line_pitch);
+    for (std::size_t i = 0; i < 5; ++i)
+        book.write(column(i), text_size, heads[i]);
+    const double rule = book.cursor() - 0.5 * line_pitch;
+    book.marks().paths.push_back(
+        {"", {{{Vec2(book.left(), rule), Vec2(book.left() + book.width(), rule)}, false}}});
+    for (const Row& row : rows) {
+        bool first = true;
+        for (const std::string& line : wrapped(row.seams, book.width() - column(4))) {
+            book.advance(line_pitch);
+            for (std::size_t i = 0; i < 4 && first; ++i)
+                book.write(column(i), text_size,
+                           wrapped(row.cells[i], column(i + 1) - column(i) - text_size).front());
+            book.write(column(4), text_size, line);
+            first = false;
+        }
+    }
+}
+
+} // namespace
+
+std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
+                                      const PatternLayout& layout,
+                                      const std::vector<PrintedPage>& pages,
+                                      const std::string& title) {
+    Book book(layout.page ? layout.page->size : a4,
+              layout.page ? std::max(layout.page->margin, 0.5 * margin) : margin);
+    book.advance(title_size);
+    book.write(0.0, title_size, title);
+    book.advance(1.5 * line_pitch);
+    book.write(0.0, text_size,
+               std::to_string(pattern.pieces.size()) + " pieces, " +
+                   std::to_string(pattern.seams.size()) + " seams. 1 unit of the model = " +
+                   number_text(pattern.mm_per_unit, 4) + " mm. Print at 100 %, without scaling.");
+    add_pictures(mesh, pattern, book);
+    add_table(table_rows(pattern, layout, pages), book);
+    return book.take();
+}
+
+} // namespace devseg

@@ -1,0 +1,19 @@
+// The cover of a pattern: pictures of the model with the numbers of its pieces, and how they are
+// put together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "sheet/pages.h"
+
+namespace devseg {
+
+/// One page, and more where the list of pieces is long. Pages of the pattern's own size, or A4.
+std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
+                                      const PatternLayout& layout,
+                                      const std::vector<PrintedPage>& pages,
+                                      const std::string& title);
+
+} // namespace devseg

@@ -1,0 +1,39 @@
+// How a pattern is to be drawn.
+#pragma once
+
+#include <string>
+
+#include "devseg/pattern/pieces.h"
+#include "sheet/allowance.h"
+
+namespace devseg {
+
+/// What a craft needs; options that are given count beside it.
+enum class PatternPreset { plain, sewing, papercraft, laser };
+enum class DxfKind { automatic, cutter, apparel };
+
+struct ExportOptions : PatternOptions {
+    ExportOptions() { notch_spacing_mm = 0.0; }
+
+    std::string output_file;
+    PatternPreset preset = PatternPreset::plain;
+    double seam_allowance_mm = 0.0;
+    CornerStyle corner_style = CornerStyle::miter;
+    bool glue_tabs = false;
+    double tab_depth_mm = 5.0;
+    bool fold_lines = false;
+    bool edge_numbers = false; // the number of each seam on both sides
+    bool grain_line = false;
+    bool mirror = false;       // as seen from inside the model
+    std::string page = "none"; // none, a4, letter, a3 or WxH in mm
+    double page_margin_mm = 10.0;
+    bool tiling = true; // pieces larger than a page go on several
+    bool cover = true;  // PDF: picture of the model, list of the pieces, overview
+    DxfKind dxf_kind = DxfKind::automatic;
+};
+
+/// The options with all that the preset stands for. Throws InvalidParameter for values outside of
+/// their range.
+ExportOptions resolved(const ExportOptions& options);
+
+} // namespace devseg

@@ -1,0 +1,218 @@
+#include "sheet/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/errors.h"
+#include "sheet/nesting.h"
+#include "sheet/segment_grid.h"
+#include "writers/number_text.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double sheet_margin = 10.0; // mm around the pieces where no page says otherwise
+
+// Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
+constexpr double piece_gap = 3.0;  // mm
+constexpr double gap_share = 0.02; // of the size of the layout
+
+// Nesting by outline covers about this share of a sheet.
+constexpr double covered_share = 0.7;
+
+Eigen::AlignedBox2d box_of(const std::vector<SheetPiece>& pieces) {
+    Eigen::AlignedBox2d box;
+    for (const SheetPiece& piece : pieces)
+        box.extend(piece.box());
+    return box;
+}
+
+double area_of(const std::vector<Vec2>& ring) {
+    double twice = 0.0;
+    for (std::size_t i = 2; i < ring.size(); ++i) {
+        const Vec2 p = ring[i - 1] - ring.front();
+        const Vec2 q = ring[i] - ring.front();
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
+
+// Whether cut lines of different pieces have a point in common, or a piece lies in another.
+bool pieces_touch(const std::vector<SheetPiece>& pieces) {
+    const Eigen::AlignedBox2d box = box_of(pieces);
+    SegmentGrid grid(box, 0.01 * box.sizes().maxCoeff());
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (const std::vector<Vec2>& ring : pieces[i].cut) {
+            if (grid.ring_touches(ring, static_cast<Index>(i)))
+                return true;
+            grid.add_ring(ring, static_cast<Index>(i));
+        }
+    for (const SheetPiece& outer : pieces)
+        for (const SheetPiece& inner : pieces)
+            if (&outer != &inner && outer.box().contains(inner.box()) &&
+                is_inside(outer.cut, inner.cut.front().front()))
+                return true;
+    return false;
+}
+
+void place(std::vector<SheetPiece>& pieces, const std::vector<std::size_t>& chosen,
+           const Nesting& nesting, Index first_sheet, double margin) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        if (nesting.sheet[i] < 0)
+            continue;
+        Placement placement = nesting.placements[i];
+        placement.offset += Vec2::Constant(margin);
+        pieces[chosen[i]].move(placement);
+        pieces[chosen[i]].sheet = first_sheet + nesting.sheet[i];
+    }
+}
+
+std::vector<const SheetPiece*> pointers(const std::vector<SheetPiece>& pieces,
+                                        const std::vector<std::size_t>& chosen) {
+    std::vector<const SheetPiece*> result;
+    for (const std::size_t i : chosen)
+        result.push_back(&pieces[i]);
+    return result;
+}
+
+// One sheet that is about as high as wide.
+void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
+    double area = 0.0;
+    double widest = 0.0;
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
+        all.push_back(i);
+        area += std::abs(area_of(layout.pieces[i].cut.front()));
+        widest = std::max(widest, layout.pieces[i].box().sizes().norm());
+    }
+    NestingOptions nesting;
+    const double side = std::max(std::sqrt(area / covered_share), widest);
+    nesting.gap = std::min(piece_gap, gap_share * side);
+    nesting.width = side + nesting.gap;
+    nesting.keep_grain = keep_grain;
+    place(layout.pieces, all, nest_pieces(pointers(layout.pieces, all), nesting, progress), 0, 0.0);
+}
+
+[[noreturn]] void refuse_size(const SheetPiece& piece, const PageFormat& page) {
+    const Vec2 size = piece.box().sizes();
+    throw InvalidParameter("page: expected pieces that fit on " +
+                           number_text(page.printable().x(), 1) + " x " +
+                           number_text(page.printable().y(), 1) + " mm, found " + piece.name +
+                           " of " + number_text(size.x(), 1) + " x " + number_text(size.y(), 1) +
+                           " mm; take a larger page, switch tiling on, or split large pieces with "
+                           "max_piece_mm");
+}
+
+Index pages_along(double length, double step) {
+    return static_cast<Index>(std::max(1.0, std::ceil((length - tile_overlap) / step - 1e-9)));
+}
+
+// Pieces larger than a page share a sheet of several pages: as wide as it takes the fewest.
+void nest_tiles(PatternLayout& layout, const std::vector<std::size_t>& large, bool keep_grain,
+                Progress& progress) {
+    const PageFormat& page = *layout.page;
+    double widest = 0.0;
+    for (const std::size_t i : large)
+        widest = std::max(widest, layout.pieces[i].box().sizes().norm() + piece_gap);
+    const Index most = pages_along(widest, page.step().x());
+    std::vector<SheetPiece> best;
+    PatternSheet best_sheet;
+    for (Index columns = 1; columns <= most; ++columns) {
+        NestingOptions nesting;
+        nesting.width = columns * page.step().x() + tile_overlap;
+        nesting.gap = piece_gap;
+        nesting.keep_grain = keep_grain;
+        const Nesting nested = nest_pieces(pointers(layout.pieces, large), nesting, progress);
+        if (std::count(nested.sheet.begin(), nested.sheet.end(), -1) > 0)
+            continue;
+        std::vector<SheetPiece> placed = layout.pieces;
+        place(placed, large, nested, 0, page.margin);
+        Eigen::AlignedBox2d box;
+        for (const std::size_t i : large)
+            box.extend(placed[i].box());
+        PatternSheet sheet;
+        sheet.columns = pages_along(box.max().x() - page.margin, page.step().x());
+        sheet.rows = pages_along(box.max().y() - page.margin, page.step().y());
+        if (best.empty() || sheet.columns * sheet.rows < best_sheet.columns * best_sheet.rows) {
+            best = std::move(placed);
+            best_sheet = sheet;
+        }
+    }
+    layout.pieces = std::move(best);
+    best_sheet.size =
+        Vec2(best_sheet.columns * page.step().x(), best_sheet.rows * page.step().y()) +
+        Vec2::Constant(tile_overlap + 2.0 * page.margin);
+    layout.sheets.push_back(best_sheet);
+}
+
+void nest_on_pages(PatternLayout& layout, const ExportOptions& options, Progress& progress) {
+    const PageFormat& page = *layout.page;
+    NestingOptions nesting;
+    nesting.width = page.printable().x();
+    nesting.height = page.printable().y();
+    nesting.gap = piece_gap;
+    nesting.keep_grain = options.grain_line;
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < layout.pieces.size(); ++i)
+        all.push_back(i);
+    const Nesting nested = nest_pieces(pointers(layout.pieces, all), nesting, progress);
+    std::vector<std::size_t> large;
+    for (const std::size_t i : all)
+        if (nested.sheet[i] < 0)
+            large.push_back(i);
+    if (!large.empty() && !options.tiling)
+        refuse_size(layout.pieces[large.front()], page);
+    if (!large.empty())
+        nest_tiles(layout, large, options.grain_line, progress);
+    const Index first = static_cast<Index>(layout.sheets.size());
+    place(layout.pieces, all, nested, first, page.margin);
+    for (Index i = 0; i < nested.sheet_count; ++i)
+        layout.sheets.push_back({page.size, 1, 1});
+}
+
+void note_tabs(const GlueTabs& tabs, PatternLayout& layout) {
+    if (tabs.seams_without > 0)
+        layout.notes.push_back(std::to_string(tabs.seams_without) +
+                               " seams have no glue tab: there is no room beside them on either "
+                               "side");
+}
+
+} // namespace
+
+PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& options,
+                              Progress& progress) {
+    PatternLayout layout;
+    layout.page = page_format(options);
+    GlueTabs tabs;
+    tabs.tabs.resize(pattern.pieces.size());
+    progress.begin_phase("glue tabs", 0.1);
+    if (options.glue_tabs)
+        tabs = make_tabs(pattern, options.tab_depth_mm, progress);
+    note_tabs(tabs, layout);
+    progress.begin_phase("drawing pieces", 0.1);
+    for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+        layout.pieces.push_back(
+            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
+        if (options.mirror)
+            layout.pieces.back().mirror();
+    }
+    progress.begin_phase("laying out sheets", 0.1);
+    if (layout.page) {
+        nest_on_pages(layout, options, progress);
+        return layout;
+    }
+    if (options.glue_tabs || options.seam_allowance_mm > 0.0 || pieces_touch(layout.pieces))
+        nest_freely(layout, options.grain_line, progress);
+    const Eigen::AlignedBox2d box = box_of(layout.pieces);
+    const Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
+    for (SheetPiece& piece : layout.pieces)
+        piece.move(shift);
+    // Whole millimetres keep y exact when writers turn the sheet over.
+    const Vec2 size(std::ceil(box.sizes().x()), std::ceil(box.sizes().y()));
+    layout.sheets.push_back({size + Vec2::Constant(2.0 * sheet_margin), 1, 1});
+    return layout;
+}
+
+} // namespace devseg

@@ -1,0 +1,33 @@
+// Sheets → the pages of a document: a cover, an overview and the sheets at true scale.
+#pragma once
+
+#include <string>
+
+#include "sheet/layout.h"
+#include "writers/drawing.h"
+
+namespace devseg {
+
+/// A page that shows a part of the drawing at true scale.
+struct PrintedPage {
+    PageWindow window;
+    Index sheet = 0;
+    Index row = 0; // from the top
+    Index column = 0;
+    std::vector<Index> pieces; // positions in the layout that are cut on it
+};
+
+/// The pages that hold anything to cut; one with the whole drawing where no page size is given.
+std::vector<PrintedPage> printed_pages(const PatternLayout& layout, const Drawing& drawing);
+
+/// All pages at true scale: each with the border of its part (the trim line), crosses that come to
+/// lie on each other on neighbouring pages, a 50 mm bar and a caption.
+std::vector<DocumentPage> page_sheets(const PatternLayout& layout, const Drawing& drawing,
+                                      const std::vector<PrintedPage>& pages,
+                                      const std::string& title);
+
+/// How the pages lie on the sheets, with check squares at true scale.
+DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
+                           const std::vector<PrintedPage>& pages, const std::string& title);
+
+} // namespace devseg

@@ -1,0 +1,50 @@
+// Segments in the plane, found by place.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+/// Whether two segments have a common point; ends count.
+bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+/// Whether the point lies inside a closed outline, by the even-odd rule.
+bool is_inside(const std::vector<Vec2>& ring, const Vec2& p);
+bool is_inside(const std::vector<std::vector<Vec2>>& rings, const Vec2& p);
+
+class SegmentGrid {
+public:
+    /// For segments that lie in the box for the most part; others are found as well.
+    SegmentGrid(const Eigen::AlignedBox2d& box, double cell);
+
+    /// `owner`: any number, for the caller.
+    void add(const Vec2& a, const Vec2& b, Index owner);
+    void add_ring(const std::vector<Vec2>& ring, Index owner);
+
+    /// Whether the segment touches one of another owner.
+    bool touches(const Vec2& a, const Vec2& b, Index owner) const;
+    bool ring_touches(const std::vector<Vec2>& ring, Index owner) const;
+
+private:
+    struct Segment {
+        Vec2 a;
+        Vec2 b;
+        Index owner;
+    };
+    template <class Visit>
+    void visit_cells(const Vec2& a, const Vec2& b, Visit visit) const;
+
+    Vec2 low_;
+    double cell_;
+    Index columns_;
+    Index rows_;
+    std::vector<Segment> segments_;
+    std::vector<std::vector<Index>> cells_;
+};
+
+} // namespace devseg

@@ -1,0 +1,170 @@
+#include "sheet/sheet_piece.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sheet/marks.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+// The sides of a cut that lie on each other up to this are one line: a knife would follow both.
+constexpr double one_line = 0.1; // mm
+
+// Points of an outline, some of them replaced by others.
+struct Outline {
+    std::vector<Vec2> points;
+    std::vector<std::uint8_t> skipped;       // #points
+    std::vector<std::vector<Vec2>> inserted; // #points, behind the point
+
+    explicit Outline(const PiecePath& path)
+        : points(path.points), skipped(points.size(), 0), inserted(points.size()) {}
+
+    std::size_t at_index(Index i) const { return at(i) % points.size(); }
+    std::vector<Vec2> ring() const {
+        std::vector<Vec2> result;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (skipped[i] == 0)
+                result.push_back(points[i]);
+            result.insert(result.end(), inserted[i].begin(), inserted[i].end());
+        }
+        return result;
+    }
+};
+
+// Index in the outline of point i of a side, counted from the seam's start.
+Index side_point(const SeamSide& side, Index i) {
+    return side.first + (side.reversed ? side.count - i : i);
+}
+
+// A dart whose sides lie on each other up to its tip, or from some place on, is cut once.
+void merge_slits(const Pattern& pattern, Index piece, std::vector<Outline>& outlines,
+                 std::vector<std::vector<Vec2>>& slits) {
+    for (const Seam& seam : pattern.seams) {
+        const SeamSide& a = seam.sides[0];
+        const SeamSide& b = seam.sides[1];
+        if (!seam.is_dart || a.piece != piece || a.path != b.path || a.count != b.count)
+            continue;
+        Outline& outline = outlines[at(a.path)];
+        const auto point = [&](const SeamSide& side, Index i) {
+            return outline.points[outline.at_index(side_point(side, i))];
+        };
+        Index mouth = a.count;
+        while (mouth > 0 && (point(a, mouth - 1) - point(b, mouth - 1)).norm() <= one_line)
+            --mouth;
+        if (mouth == a.count)
+            continue;
+        std::vector<Vec2> slit;
+        for (Index i = mouth; i <= a.count; ++i)
+            slit.push_back(point(a, i));
+        for (Index i = mouth + 1; i <= a.count; ++i) {
+            outline.skipped[outline.at_index(side_point(a, i))] = 1;
+            outline.skipped[outline.at_index(side_point(b, i))] = 1;
+        }
+        outline.skipped[outline.at_index(side_point(b, mouth))] = 1;
+        slits.push_back(std::move(slit));
+    }
+}
+
+void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
+              SheetPiece& result) {
+    for (const GlueTab& tab : tabs) {
+        Outline& outline = outlines[at(tab.path)];
+        std::vector<Vec2> base;
+        for (Index i = tab.first; i <= tab.first + tab.count; ++i)
+            base.push_back(outline.points[outline.at_index(i)]);
+        result.mountains.push_back(std::move(base)); // tabs bend backwards
+        for (Index i = tab.first + 1; i < tab.first + tab.count; ++i)
+            outline.skipped[outline.at_index(i)] = 1;
+        outline.inserted[outline.at_index(tab.first)] = {tab.corner[0], tab.corner[1]};
+    }
+}
+
+void add_folds(const PatternPiece& piece, SheetPiece& result) {
+    for (const PieceFold& fold : piece.folds)
+        (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
+}
+
+template <class Change>
+void change_points(SheetPiece& piece, Change change) {
+    for (auto* lines :
+         {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys, &piece.grain})
+        for (std::vector<Vec2>& line : *lines)
+            for (Vec2& p : line)
+                p = change(p);
+    for (SheetNotch& notch : piece.notches) {
+        notch.outer = change(notch.outer);
+        notch.inner = change(notch.inner);
+    }
+    for (Vec2& p : piece.grain_line)
+        p = change(p);
+    for (auto* texts : {&piece.names, &piece.numbers})
+        for (DrawingText& text : *texts)
+            text.position = change(text.position);
+}
+
+double upright(double angle) {
+    const double turned = std::remainder(angle, 2.0 * pi);
+    return turned > 0.5 * pi ? turned - pi : turned <= -0.5 * pi ? turned + pi : turned;
+}
+
+} // namespace
+
+Eigen::AlignedBox2d SheetPiece::box() const {
+    Eigen::AlignedBox2d box;
+    for (const std::vector<Vec2>& ring : cut)
+        for (const Vec2& p : ring)
+            box.extend(p);
+    return box;
+}
+
+void SheetPiece::move(const Placement& placement) {
+    change_points(*this, placement);
+    const double angle = std::atan2(placement.sine, placement.cosine);
+    for (DrawingText& number : numbers)
+        number.angle = upright(number.angle + angle);
+    // Lines of one name stay one below the other.
+    const Vec2 middle = names.empty() ? Vec2::Zero() : names[names.size() / 2].position;
+    for (DrawingText& line : names) {
+        const Vec2 offset = line.position - middle;
+        line.position = middle + Vec2(placement.cosine * offset.x() + placement.sine * offset.y(),
+                                      placement.cosine * offset.y() - placement.sine * offset.x());
+    }
+}
+
+void SheetPiece::mirror() {
+    change_points(*this, [](const Vec2& p) { return Vec2(-p.x(), p.y()); });
+    for (auto* rings : {&cut, &sew})
+        for (std::vector<Vec2>& ring : *rings)
+            std::reverse(ring.begin(), ring.end());
+    for (DrawingText& number : numbers)
+        number.angle = upright(-number.angle);
+}
+
+SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<GlueTab>& tabs,
+                         const ExportOptions& options) {
+    const PatternPiece& piece = pattern.pieces[at(index)];
+    SheetPiece result;
+    result.piece = index;
+    result.name = piece.name;
+    std::vector<Outline> outlines;
+    for (Index i = 0; i < piece.path_count(); ++i)
+        outlines.emplace_back(piece.path(i));
+    merge_slits(pattern, index, outlines, result.slits);
+    add_tabs(tabs, outlines, result);
+    for (const Outline& outline : outlines)
+        result.cut.push_back(outline.ring());
+    if (options.seam_allowance_mm > 0.0) {
+        result.sew = std::move(result.cut);
+        result.cut = add_allowance(piece, options.seam_allowance_mm, options.corner_style);
+    }
+    if (options.fold_lines)
+        add_folds(piece, result);
+    add_marks(pattern, options, result);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,49 @@
+// A pattern piece with all that is drawn for it: cut lines with allowance or tabs, sew lines,
+// folds, notches, numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "devseg/pack/pack.h"
+#include "devseg/pattern/pattern.h"
+#include "sheet/export_options.h"
+#include "sheet/tabs.h"
+#include "writers/drawing.h"
+
+namespace devseg {
+
+/// A place on the sew line where the two sides of a seam are to meet.
+struct SheetNotch {
+    Vec2 outer = Vec2::Zero(); // mm; on the cut line where there is one close by
+    Vec2 inner = Vec2::Zero(); // towards the inside
+};
+
+struct SheetPiece {
+    Index piece = -1; // position in Pattern::pieces
+    std::string name;
+    std::vector<std::vector<Vec2>> cut;       // closed; the outer one first
+    std::vector<std::vector<Vec2>> sew;       // closed; empty where the cut lines are the sew lines
+    std::vector<std::vector<Vec2>> slits;     // open lines whose two sides lie on each other
+    std::vector<std::vector<Vec2>> mountains; // open lines
+    std::vector<std::vector<Vec2>> valleys;
+    std::vector<SheetNotch> notches;
+    std::vector<std::vector<Vec2>> grain; // the arrow's lines
+    std::vector<DrawingText> names;
+    std::vector<DrawingText> numbers; // of seams
+    std::array<Vec2, 2> grain_line{Vec2::Zero(), Vec2::Zero()};
+    Index sheet = 0; // on which it lies
+
+    bool has_allowance() const { return !sew.empty(); }
+    Eigen::AlignedBox2d box() const;
+    /// Moves everything; texts stay upright.
+    void move(const Placement& placement);
+    /// Turns everything over at the axis x = 0; texts stay readable.
+    void mirror();
+};
+
+/// The piece as the options want it, where the pattern has it. `tabs` may be empty.
+SheetPiece compose_piece(const Pattern& pattern, Index piece, const std::vector<GlueTab>& tabs,
+                         const ExportOptions& options);
+
+} // namespace devseg

@@ -1,0 +1,14 @@
+// Drawing → DXF of release 12 for laser cutters, plotters and drawing programs.
+#pragma once
+
+#include <string>
+
+#include "writers/drawing.h"
+
+namespace devseg {
+
+/// The file's bytes, 7-bit: one drawing unit is 1 mm; a DXF layer with a colour of its own for
+/// each layer. All numbers of the drawing must be finite.
+std::string dxf_bytes(const Drawing& drawing);
+
+} // namespace devseg

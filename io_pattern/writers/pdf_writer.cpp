@@ -1,0 +1,185 @@
+// References
+//   ISO 32000-1:2008, Portable document format, PDF 1.7: content streams (8), form XObjects
+//   (8.10), optional content (8.11), text (9), viewer preferences (12.2).
+#include "writers/pdf_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "writers/number_text.h"
+#include "writers/pdf_objects.h"
+#include "writers/text_metrics.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double points_per_mm = 72.0 / 25.4;
+constexpr double line_width = 0.2;       // mm, still seen on paper where a hairline is not
+constexpr double largest_page = 14400.0; // user units, what readers take
+constexpr int scale_decimals = 8;        // of factors, that multiply lengths of metres
+
+class Writer {
+public:
+    explicit Writer(const Document& document) : document_(document) {}
+
+    std::string write() {
+        const int catalogue = objects_.reserve();
+        tree_ = objects_.reserve();
+        font_ = objects_.add("<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica "
+                             "/Encoding /WinAnsiEncoding >>");
+        declare_layers();
+        const std::string pattern = content(document_.drawing.layers);
+        form_ = objects_.add_stream(
+            "/Type /XObject /Subtype /Form /BBox [0 0 " + millimetres(document_.drawing.width) +
+                ' ' + millimetres(document_.drawing.height) + "] /Resources " + resources(""),
+            pattern);
+        std::string kids;
+        for (const DocumentPage& page : document_.pages)
+            kids += PdfObjects::reference(add_page(page)) + ' ';
+        objects_.define(tree_, "<< /Type /Pages /Count " + std::to_string(document_.pages.size()) +
+                                   " /Kids [" + kids + "] >>");
+        objects_.define(catalogue, "<< /Type /Catalog /Pages " + PdfObjects::reference(tree_) +
+                                       " /ViewerPreferences << /PrintScaling /None >> "
+                                       "/OCProperties << /OCGs [" +
+                                       groups_ + "] /D << /Order [" + groups_ + "] /ON [" +
+                                       groups_ + "] >> >> >>");
+        const int information = objects_.add("<< /Title " + PdfObjects::text(document_.title) +
+                                             " /Producer (devseg) >>");
+        return objects_.file(catalogue, information);
+    }
+
+private:
+    // A layer of the same id is the same group on all pages.
+    void declare_layers() {
+        const auto declare = [&](const DrawingLayer& layer) {
+            if ((layer.paths.empty() && layer.texts.empty()) ||
+                !layer_numbers_.emplace(layer.id, layer_numbers_.size()).second)
+                return;
+            const std::string group = PdfObjects::reference(
+                objects_.add("<< /Type /OCG /Name " + PdfObjects::text(layer.label) + " >>"));
+            properties_ += "/L" + std::to_string(layer_numbers_.size() - 1) + ' ' + group + ' ';
+            groups_ += group + ' ';
+        };
+        for (const DrawingLayer& layer : document_.drawing.layers)
+            declare(layer);
+        for (const DocumentPage& page : document_.pages)
+            for (const DrawingLayer& layer : page.marks)
+                declare(layer);
+    }
+
+    std::string resources(const std::string& objects) const {
+        return "<< /Font << /F1 " + PdfObjects::reference(font_) + " >> /Properties << " +
+               properties_ + ">> /XObject << " + objects + ">> >>";
+    }
+
+    // All content is in millimetres: the page's first operator scales.
+    int add_page(const DocumentPage& page) {
+        std::string objects = "/Pattern " + PdfObjects::reference(form_) + ' ';
+        const double unit =
+            std::ceil(points_per_mm * std::max(page.width, page.height) / largest_page);
+        const double scale = points_per_mm / unit;
+        std::string data = factor(scale) + " 0 0 " + factor(scale) + " 0 0 cm\n";
+        for (std::size_t i = 0; i < page.images.size(); ++i) {
+            const std::string name = "/Image" + std::to_string(i);
+            objects += name + ' ' + PdfObjects::reference(add_image(page.images[i])) + ' ';
+            data += "q " + millimetres(page.images[i].size.x()) + " 0 0 " +
+                    millimetres(page.images[i].size.y()) + ' ' + point(page.images[i].low) +
+                    " cm " + name + " Do Q\n";
+        }
+        for (const PageWindow& window : page.windows) {
+            const Vec2 shift = window.position - window.scale * window.low;
+            data += "q " + point(window.position) + ' ' + point(window.scale * window.size) +
+                    " re W n " + factor(window.scale) + " 0 0 " + factor(window.scale) + ' ' +
+                    point(shift) + " cm /Pattern Do Q\n";
+        }
+        data += content(page.marks);
+        const int stream = objects_.add_stream("", data);
+        return objects_.add("<< /Type /Page /Parent " + PdfObjects::reference(tree_) +
+                            " /UserUnit " + number_text(unit, 0) + " /MediaBox [0 0 " +
+                            factor(scale * page.width) + ' ' + factor(scale * page.height) +
+                            "] /Resources " + resources(objects) + " /Contents " +
+                            PdfObjects::reference(stream) + " >>");
+    }
+
+    int add_image(const DrawingImage& image) {
+        return objects_.add_stream("/Type /XObject /Subtype /Image /ColorSpace /DeviceRGB "
+                                   "/BitsPerComponent 8 /Width " +
+                                       std::to_string(image.columns) + " /Height " +
+                                       std::to_string(image.rows),
+                                   std::string(image.rgb.begin(), image.rgb.end()));
+    }
+
+    std::string content(const std::vector<DrawingLayer>& layers) const {
+        std::string data = millimetres(line_width) + " w 1 j 1 J\n";
+        for (const DrawingLayer& layer : layers) {
+            if (layer.paths.empty() && layer.texts.empty())
+                continue;
+            data += "/OC /L" + std::to_string(layer_numbers_.at(layer.id)) + " BDC q\n" +
+                    colour(layer.colour) + " RG " + colour(layer.colour) + " rg [";
+            for (const double length : layer.dash)
+                data += millimetres(length) + ' ';
+            data += "] 0 d\n";
+            for (const DrawingPath& path : layer.paths)
+                append(path, data);
+            for (const DrawingText& text : layer.texts)
+                append(text, data);
+            data += "Q EMC\n";
+        }
+        return data;
+    }
+
+    void append(const DrawingPath& path, std::string& data) const {
+        for (const DrawingPolyline& line : path.parts) {
+            const char* step = " m ";
+            for (const std::string& text :
+                 point_texts(line, [&](const Vec2& p) { return point(p); })) {
+                data += text + step;
+                step = " l ";
+            }
+            if (line.closed)
+                data += "h ";
+        }
+        data += "S\n";
+    }
+
+    void append(const DrawingText& text, std::string& data) const {
+        const double c = std::cos(text.angle);
+        const double s = std::sin(text.angle);
+        data += "BT /F1 " + millimetres(text.size) + " Tf " + factor(c) + ' ' + factor(s) + ' ' +
+                factor(-s) + ' ' + factor(c) + ' ' + point(text_start(text)) + " Tm " +
+                PdfObjects::literal(latin1(text.text)) + " Tj ET\n";
+    }
+
+    static std::string colour(const std::string& code) {
+        std::string text;
+        for (const std::size_t channel : {1u, 3u, 5u})
+            text += (text.empty() ? "" : " ") +
+                    number_text(std::stoi(code.substr(channel, 2), nullptr, 16) / 255.0, 3);
+        return text;
+    }
+
+    std::string millimetres(double value) const {
+        return number_text(value, document_.drawing.decimals);
+    }
+    static std::string factor(double value) { return number_text(value, scale_decimals); }
+    std::string point(const Vec2& p) const { return millimetres(p.x()) + ' ' + millimetres(p.y()); }
+
+    const Document& document_;
+    PdfObjects objects_;
+    std::map<std::string, std::size_t> layer_numbers_;
+    std::string groups_;     // references to all layers
+    std::string properties_; // the same by name, for content
+    int tree_ = 0;
+    int font_ = 0;
+    int form_ = 0;
+};
+
+} // namespace
+
+std::string pdf_bytes(const Document& document) {
+    return Writer(document).write();
+}
+
+} // namespace devseg

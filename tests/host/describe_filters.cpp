@@ -1,0 +1,113 @@
+// Prints the filter table as JSON: the reference in docs/, the shipped scripts and the tests that
+// ask the live hosts are made from it.
+#include <iostream>
+#include <sstream>
+#include <string>
+
+#include "filters/export_filter.h"
+
+namespace devseg {
+namespace {
+
+std::string json(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            quoted += '\\';
+        if (c == '\n')
+            quoted += "\\n";
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+std::string json(const ParameterValue& value) {
+    if (const auto* truth = std::get_if<bool>(&value))
+        return *truth ? "true" : "false";
+    if (const auto* count = std::get_if<int>(&value))
+        return std::to_string(*count);
+    if (const auto* text = std::get_if<std::string>(&value))
+        return json(*text);
+    std::ostringstream digits;
+    digits.precision(17);
+    digits << std::get<double>(value);
+    return digits.str();
+}
+
+std::string kind_name(ParameterKind kind) {
+    switch (kind) {
+    case ParameterKind::boolean:
+        return "boolean";
+    case ParameterKind::integer:
+        return "integer";
+    case ParameterKind::real:
+        return "real";
+    case ParameterKind::choice:
+        return "choice";
+    case ParameterKind::text:
+        return "text";
+    case ParameterKind::output_file:
+        return "output file";
+    }
+    return "";
+}
+
+std::string category_name(FilterCategory category) {
+    switch (category) {
+    case FilterCategory::remeshing:
+        return "Remeshing, Simplification and Reconstruction";
+    case FilterCategory::texture:
+        return "Texture";
+    case FilterCategory::color:
+        return "Color Creation and Processing";
+    case FilterCategory::measure:
+        return "Quality Measure and Computations";
+    }
+    return "";
+}
+
+template <class Items, class Print>
+std::string list(const Items& items, Print print) {
+    std::string joined;
+    for (const auto& item : items)
+        joined += (joined.empty() ? "" : ", ") + print(item);
+    return "[" + joined + "]";
+}
+
+std::string describe(const Parameter& p) {
+    const auto number = [](double value) { return json(ParameterValue(value)); };
+    return "{\"name\": " + json(p.name) + ", \"label\": " + json(p.label) +
+           ", \"kind\": " + json(kind_name(p.kind)) + ", \"default\": " + json(p.default_value) +
+           ", \"minimum\": " + number(p.minimum) + ", \"maximum\": " + number(p.maximum) +
+           ", \"choices\": " + list(p.choices, [](const std::string& c) { return json(c); }) +
+           ", \"help\": " + json(p.help) + "}";
+}
+
+std::string describe(const FilterDeclaration& filter) {
+    return "{\"menu_name\": " + json(filter.menu_name) +
+           ", \"python_name\": " + json(filter.python_name) + ", \"help\": " + json(filter.help) +
+           ", \"menu\": " + json(category_name(filter.category)) +
+           ", \"writes\": " + std::to_string(filter.writes) +
+           ", \"needs_uv\": " + (filter.needs_uv ? "true" : "false") + ", \"parameters\": " +
+           list(filter.parameters, [](const Parameter& p) { return "\n  " + describe(p); }) +
+           ", \"results\": " +
+           list(filter.results,
+                [](const ResultField& r) {
+                    return "\n  {\"name\": " + json(r.name) + ", \"meaning\": " + json(r.meaning) +
+                           "}";
+                }) +
+           "}";
+}
+
+} // namespace
+} // namespace devseg
+
+int main() {
+    std::cout << devseg::list(devseg::plugin_filters(),
+                              [](const devseg::FilterDeclaration& filter) {
+                                  return "\n " + devseg::describe(filter);
+                              })
+              << "\n";
+    return std::cout.good() ? 0 : 1;
+}

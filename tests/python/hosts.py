@@ -1,0 +1,168 @@
+"""The hosts on this machine, as the tests use them, and a record of what was run where."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from html import unescape
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from conftest import ROOT
+from devseg.installations import Installation, find_installations
+from devseg.plugins import PLUGIN_FILES
+
+sys.path.insert(0, str(ROOT / "scripts"))
+
+import reference
+
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "devseg"
+OLD_PYTHON = CACHE / "pymeshlab-2022.2" / "bin" / "python"
+RECORDS = ROOT / "build" / "host-runs"
+
+
+def missing(what: str) -> None:
+    """Skips; where scripts/test.sh has set everything up, a part that is missing is a failure."""
+    if os.environ.get("DEVSEG_HOST_TESTS") == "required":
+        pytest.fail(f"{what}, and DEVSEG_HOST_TESTS=required")
+    pytest.skip(what)
+
+
+def flavour_plugins(flavour: str) -> list[Path]:
+    """The plugin files of a flavour; skips where they are not built."""
+    paths = [ROOT / "build" / flavour / "plugins" / name for name in PLUGIN_FILES]
+    if not all(path.is_file() for path in paths):
+        missing(f"the plugins are not built; run scripts/build_host.sh {flavour}")
+    return paths
+
+
+def declarations() -> list[dict[str, Any]]:
+    return reference.declarations()
+
+
+def record(host: str, filter_name: str, what: str) -> None:
+    """Remembers for docs/hosts.md what has been run; called after it has worked."""
+    RECORDS.mkdir(parents=True, exist_ok=True)
+    file = RECORDS / f"{host}.json"
+    known = json.loads(file.read_text()) if file.is_file() else {}
+    file.write_text(json.dumps({**known, filter_name: what}, indent=1) + "\n")
+
+
+def reported_script(file: Path) -> dict[str, list[dict[str, str]]]:
+    """The filters of an .mlx file that a host has saved, and their parameters."""
+    root = ElementTree.parse(file).getroot()
+    return {
+        step.get("name", ""): [dict(param.attrib) for param in step.iter("Param")]
+        for step in root.iter("filter")
+    }
+
+
+def declared_script(filter_: dict[str, Any]) -> list[dict[str, str]]:
+    """The same for a declaration."""
+    return [
+        {**reference.mlx_attributes(parameter), "tooltip": parameter["help"]}
+        for parameter in filter_["parameters"]
+    ]
+
+
+@dataclass(frozen=True)
+class PrivateMeshLab:
+    """A MeshLab that loads our plugins, without touching the installed one."""
+
+    folder: Path
+    installation: Installation
+
+    @staticmethod
+    def make(folder: Path, flavour: str) -> PrivateMeshLab:
+        """Puts programs, plugins and ours together; MeshLab looks for plugins beside itself."""
+        ours = flavour_plugins(flavour)
+        found = [host for host in find_installations() if host.flavour == flavour]
+        if not found:
+            missing(f"no {flavour} on this machine")
+        host = found[0]
+        assert host.plugins is not None
+        (folder / "plugins").mkdir(parents=True)
+        for program in host.programs:
+            shutil.copy(program, folder)
+        for plugin in [*host.plugins.glob("*.so"), *ours]:
+            link = folder / "plugins" / plugin.name
+            link.unlink(missing_ok=True)
+            link.symlink_to(plugin)
+        return PrivateMeshLab(folder, host)
+
+    def environment(self) -> dict[str, str]:
+        """Settings of its own, and the library of the installed one."""
+        home = self.folder / "home"
+        (home / ".config").mkdir(parents=True, exist_ok=True)
+        home.chmod(0o700)
+        kept = {name: value for name, value in os.environ.items() if name in ("PATH", "LANG")}
+        return {
+            **kept,
+            "HOME": str(home),
+            "XDG_CONFIG_HOME": str(home / ".config"),
+            "XDG_RUNTIME_DIR": str(home),
+            "LD_LIBRARY_PATH": str(self.installation.library.parent),
+        }
+
+    def serve(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        """Runs meshlabserver."""
+        if not (self.folder / "meshlabserver").is_file() or shutil.which("xvfb-run") is None:
+            missing("no meshlabserver or no xvfb-run on this machine")
+        return subprocess.run(
+            ["xvfb-run", "-a", str(self.folder / "meshlabserver"), *map(str, arguments)],
+            env=self.environment(),
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=300,
+        )
+
+
+def server_report(server: PrivateMeshLab) -> dict[str, dict[str, Any]]:
+    """What meshlabserver says of each filter: its help, and kind, label and help of parameters."""
+    file = server.folder / "filters.txt"
+    done = server.serve("-d", file)
+    assert done.returncode == 0, done.stdout
+    sections = re.split(r"\n\\section f\d+ ", file.read_text())[1:]
+    row = re.compile(r"<TR><TD> \\c (\w+)  </TD> <TD> (.*?) </TD> <TD><i> (.*?) -- </i></TD> </TR>")
+    report = {}
+    for section in sections:
+        name, help_text = section.split(" \n\n", 1)
+        report[name] = {
+            "help": help_text.split("\n<H2> Parameters", 1)[0],
+            "parameters": [
+                {"kind": kind, "label": label, "help": unescape(help_)}
+                for kind, label, help_ in row.findall(section)
+            ],
+        }
+    return report
+
+
+def prepared(filter_: dict[str, Any]) -> list[dict[str, Any]]:
+    """The filter behind those that make what it may need: charts and texture coordinates."""
+    first = [step for step in declarations() if step["menu_name"] in reference.PREPARATION]
+    return [*first, filter_]
+
+
+def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]:
+    """The same steps; those that write a file write this one."""
+    return [
+        {
+            **step,
+            "parameters": [
+                {**p, "default": str(file)} if p["name"] == "output_file" else p
+                for p in step["parameters"]
+            ],
+        }
+        for step in steps
+    ]

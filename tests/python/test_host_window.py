@@ -1,0 +1,199 @@
+"""MeshLab's window: every filter is found by search, explains itself and runs; colours; export.
+
+Slow, and MeshLab 2025.07 has to be built for it once (scripts/build_meshlab.sh): it runs where that
+has been done, or where DEVSEG_GUI_TESTS=1 asks for it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import hosts
+import reference
+from conftest import ROOT
+from meshlab_window import INSPECTOR, MeshLabWindow, Widget
+
+PICTURES = ROOT / "build" / "screenshots"
+ASKED = os.environ.get("DEVSEG_GUI_TESTS") == "1"
+BUILT = (hosts.CACHE / "meshlab-2025.07-window" / "meshlab").is_file()
+
+pytestmark = pytest.mark.skipif(
+    not (ASKED or BUILT), reason="no MeshLab 2025.07 in the cache, and no DEVSEG_GUI_TESTS=1"
+)
+
+
+@pytest.fixture(scope="module", params=["meshlab-2020.09", "meshlab-2025.07"])
+def flavour(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def mesh_file(pymeshlab: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A bunny as PLY: MeshLab 2020.09 stops at some OBJ files."""
+    samples = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
+    meshset = pymeshlab.MeshSet()
+    meshset.load_new_mesh(str(samples / "bunny10k_textured.obj"))
+    file = tmp_path_factory.mktemp("mesh") / "bunny.ply"
+    meshset.save_current_mesh(
+        str(file), save_vertex_color=False, save_face_color=False, save_wedge_texcoord=False
+    )
+    return file
+
+
+@pytest.fixture(scope="module")
+def window(
+    flavour: str, mesh_file: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[MeshLabWindow]:
+    for program in ("Xvfb", "xdotool"):
+        if shutil.which(program) is None:
+            hosts.missing(f"no {program} on this machine")
+    if not INSPECTOR.is_file():
+        hosts.missing("the window inspector is not built; run scripts/setup.sh")
+    meshlab = hosts.PrivateMeshLab.make(tmp_path_factory.mktemp("window") / "meshlab", flavour)
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    with MeshLabWindow(meshlab, mesh_file) as running:
+        yield running
+
+
+def find(window: MeshLabWindow, name: str) -> None:
+    """Starts a filter as MeshLab's help tells: Ctrl+F, its name, and its line in the list."""
+    window.focus("MeshLab")
+    window.press("ctrl+f")
+    window.type(name)
+
+    def listed() -> int:
+        for menu in window.menus():
+            entries = [e["text"] for e in menu["entries"] if e["text"]]
+            if menu["visible"] and name in entries:
+                return entries.index(name) + 1
+        return 0
+
+    line = window.wait_for(f"{name} in the search", listed)
+    window.press(*["Down"] * line, "Return")
+
+
+def applied(window: MeshLabWindow, name: str) -> int:
+    line = re.compile(rf"Applied filter:? {re.escape(name)} in \d+ msec")
+    return sum(1 for text in window.log() if line.search(text))
+
+
+def check_dialog(window: MeshLabWindow, filter_: dict[str, Any]) -> None:
+    """The filter's help, and each parameter with its label, its default and its help."""
+    dock = filter_["menu_name"]
+    shown = window.widgets(dock=dock)
+    assert any(filter_["help"] in (w.get("text") or "") for w in shown)
+    for parameter in filter_["parameters"]:
+        label = [w for w in shown if w.get("text") == parameter["label"]]
+        assert label, parameter["name"]
+        row = [w for w in shown if abs(middle(w) - middle(label[0])) < 8]
+        if parameter["kind"] == "boolean":
+            values = [w["checked"] for w in row if w["class"] == "QCheckBox"]
+            expected = parameter["default"]
+        elif parameter["kind"] == "choice":
+            values = [w["currentText"] for w in row if w["class"] == "QComboBox"]
+            expected = parameter["choices"][parameter["default"]]
+        else:
+            values = [w["text"] for w in row if w["class"] == "QLineEdit"]
+            expected = reference.written_default(parameter)
+        assert values == [expected], parameter["name"]
+    if filter_["parameters"]:
+        explained = {f"<small>{p['help']}</small>" for p in filter_["parameters"]}
+        window.click(window.widgets(dock=dock, text="Help")[0])
+        window.wait_for(
+            f"the help of {dock}",
+            lambda: explained <= {w.get("text") for w in window.widgets(dock=dock)},
+        )
+        window.click(window.widgets(dock=dock, text="Help")[0])
+
+
+def middle(widget: Widget) -> float:
+    return widget["box"][1] + widget["box"][3] / 2
+
+
+def surface(picture: Image.Image) -> np.ndarray:
+    """Pixels of the mesh without colours: bright and grey, in the left half of the window."""
+    rgb = np.asarray(picture.convert("RGB")).astype(int)[100:800, :700]
+    return (np.ptp(rgb, axis=2) < 12) & (rgb.min(axis=2) > 60)
+
+
+def hues(picture: Image.Image, where: np.ndarray) -> tuple[float, int]:
+    """Share of coloured pixels, and number of hues that cover at least a hundredth each."""
+    hsv = np.asarray(picture.convert("HSV")).astype(int)[100:800, :700][where]
+    colored = hsv[hsv[:, 1] > 40]
+    share = np.bincount(colored[:, 0] // 22, minlength=12) / len(hsv)
+    return len(colored) / len(hsv), int((share >= 0.01).sum())
+
+
+def test_every_filter_is_found_explains_itself_and_runs(
+    window: MeshLabWindow, flavour: str
+) -> None:
+    plain = window.screenshot()
+    plain.save(PICTURES / f"{flavour}-plain.png")
+    mesh = surface(plain)
+    assert mesh.sum() > 20000
+    assert hues(plain, mesh)[0] < 0.01
+    for filter_ in hosts.declarations():
+        name = filter_["menu_name"]
+        before = applied(window, name)
+
+        def ended(name: str = name, before: int = before) -> bool:
+            return applied(window, name) > before
+
+        def dialog(name: str = name) -> list[Widget]:
+            return window.widgets(dock=name, text="Apply")
+
+        find(window, name)
+        # Filters without parameters have a dialog in some versions only.
+        window.wait_for(f"the dialog of {name}", lambda: dialog() or ended())
+        if dialog():
+            check_dialog(window, filter_)
+            window.click(dialog()[0])
+        else:
+            assert not filter_["parameters"]
+        window.wait_for(f"the end of {name}", ended)
+        if name == "Segmentation: D-Charts":
+            window.screenshot().save(PICTURES / f"{flavour}-dialog.png")
+        if dialog():
+            window.click(window.widgets(dock=name, text="Close")[0])
+        if name == "Segmentation: D-Charts":
+            picture = window.wait_for(
+                "the colours of the charts", lambda: colored(window.screenshot(), mesh)
+            )
+            picture.save(PICTURES / f"{flavour}-charts.png")
+        hosts.record(f"window-{flavour}", name, "found, as declared, runs")
+
+
+def colored(picture: Image.Image, mesh: np.ndarray) -> Image.Image | None:
+    share, number = hues(picture, mesh)
+    return picture if share > 0.6 and number >= 4 else None
+
+
+def test_pattern_is_exported(window: MeshLabWindow, flavour: str, tmp_path: Path) -> None:
+    file = tmp_path / "bunny.svg"
+    window.focus("MeshLab")
+    window.press("ctrl+shift+e")
+    window.wait_for("the file dialog", lambda: window.widgets(**{"class": "QFileDialog"}))
+    window.focus("Save ")
+    window.press("ctrl+a")
+    window.type(str(file))
+    window.press("Return")
+    okay = window.wait_for(
+        "the saving options",
+        lambda: [w for w in window.widgets(text="OK") + window.widgets(text="&OK")],
+    )
+    window.screenshot().save(PICTURES / f"{flavour}-export.png")
+    window.click(okay[0])
+    window.wait_for("the pattern", file.is_file)
+    text = file.read_text()
+    assert text.count("<path") > 3 and text.rstrip().endswith("</svg>")
+    hosts.record(f"window-{flavour}", "Saving as SVG", "runs")

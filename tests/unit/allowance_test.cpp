@@ -1,0 +1,100 @@
+#include "sheet/allowance.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "sheet/segment_grid.h"
+
+namespace devseg {
+namespace {
+
+using Ring = std::vector<Vec2>;
+
+PatternPiece piece_of(const Ring& outer, const std::vector<Ring>& holes = {}) {
+    PatternPiece piece;
+    piece.outer.points = outer;
+    for (const Vec2& p : outer)
+        piece.box.extend(p);
+    for (const Ring& hole : holes) {
+        piece.holes.emplace_back();
+        piece.holes.back().points = hole;
+    }
+    return piece;
+}
+
+double area(const Ring& ring) {
+    double twice = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec2& p = ring[i];
+        const Vec2& q = ring[(i + 1) % ring.size()];
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
+
+double distance(const Ring& ring, const Vec2& p) {
+    double least = 1e300;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec2& a = ring[i];
+        const Vec2 d = ring[(i + 1) % ring.size()] - a;
+        const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+        least = std::min(least, (a + t * d - p).norm());
+    }
+    return least;
+}
+
+const Ring square = {Vec2(0, 0), Vec2(40, 0), Vec2(40, 40), Vec2(0, 40)};
+const Ring corner = {Vec2(0, 0),   Vec2(40, 0),  Vec2(40, 20),
+                     Vec2(20, 20), Vec2(20, 40), Vec2(0, 40)};
+
+// Areas of a grown square are known in closed form for each kind of corner.
+TEST(Allowance, CornersAreOfTheirStyle) {
+    const double w = 5.0;
+    const double straight = 1600.0 + 4.0 * 40.0 * w;
+    const PatternPiece piece = piece_of(square);
+    EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::miter)[0]), straight + 4 * w * w, 1e-3);
+    EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::bevel)[0]), straight + 2 * w * w, 1e-3);
+    EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::round)[0]), straight + M_PI * w * w, 0.4);
+}
+
+TEST(Allowance, ConcaveCornersAreTrimmed) {
+    for (const CornerStyle style : {CornerStyle::miter, CornerStyle::bevel, CornerStyle::round}) {
+        const std::vector<Ring> cut = add_allowance(piece_of(corner), 5.0, style);
+        ASSERT_EQ(cut.size(), 1u);
+        EXPECT_LT(distance({cut[0]}, Vec2(25, 25)), 1e-5);
+        for (const Vec2& p : cut[0])
+            EXPECT_GT(distance(corner, p), 5.0 * std::sqrt(0.5) - 1e-5);
+    }
+}
+
+// A needle of 20 degrees: a pointed corner would reach 28 mm out.
+TEST(Allowance, SharpCornersAreCutOff) {
+    const Ring needle = {Vec2(0, 0), Vec2(100, -17.6), Vec2(100, 17.6)};
+    const Ring cut = add_allowance(piece_of(needle), 5.0, CornerStyle::miter)[0];
+    for (const Vec2& p : cut)
+        EXPECT_LT(distance(needle, p), 10.0 + 1e-5);
+}
+
+TEST(Allowance, HolesShrinkAndSmallOnesClose) {
+    const Ring wide = {Vec2(5, 5), Vec2(5, 35), Vec2(35, 35), Vec2(35, 5)};
+    std::vector<Ring> cut = add_allowance(piece_of(square, {wide}), 4.0, CornerStyle::miter);
+    ASSERT_EQ(cut.size(), 2u);
+    EXPECT_NEAR(area(cut[1]), -22.0 * 22.0, 1e-3);
+    const Ring narrow = {Vec2(18, 18), Vec2(18, 22), Vec2(22, 22), Vec2(22, 18)};
+    EXPECT_EQ(add_allowance(piece_of(square, {narrow}), 4.0, CornerStyle::miter).size(), 1u);
+}
+
+// The allowances of a dart's two sides meet: the cut line runs straight over it.
+TEST(Allowance, NarrowDartsAreCovered) {
+    const Ring dart = {Vec2(0, 0),  Vec2(40, 0),  Vec2(40, 40), Vec2(22, 40),
+                       Vec2(20, 5), Vec2(18, 40), Vec2(0, 40)};
+    const std::vector<Ring> cut = add_allowance(piece_of(dart), 5.0, CornerStyle::miter);
+    ASSERT_EQ(cut.size(), 1u);
+    EXPECT_TRUE(is_inside(cut, Vec2(20, 20)));
+    for (const Vec2& p : cut[0])
+        EXPECT_FALSE(p.y() > 0.0 && p.y() < 38.0 && p.x() > 0.0 && p.x() < 40.0);
+}
+
+} // namespace
+} // namespace devseg

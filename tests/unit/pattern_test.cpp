@@ -1,0 +1,326 @@
+// Seams, notches, outlines and shapes of patterns.
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "devseg/pattern/layout.h"
+#include "devseg/pattern/match.h"
+#include "devseg/pattern/seams.h"
+#include "devseg/pattern/shapes.h"
+#include "unit/checks.h"
+#include "unit/host_checks.h"
+#include "unit/pattern_samples.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+using samples::Cloth;
+using samples::flat;
+
+double length_of(const Pattern& pattern, const SeamSide& side) {
+    double length = 0.0;
+    for (Index k = 0; k < side.count; ++k)
+        length +=
+            (side_point(pattern.pieces, side, k + 1) - side_point(pattern.pieces, side, k)).norm();
+    return length;
+}
+
+// Every edge of every outline is in one side of one seam, or on the boundary of the model.
+void expect_every_side_once(const Pattern& pattern) {
+    std::multiset<std::array<Index, 3>> covered; // piece, path, edge
+    for (std::size_t i = 0; i < pattern.seams.size(); ++i) {
+        const Seam& seam = pattern.seams[i];
+        EXPECT_EQ(seam.number, static_cast<Index>(i) + 1);
+        for (std::size_t s = 0; s < 2; ++s) {
+            const SeamSide& side = seam.sides[s];
+            EXPECT_EQ(side.reversed, s == 1);
+            EXPECT_NEAR(side.length, length_of(pattern, side), 1e-9);
+            const PiecePath& path = pattern.pieces[at(side.piece)].path(side.path);
+            for (Index e = 0; e < side.count; ++e) {
+                const std::size_t edge = at(side.first + e) % path.points.size();
+                EXPECT_EQ(path.edges[edge].seam, static_cast<Index>(i));
+                EXPECT_EQ(path.edges[edge].side, static_cast<int>(s));
+                covered.insert({side.piece, side.path, static_cast<Index>(edge)});
+            }
+        }
+    }
+    for (std::size_t p = 0; p < pattern.pieces.size(); ++p)
+        for (Index l = 0; l < pattern.pieces[p].path_count(); ++l) {
+            const PiecePath& path = pattern.pieces[p].path(l);
+            ASSERT_EQ(path.edges.size(), path.points.size());
+            ASSERT_EQ(path.corner.size(), path.points.size());
+            ASSERT_EQ(path.half_edge.size(), path.points.size());
+            for (std::size_t e = 0; e < path.edges.size(); ++e)
+                EXPECT_EQ(covered.count({static_cast<Index>(p), l, static_cast<Index>(e)}),
+                          path.edges[e].seam >= 0 ? 1U : 0U);
+        }
+}
+
+// A letter of unit squares that no mirror or turn maps to itself.
+RawMesh letter() {
+    return shapes::plate({"####", "#...", "##.."});
+}
+
+Cloth::Place moved(const Vec2& offset, double angle = 0.0, bool mirrored = false) {
+    return [=](const Vec3& p, const Vec3&) {
+        const Vec2 q(mirrored ? -p.x() : p.x(), p.y());
+        return Vec2(Eigen::Rotation2Dd(angle) * q + offset);
+    };
+}
+
+TEST(Seams, TwoPiecesShareOneSeam) {
+    const Pattern pattern = samples::two_pieces().pattern();
+    ASSERT_EQ(pattern.pieces.size(), 2U);
+    ASSERT_EQ(pattern.seams.size(), 1U);
+    const Seam& seam = pattern.seams[0];
+    EXPECT_EQ(seam.label, "1");
+    EXPECT_NE(seam.sides[0].piece, seam.sides[1].piece);
+    EXPECT_NEAR(seam.sides[0].length, 80.0, 1e-6);
+    EXPECT_NEAR(seam.surface_length, 80.0, 1e-6);
+    EXPECT_NEAR(seam.mismatch(), 0.0, 1e-6);
+    EXPECT_FALSE(seam.is_dart);
+    // Both start at the same end: the same height on the sheet.
+    for (Index k = 0; k <= seam.sides[0].count; ++k)
+        EXPECT_NEAR(side_point(pattern.pieces, seam.sides[0], k).y(),
+                    side_point(pattern.pieces, seam.sides[1], k).y(), 1e-6);
+    expect_every_side_once(pattern);
+}
+
+TEST(Seams, DartIsASeamOfAPieceWithItselfAndEndsAtItsTip) {
+    const Pattern pattern = samples::with_dart(20.0).pattern();
+    ASSERT_EQ(pattern.pieces.size(), 1U);
+    ASSERT_EQ(pattern.seams.size(), 1U);
+    const Seam& dart = pattern.seams[0];
+    EXPECT_TRUE(dart.is_dart);
+    const auto end = [&](std::size_t s) {
+        return side_point(pattern.pieces, dart.sides[s], dart.sides[s].count);
+    };
+    EXPECT_EQ(end(0), end(1));
+    EXPECT_GT((side_point(pattern.pieces, dart.sides[0], 0) -
+               side_point(pattern.pieces, dart.sides[1], 0))
+                  .norm(),
+              10.0);
+    expect_every_side_once(pattern);
+}
+
+TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
+    for (const char* method : {"tetrahedron", "double torus"}) {
+        HostMesh host =
+            checks::host_of(method[0] == 't' ? shapes::tetrahedron() : shapes::double_torus());
+        const HostResult charts = checks::run("Segmentation: D-Charts", host,
+                                              {{"charts_number", method[0] == 't' ? 4 : 6}});
+        checks::take_charts(host, charts);
+        host.wedge_uv = checks::run("Charts: Flatten", host, {{"method", 4}}).wedge_uv;
+        const GatedMesh gated = gate_mesh(host.geometry);
+        CornerUv uv;
+        for (Index f = 0; f < gated.mesh.face_count(); ++f)
+            for (Index k = 0; k < 3; ++k)
+                uv.push_back(
+                    host.wedge_uv[at(gated.source_face[at(f)])][at(gated.source_corner(f, k))]);
+        PatternOptions options;
+        options.mm_per_unit = 50.0;
+        Progress progress;
+        const Pattern pattern = make_pattern(gated.mesh, uv, options, progress);
+        EXPECT_GE(pattern.seams.size(), 6U) << method;
+        expect_every_side_once(pattern);
+        for (const Seam& seam : pattern.seams)
+            EXPECT_TRUE(sides_agree(seam.sides[0].length, seam.sides[1].length)) << seam.label;
+    }
+}
+
+TEST(Seams, SidesOfUnequalLengthAreMatched) {
+    Cloth cloth;
+    const auto place = [](const Vec3& p, const Vec3& middle) {
+        const double stretch = middle.x() > 40.0 ? 1.05 : 1.0; // the right piece is 5 % higher
+        return Vec2(p.x() + (middle.x() > 40.0 ? 5.0 : 0.0), stretch * p.y());
+    };
+    cloth.add(shapes::grid(8, 8, 80.0, 80.0), place);
+    PatternOptions options;
+    options.match_seams = false;
+    const Pattern before = cloth.pattern(options);
+    EXPECT_NEAR(std::abs(before.seams[0].mismatch_percent()), 4.88, 0.05);
+    ASSERT_FALSE(before.notes.empty());
+    EXPECT_TRUE(checks::contains(before.notes.back(), "LPFB"));
+    const Pattern after = cloth.pattern();
+    EXPECT_NEAR(after.seams[0].mismatch(), 0.0, 1e-6);
+    EXPECT_NEAR(after.seams[0].sides[0].length, 80.0, 0.01); // as long as on the model
+}
+
+TEST(Notches, LieAtTheSameShareOnBothSidesAndFitOneWayOnly) {
+    PatternOptions options;
+    for (const double spacing : {7.0, 20.0, 30.0, 60.0, 79.0}) {
+        options.notch_spacing_mm = spacing;
+        const Pattern pattern = samples::two_pieces().pattern(options);
+        const Seam& seam = pattern.seams[0];
+        const std::vector<double>& notches = seam.sides[0].notches;
+        ASSERT_EQ(notches.size(), std::max(1.0, std::round(80.0 / spacing)));
+        ASSERT_EQ(seam.sides[1].notches.size(), notches.size());
+        double worst = 0.0;
+        for (std::size_t i = 0; i < notches.size(); ++i) {
+            EXPECT_NEAR(notches[i], seam.sides[1].notches[i], 1e-6);
+            EXPECT_GT(notches[i], 0.01 * 80.0);
+            EXPECT_LT(notches[i], 0.99 * 80.0);
+            // The other way round, some notch is far from all others.
+            double nearest = 80.0;
+            for (const double other : notches)
+                nearest = std::min(nearest, std::abs(80.0 - notches[i] - other));
+            worst = std::max(worst, nearest);
+        }
+        EXPECT_GT(worst, 0.1 * spacing) << spacing;
+    }
+    options.notch_spacing_mm = 0.0;
+    EXPECT_TRUE(samples::two_pieces().pattern(options).seams[0].sides[0].notches.empty());
+}
+
+TEST(Notches, PointOnSideIsOnTheOutlineAndLooksOut) {
+    const Pattern pattern = samples::two_pieces().pattern();
+    const Seam& seam = pattern.seams[0];
+    for (const SeamSide& side : seam.sides) {
+        const SidePoint place = point_on_side(pattern.pieces, side, 30.0);
+        const Vec2 start = side_point(pattern.pieces, side, 0);
+        EXPECT_NEAR((place.position - start).norm(), 30.0, 1e-6);
+        const PatternPiece& piece = pattern.pieces[at(side.piece)];
+        const Vec2 out = place.position + 2.0 * place.outward;
+        const Vec2 in = place.position - 2.0 * place.outward;
+        EXPECT_FALSE(piece.box.contains(out));
+        EXPECT_TRUE(piece.box.contains(in));
+    }
+}
+
+TEST(Shapes, MirroredAndEqualPiecesAreFound) {
+    Cloth cloth;
+    cloth.add(letter(), moved(Vec2(0, 0)));
+    cloth.add(letter(), moved(Vec2(20, 0), 2.1));
+    cloth.add(shapes::plate({"####", "#...", "###."}), moved(Vec2(40, 0)));
+    // The mirror image on the model, not only in the texture.
+    RawMesh mirrored = letter();
+    for (Vec3& p : mirrored.points)
+        p.x() = -p.x();
+    for (Triangle& t : mirrored.faces)
+        std::swap(t[1], t[2]);
+    cloth.add(mirrored, moved(Vec2(60, 0), -0.7));
+    PatternOptions options;
+    options.mm_per_unit = 10.0;
+    const Pattern pattern = cloth.pattern(options);
+    ASSERT_EQ(pattern.pieces.size(), 4U);
+    const auto& p = pattern.pieces;
+    EXPECT_EQ(p[0].model, 0);
+    EXPECT_EQ(p[0].quantity, 2);
+    EXPECT_EQ(p[0].mirrored_quantity, 1);
+    EXPECT_EQ(p[1].model, 0);
+    EXPECT_FALSE(p[1].mirrored);
+    EXPECT_EQ(p[1].quantity, 0);
+    EXPECT_EQ(p[2].model, 2);
+    EXPECT_EQ(p[2].quantity, 1);
+    EXPECT_EQ(p[3].model, 0);
+    EXPECT_TRUE(p[3].mirrored);
+}
+
+TEST(Shapes, ToleranceDecidesWhatIsEqual) {
+    Cloth cloth;
+    cloth.add(shapes::grid(2, 1, 100.0, 50.0), moved(Vec2(0, 0)));
+    cloth.add(shapes::grid(2, 1, 100.4, 50.0), moved(Vec2(200, 0)));
+    PatternOptions options;
+    options.pair_tolerance_mm = 0.5;
+    EXPECT_EQ(cloth.pattern(options).pieces[1].model, 0);
+    options.pair_tolerance_mm = 0.1;
+    EXPECT_EQ(cloth.pattern(options).pieces[1].model, 1);
+}
+
+TEST(Shapes, GrainLineFollowsTheLongSideOrTheTexture) {
+    Cloth cloth;
+    cloth.add(shapes::grid(4, 1, 100.0, 20.0), moved(Vec2(0, 0), 0.5));
+    PatternOptions options;
+    const PatternPiece longest = cloth.pattern(options).pieces[0];
+    const Vec2 along = (longest.grain[1] - longest.grain[0]).normalized();
+    EXPECT_NEAR(along.dot(Vec2(std::cos(0.5), std::sin(0.5))), 1.0, 1e-6);
+    EXPECT_NEAR(longest.long_side, 100.0, 1e-4);
+    EXPECT_NEAR(longest.short_side, 20.0, 1e-4);
+    const double length = (longest.grain[1] - longest.grain[0]).norm();
+    EXPECT_GT(length, 60.0);
+    EXPECT_LT(length, 100.0);
+    options.grain = GrainDirection::texture_v;
+    const PatternPiece upright = cloth.pattern(options).pieces[0];
+    EXPECT_NEAR((upright.grain[1] - upright.grain[0]).normalized().y(), 1.0, 1e-9);
+}
+
+TEST(Shapes, LargePiecesAreSplitAcrossTheirLongSideAlongAStraightLine) {
+    Cloth cloth;
+    cloth.add(shapes::grid(60, 4, 300.0, 20.0), moved(Vec2(0, 0)));
+    PatternOptions options;
+    options.max_piece_mm = 110.0;
+    const Pattern pattern = cloth.pattern(options);
+    ASSERT_EQ(pattern.pieces.size(), 3U);
+    ASSERT_EQ(pattern.seams.size(), 2U);
+    double area = 0.0;
+    for (const PatternPiece& piece : pattern.pieces) {
+        EXPECT_LE(piece.long_side, 110.0);
+        area += piece.area;
+    }
+    EXPECT_NEAR(area, 6000.0, 1e-6);
+    for (const Seam& seam : pattern.seams) {
+        EXPECT_EQ(seam.sides[0].count, 1);
+        EXPECT_NEAR(seam.sides[0].length, 20.0, 2.0);
+        EXPECT_NEAR(seam.mismatch(), 0.0, 1e-9);
+    }
+    for (const Index p : pattern.face_piece)
+        EXPECT_GE(p, 0);
+    EXPECT_TRUE(overlapping_pieces(pattern.pieces).empty());
+    expect_every_side_once(pattern);
+}
+
+TEST(Shapes, StackedPiecesGetPlacesOfTheirOwn) {
+    Cloth cloth;
+    for (int i = 0; i < 3; ++i)
+        cloth.add(shapes::grid(2, 2, 10.0, 10.0), moved(Vec2(i == 2 ? 4.0 : 0.0, 0.0)));
+    const Pattern pattern = cloth.pattern();
+    ASSERT_EQ(pattern.pieces.size(), 3U);
+    EXPECT_TRUE(overlapping_pieces(pattern.pieces).empty());
+    for (const PatternPiece& piece : pattern.pieces) {
+        EXPECT_GE(piece.box.min().minCoeff(), -1e-9);
+        EXPECT_LE(piece.box.max().y(), pattern.height + 1e-9);
+    }
+    ASSERT_FALSE(pattern.notes.empty());
+    EXPECT_TRUE(checks::contains(pattern.notes.front(), "2 of 3 pieces lay on others"));
+}
+
+TEST(Shapes, StrainIsThatOfTheLinesInTheMaterial) {
+    Cloth cloth;
+    cloth.add(shapes::grid(4, 4, 100.0, 100.0),
+              [](const Vec3& p, const Vec3&) { return Vec2(1.21 * p.x(), p.y()); });
+    const PatternPiece piece = cloth.pattern().pieces[0];
+    // The scale of a single chart keeps the length of its boundary.
+    const double scale = 0.5 * (1.21 + 1.0);
+    EXPECT_NEAR(piece.strain.extension, 1.21 / scale - 1.0, 1e-6);
+    EXPECT_NEAR(piece.strain.compression, 1.0 - 1.0 / scale, 1e-6);
+    EXPECT_NEAR(piece.strain.mean, 1.21 / scale - 1.0, 1e-6);
+    EXPECT_NEAR(piece.strain.area_change, 1.21 / (scale * scale) - 1.0, 1e-6);
+    EXPECT_GE(piece.strain.worst_face, 0);
+}
+
+TEST(Shapes, FoldsHaveTheAngleBetweenTheirFaces) {
+    for (const double sign : {1.0, -1.0}) {
+        Cloth cloth;
+        RawMesh bent = shapes::grid(2, 1, 20.0, 10.0);
+        const double angle = 40.0 * shapes::pi / 180.0;
+        for (Vec3& p : bent.points)
+            if (p.x() > 15.0)
+                p = Vec3(10.0 + 10.0 * std::cos(angle), p.y(), sign * 10.0 * std::sin(angle));
+        cloth.add(bent, [&](const Vec3& p, const Vec3&) {
+            return Vec2(p.z() != 0.0 ? 20.0 : p.x(), p.y());
+        });
+        const std::vector<PieceFold> folds = cloth.pattern().pieces[0].folds;
+        ASSERT_EQ(folds.size(), 1U);                      // the diagonals of the squares are flat
+        EXPECT_NEAR(folds[0].angle, -sign * angle, 1e-6); // bent upwards is a valley
+        EXPECT_NEAR((folds[0].to - folds[0].from).norm(), 10.0, 1e-6);
+        PatternOptions options;
+        options.fold_angle = 41.0;
+        EXPECT_TRUE(cloth.pattern(options).pieces[0].folds.empty());
+    }
+}
+
+} // namespace
+} // namespace devseg
