@@ -301,6 +301,18 @@ TEST(Shapes, StrainIsThatOfTheLinesInTheMaterial) {
     EXPECT_GE(piece.strain.worst_face, 0);
 }
 
+TEST(Shapes, OptionsOutOfRangeAreRefused) {
+    for (double PatternOptions::*field :
+         {&PatternOptions::simplify_mm, &PatternOptions::corner_angle, &PatternOptions::curve_mm,
+          &PatternOptions::notch_spacing_mm, &PatternOptions::fold_angle,
+          &PatternOptions::max_piece_mm, &PatternOptions::pair_tolerance_mm})
+        for (const double bad : {-1.0, std::nan("")}) {
+            PatternOptions options;
+            options.*field = bad;
+            EXPECT_THROW(samples::two_pieces().pattern(options), InvalidParameter);
+        }
+}
+
 TEST(Shapes, FoldsHaveTheAngleBetweenTheirFaces) {
     for (const double sign : {1.0, -1.0}) {
         Cloth cloth;

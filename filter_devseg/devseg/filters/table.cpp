@@ -19,12 +19,14 @@ const std::vector<FilterDeclaration>& filter_table() {
     return table;
 }
 
-std::string out_of_range(const std::string& name, double minimum, double maximum, double found) {
+double checked(const std::string& name, double minimum, double maximum, double value) {
+    if (value >= minimum && value <= maximum)
+        return value;
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << name << ": expected a number from " << minimum << " to " << maximum << ", found "
-         << found;
-    return text.str();
+         << value;
+    throw InvalidParameter(text.str());
 }
 
 ChartMap find_charts(const FilterInput& input) {
