@@ -26,7 +26,6 @@ import reference
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "devseg"
 OLD_PYTHON = CACHE / "pymeshlab-2022.2" / "bin" / "python"
-RECORDS = ROOT / "build" / "host-runs"
 
 
 def missing(what: str) -> None:
@@ -50,8 +49,9 @@ def declarations() -> list[dict[str, Any]]:
 
 def record(host: str, filter_name: str, what: str) -> None:
     """Remembers for docs/hosts.md what has been run; called after it has worked."""
-    RECORDS.mkdir(parents=True, exist_ok=True)
-    file = RECORDS / f"{host}.json"
+    assert host in reference.HOSTS
+    reference.RECORDS.mkdir(parents=True, exist_ok=True)
+    file = reference.RECORDS / f"{host}.json"
     known = json.loads(file.read_text()) if file.is_file() else {}
     file.write_text(json.dumps({**known, filter_name: what}, indent=1) + "\n")
 
