@@ -37,7 +37,9 @@ install_into() {
 uninstall_from() {
     local file removed=()
     for file in "${plugin_files[@]}"; do
-        [[ -f $1/$file ]] && grep -aq 'devseg-flavour=' "$1/$file" || continue
+        if [[ ! -f $1/$file ]] || ! grep -aq 'devseg-flavour=' "$1/$file"; then
+            continue
+        fi
         with_rights "$1" rm -f "$1/$file" || die "could not remove $1/$file"
         removed+=("$file")
     done

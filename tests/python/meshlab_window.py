@@ -142,6 +142,14 @@ class MeshLabWindow:
         self._xdotool("mousemove", str(x + width // 2), str(y + height // 2))
         self._xdotool("click", "1")
 
+    def drag(self, start: tuple[int, int], end: tuple[int, int]) -> None:
+        self._xdotool("mousemove", *map(str, start), "mousedown", "1")
+        for step in (0.1, 0.5, 1.0):
+            time.sleep(0.1)
+            at = (round(a + step * (b - a)) for a, b in zip(start, end, strict=True))
+            self._xdotool("mousemove", *map(str, at))
+        self._xdotool("mouseup", "1")
+
     def focus(self, title: str) -> None:
         """Gives the keyboard to the window whose title has this in it: no window manager does."""
         self._xdotool("search", "--onlyvisible", "--name", title, "windowfocus", "--sync", "%1")

@@ -37,3 +37,12 @@ def test_every_filter_was_run_in_every_host_without_a_window() -> None:
     for name, *cells in rows[2:]:
         for host, cell in zip(reference.HOSTS, cells, strict=True):
             assert "runs" in cell or host.startswith("window"), (name, host)
+
+
+def test_adapters_stay_thin() -> None:
+    adapters = [
+        *ROOT.glob("filter_devseg/host/meshlab*/*"),
+        *ROOT.glob("io_pattern/host/meshlab*/*"),
+    ]
+    assert len(adapters) == 8
+    assert {file.name: n for file in adapters if (n := file.read_text().count("\n")) > 350} == {}

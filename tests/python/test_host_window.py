@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -116,6 +117,19 @@ def check_dialog(window: MeshLabWindow, filter_: dict[str, Any]) -> None:
         window.click(window.widgets(dock=dock, text="Help")[0])
 
 
+def show_beside(window: MeshLabWindow, dock: str, picture: Path) -> None:
+    """A picture with the dialog at the right, where it hides the log and its file names."""
+    x, y, width, height = next(
+        w["box"] for w in window.widgets(dock=dock) if "Dialog" in w["class"]
+    )
+    log = next(w["box"] for w in window.widgets(**{"class": "QPlainTextEdit"}))
+    right = window.screenshot().width - x - width
+    down = max(log[1] + log[3] - y - height, 0)
+    window.drag((x + width // 3, y + 10), (x + width // 3 + right, y + 10 + down))
+    time.sleep(1.0)
+    window.screenshot().save(picture)
+
+
 def middle(widget: Widget) -> float:
     return widget["box"][1] + widget["box"][3] / 2
 
@@ -162,7 +176,7 @@ def test_every_filter_is_found_explains_itself_and_runs(
             assert not filter_["parameters"]
         window.wait_for(f"the end of {name}", ended)
         if name == "Segmentation: D-Charts":
-            window.screenshot().save(PICTURES / f"{flavour}-dialog.png")
+            show_beside(window, name, PICTURES / f"{flavour}-dialog.png")
         if dialog():
             window.click(window.widgets(dock=name, text="Close")[0])
         if name == "Segmentation: D-Charts":
