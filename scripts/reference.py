@@ -40,12 +40,15 @@ WRITES = {
     2: "face quality",
     4: "face colours",
     8: "wedge texture coordinates",
+    16: "a new layer",
 }
 RICH_TYPES = {
     "boolean": "RichBool",
     "integer": "RichInt",
     "real": "RichFloat",
     "choice": "RichEnum",
+    "text": "RichString",
+    "output file": "RichSaveFile",
 }
 
 INTRODUCTION = """# Filters
@@ -78,7 +81,7 @@ def written_default(parameter: dict[str, Any]) -> str:
     value = parameter["default"]
     if parameter["kind"] == "boolean":
         return "true" if value else "false"
-    return f"{value:.9g}" if parameter["kind"] == "real" else str(value)
+    return f"{value:.6g}" if parameter["kind"] == "real" else str(value)
 
 
 def markdown(text: str) -> str:
@@ -124,6 +127,8 @@ def _parameter_row(parameter: dict[str, Any]) -> str:
         limits = ", ".join(parameter["choices"])
     elif parameter["kind"] == "boolean":
         limits = "true, false"
+    elif parameter["kind"] in ("text", "output file"):
+        limits = parameter["kind"]
     meaning = f"{parameter['label']}. {markdown(parameter['help'])}".replace("  \n", " ")
     return _row(f"`{parameter['name']}`", default, limits, meaning)
 

@@ -73,6 +73,11 @@ def declared_script(filter_: dict[str, Any]) -> list[dict[str, str]]:
     ]
 
 
+def without_extensions(parameters: list[dict[str, str]]) -> list[dict[str, str]]:
+    """What a file dialog filters by is no part of a declaration."""
+    return [{k: v for k, v in p.items() if k != "ext"} for p in parameters]
+
+
 @dataclass(frozen=True)
 class PrivateMeshLab:
     """A MeshLab that loads our plugins, without touching the installed one."""
@@ -160,7 +165,7 @@ def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]
         {
             **step,
             "parameters": [
-                {**p, "default": str(file)} if p["name"] == "output_file" else p
+                {**p, "default": str(file)} if p["kind"] == "output file" else p
                 for p in step["parameters"]
             ],
         }
