@@ -42,6 +42,7 @@ WRITES = {
     8: "wedge texture coordinates",
     16: "a new layer",
 }
+WRITES_LAYER = 16
 RICH_TYPES = {
     "boolean": "RichBool",
     "integer": "RichInt",
@@ -74,6 +75,11 @@ def declarations() -> list[dict[str, Any]]:
             if parameter["kind"] == "real":
                 parameter["default"] = float(parameter["default"])
     return table
+
+
+def makes_layer(filter_: dict[str, Any]) -> bool:
+    """Whether the filter leaves a mesh of its own."""
+    return bool(filter_["writes"] & WRITES_LAYER)
 
 
 def written_default(parameter: dict[str, Any]) -> str:

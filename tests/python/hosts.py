@@ -155,8 +155,8 @@ def server_report(server: PrivateMeshLab) -> dict[str, dict[str, Any]]:
 
 def prepared(filter_: dict[str, Any]) -> list[dict[str, Any]]:
     """The filter behind those that make what it may need: charts and texture coordinates."""
-    first = [step for step in declarations() if step["menu_name"] in reference.PREPARATION]
-    return [*first, filter_]
+    by_name = {step["menu_name"]: step for step in declarations()}
+    return [*(by_name[name] for name in reference.PREPARATION), filter_]
 
 
 def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]:

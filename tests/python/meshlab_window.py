@@ -24,7 +24,7 @@ from conftest import ROOT
 
 INSPECTOR = ROOT / "build" / "release" / "tests" / "libdevseg_window_inspector.so"
 SIZE = (1280, 1024)
-PATIENCE = 60.0  # seconds; software rendering on a busy machine is slow
+PATIENCE = 120.0  # seconds; software rendering on a busy machine is slow
 
 Widget = dict[str, Any]
 T = TypeVar("T")
