@@ -5,7 +5,7 @@
 #include "devseg/filters/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/metrics/segmentation.h"
-#include "devseg/segment/dcharts.h"
+#include "devseg/refine/developable_charts.h"
 
 namespace devseg {
 
@@ -42,17 +42,19 @@ constexpr const char* colorize_help =
     "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
     "coordinates, and without those each connected component of the mesh is a chart.";
 
-FilterOutput run_dcharts(const FilterInput& input, const DChartsOptions& options,
+FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOptions& options,
                          Progress& progress) {
-    DChartsResult segmentation = segment_dcharts(input.mesh, options, progress);
+    DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, progress);
     progress.begin_phase("cutting charts to disks", 0.1);
     DiskCuts cuts = cut_charts_to_disks(
-        input.mesh, make_chart_map(input.mesh, segmentation.chart, {}, false), progress);
+        input.mesh, make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false),
+        progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
-        {"straightened_borders_number", segmentation.straightened_borders},
+        {"joined_charts_number", segmentation.joins},
+        {"darts_number", segmentation.darts},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
         {"seam_length", seam_length(input.mesh, cuts.charts)},
@@ -85,7 +87,7 @@ FilterOutput run_colorize(const FilterInput& input, const NoOptions&, Progress&)
 }
 
 FilterDeclaration dcharts() {
-    using O = DChartsOptions;
+    using O = DevelopableChartsOptions;
     return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
                       FilterCategory::remeshing, dcharts_help)
         .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
@@ -104,8 +106,18 @@ FilterDeclaration dcharts() {
               "Exponent of the ratio of outer to inner edge length in the cost, without unit. "
               "Larger values make smoother borders.")
         .boolean(&O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
-                 "Replace each border between two charts by the shortest one within the area that "
-                 "fits both.")
+                 "Move the borders between charts to where they are short, within the areas that "
+                 "fit both charts.")
+        .boolean(&O::merge_charts, "merge_charts", "Join charts",
+                 "Join neighbouring charts, those with long common borders first, where a trial "
+                 "flattening of both as one chart stays within the bounds of merge_threshold.")
+        .real(&O::merge_threshold, "merge_threshold", "Joining threshold", 0.0, 1.0,
+              "How far joined charts may be from developable, without unit: at most 1 + t / 2 of "
+              "L2 stretch and 1 + 4 √t of L∞ stretch. 0.01 suits free forms, 0.00001 mechanical "
+              "parts. Darts are cut into charts that exceed the same bounds.")
+        .boolean(&O::add_darts, "add_darts", "Cut darts",
+                 "Cut from the border of a chart to the spots where its map is stretched most, as "
+                 "far as that is worth the length of the cut.")
         .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                  "The rounds of growing and reseeding end here at the latest; usually fewer than "
                  "5 % of the faces change their chart long before.")
@@ -115,7 +127,8 @@ FilterDeclaration dcharts() {
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("hole_charts_number", "charts that were added where no other fitted")
-        .result("straightened_borders_number", "borders that were replaced by shorter ones")
+        .result("joined_charts_number", "joins of two charts")
+        .result("darts_number", "cuts inside charts, to spots of high stretch")
         .result("rounds_number", "rounds of growing and reseeding")
         .result("converged", "whether fewer than 5 % of the faces changed in the last round")
         .result("seam_length", "length of all cut edges, model units")
