@@ -78,8 +78,10 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
             EXPECT_GE(p.help.size(), 30U);
             EXPECT_EQ(p.help.back(), '.');
             EXPECT_LE(p.minimum, p.maximum);
-            EXPECT_GE(number(p.default_value), p.minimum);
-            EXPECT_LE(number(p.default_value), p.maximum);
+            if (!std::holds_alternative<std::string>(p.default_value)) {
+                EXPECT_GE(number(p.default_value), p.minimum);
+                EXPECT_LE(number(p.default_value), p.maximum);
+            }
             switch (p.kind) {
             case ParameterKind::boolean:
                 EXPECT_TRUE(std::holds_alternative<bool>(p.default_value));
@@ -100,6 +102,10 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
                 EXPECT_EQ(p.maximum, static_cast<double>(p.choices.size()) - 1.0);
                 for (const std::string& choice : p.choices)
                     EXPECT_TRUE(contains(p.help, choice));
+                break;
+            case ParameterKind::text:
+            case ParameterKind::output_file:
+                EXPECT_TRUE(std::holds_alternative<std::string>(p.default_value));
                 break;
             }
         }

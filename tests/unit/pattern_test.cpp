@@ -111,7 +111,9 @@ TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
         HostMesh host =
             checks::host_of(method[0] == 't' ? shapes::tetrahedron() : shapes::double_torus());
         const HostResult charts = checks::run("Segmentation: D-Charts", host,
-                                              {{"charts_number", method[0] == 't' ? 4 : 6}});
+                                              {{"charts_number", method[0] == 't' ? 4 : 6},
+                                               {"merge_charts", false},
+                                               {"straighten_boundaries", false}});
         checks::take_charts(host, charts);
         host.wedge_uv = checks::run("Charts: Flatten", host, {{"method", 4}}).wedge_uv;
         const GatedMesh gated = gate_mesh(host.geometry);
