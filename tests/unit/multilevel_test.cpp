@@ -26,7 +26,7 @@ std::vector<Vec2> minimised_lscm(const FlatteningProblem& problem, double tolera
 }
 
 std::vector<Vec2> flatten(const Disk& disk, const Progress& progress = Progress{}) {
-    const auto solve = [](const FlatteningProblem& coarse) {
+    const auto solve = [](const FlatteningProblem& coarse, const ChartSurface&) {
         return minimised_lscm(coarse, SymmetricDirichletOptions{}.relative_tolerance);
     };
     return flatten_multilevel(disk.mesh, disk.surface, disk.problem, solve, progress);
@@ -117,7 +117,7 @@ TEST(Multilevel, FacesWithoutAreaAndNeedlesAreFlattened) {
 
 TEST(Multilevel, ErrorsOfTheSolverComeThrough) {
     const Disk disk(shapes::hemisphere(80, 42));
-    const auto fails = [](const FlatteningProblem&) -> std::vector<Vec2> {
+    const auto fails = [](const FlatteningProblem&, const ChartSurface&) -> std::vector<Vec2> {
         throw NumericalFailure("no solution");
     };
     EXPECT_THROW(flatten_multilevel(disk.mesh, disk.surface, disk.problem, fails, Progress{}),
@@ -128,7 +128,7 @@ TEST(Multilevel, Cancels) {
     const Disk disk(shapes::hemisphere(80, 42));
     Progress stopped([](double, const char*) { return false; });
     // Once the coarse map is there: what follows must stop as well.
-    const auto solve = [&](const FlatteningProblem& coarse) {
+    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface&) {
         std::vector<Vec2> uv = minimised_lscm(coarse, 1e-3);
         EXPECT_THROW(stopped.update(0.5), Cancelled);
         return uv;

@@ -41,6 +41,12 @@ constexpr double slit_gap = 5e-5;
 // A face that keeps less of its area has collapsed.
 constexpr double collapsed = 1e-5;
 
+// Coarse-to-fine maps of larger charts are taken as they are: their energy is within 1e-4 of the
+// minimum, and one factorization of the whole chart would cost more than all levels together.
+constexpr Index most_polished_faces = 120000;
+// Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
+constexpr double coarse_gap = 4e-3;
+
 constexpr double lpfb_area_change = 0.1;
 constexpr double lpfb_stretch = 2.0;
 // Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
@@ -70,17 +76,27 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& 
 }
 
 std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
-                                  const FlatteningProblem& problem, const Progress& progress) {
+                                  const FlatteningProblem& problem, bool& refined,
+                                  const Progress& progress) {
+    refined = false;
     if (surface.face_count() < multilevel_threshold)
         return valid_start(problem, progress);
-    const auto solve = [&](const FlatteningProblem& coarse) {
-        return minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
-                                            SymmetricDirichletOptions{}, progress)
-            .uv;
+    // Parts that lie on each other are pushed apart where that is cheap.
+    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface& disk) {
+        std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
+                                                            SymmetricDirichletOptions{}, progress)
+                                   .uv;
+        const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+        const Pairs pairs = overlapping_pairs(disk, uv, tolerance);
+        if (!pairs.empty() && surface.face_count() > most_polished_faces)
+            if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance, progress, coarse_gap))
+                uv = std::move(*apart);
+        return uv;
     };
     try {
         std::vector<Vec2> uv = flatten_multilevel(mesh, surface, problem, solve, progress);
-        if (count_flips(problem, uv) == 0)
+        refined = count_flips(problem, uv) == 0;
+        if (refined)
             return uv;
     } catch (const NumericalFailure&) { // needles can leave no room for a vertex
     }
@@ -89,11 +105,14 @@ std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
 
 void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
                                const Progress& progress) {
-    SymmetricDirichletResult result = minimise_symmetric_dirichlet(
-        problem, isometric_start(mesh, chart.surface, problem, progress),
-        SymmetricDirichletOptions{}, progress);
-    chart.uv = std::move(result.uv);
-    chart.converged = result.converged;
+    bool refined = false;
+    chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
+    if (!refined || chart.surface.face_count() <= most_polished_faces) {
+        SymmetricDirichletResult result =
+            minimise_symmetric_dirichlet(problem, chart.uv, SymmetricDirichletOptions{}, progress);
+        chart.uv = std::move(result.uv);
+        chart.converged = result.converged;
+    }
     relieve_peaks(problem, chart.surface.twin, false, chart.uv, progress);
     scale_to_area(problem, chart.uv);
 }
@@ -231,7 +250,8 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
         return {};
     // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
     // would not be theirs any more.
-    const bool may_push = method == FlattenMethod::symmetric_dirichlet || chart.mended;
+    const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
+                          chart.surface.face_count() <= most_polished_faces;
     if (auto apart = may_push
                          ? push_apart(problem, chart.surface, chart.uv, pairs, tolerance, progress)
                          : std::nullopt) {

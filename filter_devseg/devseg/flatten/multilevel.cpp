@@ -227,10 +227,10 @@ private:
 
 } // namespace
 
-std::vector<Vec2>
-flatten_multilevel(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-                   const std::function<std::vector<Vec2>(const FlatteningProblem&)>& solve,
-                   const Progress& progress) {
+std::vector<Vec2> flatten_multilevel(
+    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Progress& progress) {
     const Mesh local = local_mesh(mesh, surface);
     CoarseSurface coarse = coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
     const CoarseMesh small = extract_coarse_mesh(local, coarse);
@@ -238,7 +238,7 @@ flatten_multilevel(const Mesh& mesh, const ChartSurface& surface, const Flatteni
     std::iota(all.begin(), all.end(), 0);
     const ChartSurface disk = extract_surface(small.mesh, std::move(all),
                                               std::vector<std::uint8_t>(small.mesh.twin.size(), 0));
-    const std::vector<Vec2> found = solve(make_flattening_problem(small.mesh, disk));
+    const std::vector<Vec2> found = solve(make_flattening_problem(small.mesh, disk), disk);
     std::vector<Vec2> uv(local.points.size(), Vec2::Zero());
     for (Index v = 0; v < disk.vertex_count(); ++v)
         uv[at(small.vertex[at(disk.vertex[at(v)])])] = found[at(v)];

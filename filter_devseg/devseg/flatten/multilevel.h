@@ -20,9 +20,9 @@ constexpr Index multilevel_threshold = 6000;
 /// by one into the kernels of their neighbourhoods, which never flips a face, and relaxes all
 /// vertices after each doubling of their number. uv is #v of `surface`. Throws what `solve` throws,
 /// and NumericalFailure where rounding left no valid place for a vertex.
-std::vector<Vec2>
-flatten_multilevel(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-                   const std::function<std::vector<Vec2>(const FlatteningProblem&)>& solve,
-                   const Progress& progress);
+std::vector<Vec2> flatten_multilevel(
+    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Progress& progress);
 
 } // namespace devseg

@@ -11,7 +11,7 @@ namespace devseg {
 
 namespace {
 
-constexpr double harmless = 1.005;     // stretch of a face that is no peak anyway
+constexpr double harmless = 1.005;    // stretch of a face that is no peak anyway
 constexpr double usual_share = 0.995; // of the area: what is stretched more may be a peak
 constexpr double above_usual = 1.01;  // stretch of a peak over that of the usual faces
 constexpr int rings = 3;              // of faces around peaks, whose vertices move

@@ -16,7 +16,6 @@ namespace {
 constexpr int push_rounds = 10;
 constexpr double first_stiffness = 100.0; // in units of the energy per chart area
 constexpr double stiffer = 2.0;
-constexpr double gap_share = 3e-4; // distance to leave between parts, of the chart's size
 // Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a cut
 // keeps the pattern truer than a deformation.
 constexpr double push_cost = 0.01;
@@ -38,7 +37,8 @@ std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
 std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
                                             const ChartSurface& surface, std::vector<Vec2> uv,
                                             std::vector<std::pair<Index, Index>> pairs,
-                                            double tolerance, const Progress& progress) {
+                                            double tolerance, const Progress& progress,
+                                            double gap_share) {
     const double before = symmetric_dirichlet_energy(problem, uv);
     ContactPenalty penalty;
     penalty.stiffness = first_stiffness / problem.total_area;

@@ -1,8 +1,11 @@
 #include "devseg/mesh/coarsen.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include "devseg/parallel.h"
 
 namespace devseg {
 
@@ -55,10 +58,10 @@ struct Quadric {
 
 class Coarsener {
 public:
-    Coarsener(const std::vector<Vec3>& points, CoarseSurface& surface)
+    Coarsener(const std::vector<Vec3>& points, CoarseSurface& surface, Progress* shared)
         : points_(points), s_(surface), outgoing_(points.size(), -1), quadric_(points.size()),
           best_(points.size()), stale_(points.size(), 1), touched_(points.size(), 0),
-          mark_(points.size(), 0) {
+          shared_(shared) {
         for (Index h = 0; h < static_cast<Index>(s_.twin.size()); ++h)
             outgoing_[at(origin(h))] = h;
         for (Index f = 0; f < static_cast<Index>(s_.faces.size()); ++f)
@@ -127,19 +130,11 @@ private:
 
     // The cheapest collapse of each vertex whose surroundings changed; then those to try, in order.
     void choose_candidates(Index removable, const Progress& progress) {
+        refresh(progress);
         order_.clear();
-        for (Index v = 0; v < static_cast<Index>(points_.size()); ++v) {
-            if (outgoing_[at(v)] < 0)
-                continue;
-            if (stale_[at(v)] != 0) {
-                best_[at(v)] = cheapest_collapse(v);
-                stale_[at(v)] = 0;
-            }
-            if (best_[at(v)].half_edge >= 0)
+        for (Index v = 0; v < static_cast<Index>(points_.size()); ++v)
+            if (outgoing_[at(v)] >= 0 && best_[at(v)].half_edge >= 0)
                 order_.push_back(v);
-            if (v % check_every == 0)
-                progress.check();
-        }
         const auto cheaper = [&](Index a, Index b) {
             return best_[at(a)].cost != best_[at(b)].cost ? best_[at(a)].cost < best_[at(b)].cost
                                                           : a < b;
@@ -153,7 +148,27 @@ private:
         std::sort(order_.begin(), order_.end(), cheaper);
     }
 
-    Candidate cheapest_collapse(Index v) {
+    // Finds the best collapses again where surroundings changed.
+    void refresh(const Progress& progress) {
+        const Index count = static_cast<Index>(points_.size());
+        const auto refresh_part = [&](int part) {
+            progress.check();
+            for (Index v = part * check_every; v < std::min(count, (part + 1) * check_every); ++v)
+                if (outgoing_[at(v)] >= 0 && stale_[at(v)] != 0) {
+                    best_[at(v)] = cheapest_collapse(v);
+                    stale_[at(v)] = 0;
+                }
+        };
+        const int parts = (count + check_every - 1) / check_every;
+        if (shared_ != nullptr) {
+            parallel_for(parts, refresh_part, *shared_);
+        } else {
+            for (int part = 0; part < parts; ++part)
+                refresh_part(part);
+        }
+    }
+
+    Candidate cheapest_collapse(Index v) const {
         Candidate best;
         const auto consider = [&](Index h) {
             const Vec3& p = points_[at(target(h))];
@@ -172,35 +187,44 @@ private:
         return best;
     }
 
-    bool is_legal(Index h) { return keeps_topology(h) && keeps_shape(h); }
+    bool is_legal(Index h) const { return keeps_topology(h) && keeps_shape(h); }
 
     // The link condition: the ends of the edge have no common neighbours but the two opposite
     // vertices, which must keep three faces (a boundary vertex, one).
-    bool keeps_topology(Index h) {
+    bool keeps_topology(Index h) const {
         const Index v = origin(h);
         const Index w = target(h);
         const Index twin = s_.twin[at(h)];
         if (!keeps_apex(h) || (twin >= 0 && !keeps_apex(twin)))
             return false;
-        ++stamp_;
-        const auto ring = [&](Index u, auto visit) {
-            return visit_star(s_.twin, outgoing_[at(u)], [&](Index k) {
-                visit(target(k));
-                if (s_.twin[at(Mesh::previous(k))] < 0)
-                    visit(origin(Mesh::previous(k)));
-            });
-        };
-        const bool inner = ring(v, [&](Index u) { mark_[at(u)] = stamp_; });
-        Index common = 0;
-        const bool inner_w = ring(w, [&](Index u) {
-            if (u != v && mark_[at(u)] == stamp_) {
-                ++common;
-                mark_[at(u)] = 0;
-            }
-        });
-        if (!inner && !inner_w && twin >= 0)
+        Ring around_v;
+        Ring around_w;
+        const bool inner_v = gather_ring(v, around_v);
+        const bool inner_w = gather_ring(w, around_w);
+        if (!inner_v && !inner_w && twin >= 0)
             return false; // an edge through the inside that joins two boundary vertices
+        if (around_v.size == around_v.vertex.size() || around_w.size == around_w.vertex.size())
+            return false; // a hub: it may stay
+        Index common = 0;
+        for (std::size_t i = 0; i < around_v.size; ++i)
+            for (std::size_t k = 0; k < around_w.size; ++k)
+                common += around_v.vertex[i] == around_w.vertex[k] ? 1 : 0;
         return common == (twin >= 0 ? 2 : 1);
+    }
+    struct Ring {
+        std::array<Index, 64> vertex;
+        std::size_t size = 0;
+        void add(Index v) {
+            if (size < vertex.size())
+                vertex[size++] = v;
+        }
+    };
+    bool gather_ring(Index u, Ring& ring) const {
+        return visit_star(s_.twin, outgoing_[at(u)], [&](Index k) {
+            ring.add(target(k));
+            if (s_.twin[at(Mesh::previous(k))] < 0)
+                ring.add(origin(Mesh::previous(k)));
+        });
     }
     // The vertex opposite to the edge has a face besides this one, and an inner one three.
     bool keeps_apex(Index h) const {
@@ -288,17 +312,18 @@ private:
     std::vector<Candidate> best_;
     std::vector<std::uint8_t> stale_;   // #V: best_ must be found again
     std::vector<std::uint8_t> touched_; // #V: a neighbour was removed in this round
-    std::vector<std::uint32_t> mark_;   // #V: scratch of keeps_topology
-    std::uint32_t stamp_ = 0;
-    bool thorough_ = false;    // the last round removed nothing
-    std::vector<Index> order_; // candidates, the cheapest first
+    Progress* shared_;                  // of the whole run, where more threads may be used
+    bool thorough_ = false;             // the last round removed nothing
+    std::vector<Index> order_;          // candidates, the cheapest first
 };
 
 } // namespace
 
-CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
-                      const std::vector<Index>& twin, Index target_faces,
-                      const Progress& progress) {
+namespace {
+
+CoarseSurface coarsen_with(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
+                           const std::vector<Index>& twin, Index target_faces,
+                           const Progress& progress, Progress* shared) {
     CoarseSurface surface;
     surface.faces = faces;
     surface.twin = twin;
@@ -306,11 +331,23 @@ CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangl
     surface.alive_faces = static_cast<Index>(faces.size());
     if (surface.alive_faces <= target_faces)
         return surface;
-    Coarsener coarsener(points, surface);
+    Coarsener coarsener(points, surface, shared);
     while (surface.alive_faces > target_faces &&
            coarsener.round((surface.alive_faces - target_faces + 1) / 2, progress)) {
     }
     return surface;
+}
+
+} // namespace
+
+CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
+                      const std::vector<Index>& twin, Index target_faces,
+                      const Progress& progress) {
+    return coarsen_with(points, faces, twin, target_faces, progress, nullptr);
+}
+
+CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress) {
+    return coarsen_with(mesh.points, mesh.faces, mesh.twin, target_faces, progress, &progress);
 }
 
 Index undo_collapse(CoarseSurface& s) {

@@ -32,6 +32,9 @@ struct CoarseSurface {
 CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
                       const std::vector<Index>& twin, Index target_faces, const Progress& progress);
 
+/// The same with all cores; not from within a task of parallel_for.
+CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress);
+
 /// Undoes the last collapse; returns its half-edge, which leaves the vertex that is back.
 Index undo_collapse(CoarseSurface& surface);
 

@@ -35,15 +35,13 @@ ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
 
 } // namespace
 
-WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts,
-                               const Progress& progress)
+WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Progress& progress)
     : full_(full) {
     const Index wanted =
         std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
     if (full.face_count() <= worth_coarsening * wanted)
         return;
-    surface_ = std::make_unique<CoarseSurface>(
-        coarsen(full.points, full.faces, full.twin, wanted, progress));
+    surface_ = std::make_unique<CoarseSurface>(coarsen_in_parallel(full, wanted, progress));
     coarse_ = std::make_unique<CoarseMesh>(extract_coarse_mesh(full, *surface_));
 }
 

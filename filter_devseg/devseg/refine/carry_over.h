@@ -23,7 +23,7 @@ struct FullCharts {
 /// borders must run exactly along their creases.
 class WorkingSurface {
 public:
-    WorkingSurface(const Mesh& full, bool creased, Index charts, const Progress& progress);
+    WorkingSurface(const Mesh& full, bool creased, Index charts, Progress& progress);
 
     const Mesh& mesh() const { return coarse_ ? coarse_->mesh : full_; }
 
