@@ -101,6 +101,10 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
                 for (const std::string& choice : p.choices)
                     EXPECT_TRUE(contains(p.help, choice));
                 break;
+            case ParameterKind::text:
+            case ParameterKind::output_file:
+                EXPECT_TRUE(std::holds_alternative<std::string>(p.default_value));
+                break;
             }
         }
         // Results of segmentations can be repeated.
