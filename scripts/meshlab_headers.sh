@@ -176,8 +176,9 @@ find_headers() {
         say "no source offers MeshLab $headers_version any more; trying the pair of 2022.02"
         headers_version=2022.02
         wheel_version=2022.2.post4
-        find_python "$wheel_version" >/dev/null && cached_headers "$headers_version" ||
+        if ! find_python "$wheel_version" >/dev/null || ! cached_headers "$headers_version"; then
             no_headers 2025.07
+        fi
     fi
     say "MeshLab headers $headers_version ($headers_from)"
 }

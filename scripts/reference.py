@@ -20,6 +20,15 @@ from xml.sax.saxutils import quoteattr
 ROOT = Path(__file__).resolve().parents[1]
 DESCRIBE = ROOT / "build" / "release" / "tests" / "devseg_describe_filters"
 MLX = Path("scripts") / "mlx"
+# One file for each host, written by the tests (tests/python/hosts.py).
+RECORDS = ROOT / "build" / "host-runs"
+HOSTS = {
+    "pymeshlab-2025.07": "pymeshlab 2025.7",
+    "pymeshlab-2022.02": "pymeshlab 2022.2",
+    "meshlabserver-2020.09": "meshlabserver 2020.09",
+    "window-meshlab-2020.09": "MeshLab 2020.09",
+    "window-meshlab-2025.07": "MeshLab 2025.07",
+}
 
 SEGMENTATION = re.compile(r"compute_segmentation_(\w+)_per_face")
 # What most filters work on is made by these.
@@ -31,14 +40,16 @@ WRITES = {
     2: "face quality",
     4: "face colours",
     8: "wedge texture coordinates",
+    16: "a new layer",
 }
+WRITES_LAYER = 16
 RICH_TYPES = {
     "boolean": "RichBool",
     "integer": "RichInt",
     "real": "RichFloat",
     "choice": "RichEnum",
     "text": "RichString",
-    "output file": "RichFileSave",
+    "output file": "RichSaveFile",
 }
 
 INTRODUCTION = """# Filters
@@ -66,12 +77,17 @@ def declarations() -> list[dict[str, Any]]:
     return table
 
 
+def makes_layer(filter_: dict[str, Any]) -> bool:
+    """Whether the filter leaves a mesh of its own."""
+    return bool(filter_["writes"] & WRITES_LAYER)
+
+
 def written_default(parameter: dict[str, Any]) -> str:
     """The default as MeshLab's scripts write it."""
     value = parameter["default"]
     if parameter["kind"] == "boolean":
         return "true" if value else "false"
-    return f"{value:.9g}" if parameter["kind"] == "real" else str(value)
+    return f"{value:.6g}" if parameter["kind"] == "real" else str(value)
 
 
 def markdown(text: str) -> str:
@@ -177,11 +193,37 @@ def generated_files() -> dict[Path, str]:
     return files
 
 
+def hosts_table(table: list[dict[str, Any]]) -> str:
+    """What the tests have run, in which host."""
+    runs = [
+        json.loads(file.read_text()) if (file := RECORDS / f"{host}.json").is_file() else {}
+        for host in HOSTS
+    ]
+    lines = [_row("", *HOSTS.values()), _row("---", *("---" for _ in HOSTS))]
+    for name in [*(filter_["menu_name"] for filter_ in table), "Saving as SVG"]:
+        lines.append(_row(name, *(run.get(name, "not run") for run in runs)))
+    return "\n".join(lines)
+
+
+def write_hosts_table() -> None:
+    """Replaces the table in docs/hosts.md."""
+    page = ROOT / "docs" / "hosts.md"
+    before, rest = page.read_text().split("<!-- what was run -->\n")
+    after = rest.split("<!-- end -->")[1]
+    table = hosts_table(declarations())
+    page.write_text(f"{before}<!-- what was run -->\n{table}\n<!-- end -->{after}")
+
+
 def main() -> int:
     """Writes or checks; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="write nothing")
-    check = parser.parse_args().check
+    parser.add_argument("--hosts", action="store_true", help="update the table of docs/hosts.md")
+    arguments = parser.parse_args()
+    if arguments.hosts:
+        write_hosts_table()
+        return 0
+    check = arguments.check
     files = generated_files()
     left_over = {path.relative_to(ROOT) for path in (ROOT / MLX).glob("*.mlx")} - files.keys()
     stale = [

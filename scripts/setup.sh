@@ -10,6 +10,8 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 setup_log=$root/build/setup.log
+# Checkouts at different places share what is compiled.
+export CCACHE_BASEDIR=$root
 # shellcheck source=scripts/meshlab_headers.sh
 source "$root/scripts/meshlab_headers.sh"
 

@@ -1,11 +1,35 @@
 #!/usr/bin/env bash
-# All tests: unit tests (ctest), linter and formatter, then pytest on the real host, whose closing
+# All tests: unit tests (ctest), linter and formatter, then pytest on the real hosts, whose closing
 # line ends the output. Fails if any of them failed.
+#   DEVSEG_GUI_TESTS=1   builds MeshLab 2025.07 into the cache, once, and tests the windows as well;
+#                        they are also tested where it is there already
 set -euo pipefail
 
-# shellcheck source=scripts/setup.sh
-source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+# shellcheck source=scripts/build_host.sh
+source "$(dirname "${BASH_SOURCE[0]}")/build_host.sh"
+# shellcheck source=scripts/build_meshlab.sh
+source "$root/scripts/build_meshlab.sh"
+
+# MeshLab with its batch server, and an X server without a screen, used with mouse and keyboard.
+system_packages+=(meshlab xvfb xauth xdotool)
 devseg_setup
+if [[ ${DEVSEG_GUI_TESTS:-} == 1 ]]; then
+    system_packages=(libglu1-mesa-dev)
+    ensure_system_packages
+    build_meshlab
+fi
+flavours=(meshlab-2020.09 meshlab-2022.02 meshlab-2025.07)
+if find_python 2022.2.post4 >/dev/null; then
+    flavours+=(pymeshlab-2022.02)
+fi
+for flavour in "${flavours[@]}"; do
+    # It is of one version only, and devseg_setup has taken it.
+    MESHLAB_SOURCE_DIR='' build_host "$flavour"
+done
+# Debian 12 has every host: there, one that is missing is a failure.
+if [[ $(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}") == "debian 12" ]]; then
+    export DEVSEG_HOST_TESTS=required
+fi
 cd "$root"
 
 failed=()

@@ -63,6 +63,28 @@ def _parser() -> argparse.ArgumentParser:
     add_run_options(run)
     run.set_defaults(command=run_command, subparser=run)
 
+    compare = commands.add_parser("compare", help="methods side by side: measures and a picture")
+    compare.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
+    compare.add_argument(
+        "--methods",
+        type=_methods,
+        default=tuple(METHODS),
+        metavar="LIST",
+        help=f"of {','.join(METHODS)}; default: all",
+    )
+    compare.add_argument(
+        "-o", "--out", type=Path, default=Path(), metavar="DIR", help="for the picture; default: ."
+    )
+    compare.add_argument(
+        "--charts", type=_integer(1), default=20, metavar="N", help="for all methods; default: 20"
+    )
+    compare.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
+    compare.add_argument(
+        "--flatten", choices=FLATTENINGS, default="symmetric-dirichlet", help="of the charts"
+    )
+    compare.add_argument("--json", action="store_true", help="print the results as JSON")
+    compare.set_defaults(command=_compare_command, subparser=compare)
+
     measure = commands.add_parser("measure", help="measures of a mesh with texture coordinates")
     measure.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
     measure.add_argument("--json", action="store_true", help="print them as JSON")
@@ -134,12 +156,18 @@ def _positive(text: str) -> float:
 
 
 def _formats(text: str) -> tuple[str, ...]:
+    return _words(text, FORMATS)
+
+
+def _methods(text: str) -> tuple[str, ...]:
+    return _words(text, tuple(METHODS))
+
+
+def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
     chosen = tuple(dict.fromkeys(text.lower().split(",")))
     for name in chosen:
-        if name not in FORMATS:
-            raise argparse.ArgumentTypeError(
-                f"expected some of {','.join(FORMATS)}, found '{name}'"
-            )
+        if name not in known:
+            raise argparse.ArgumentTypeError(f"expected some of {','.join(known)}, found '{name}'")
     return chosen
 
 
@@ -212,6 +240,26 @@ def _summary(result: dict[str, Any], out: Path) -> str:
         f"{sum(result['seconds'].values()):.1f} s",
     ]
     return "\n".join([*lines, f"{'figures':<9} {', '.join(figures)}"])
+
+
+def _compare_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    from devseg.compare import CompareOptions, compare, table
+    from devseg.outputs import to_json
+
+    methods = [METHODS[name] for name in args.methods]
+    given = {"charts": args.charts, "seed": args.seed}
+    segmentation = [
+        {method.options[name]: value for name, value in given.items() if value is not None}
+        for method in methods
+    ]
+    result = compare(args.input, CompareOptions(args.out, methods, segmentation, args.flatten))
+    for warning in result["warnings"]:
+        print(f"devseg: warning: {args.input}: {warning}", file=sys.stderr)
+    if args.json:
+        sys.stdout.write(to_json(result))
+        return
+    print(table(result))
+    print(f"{'picture':<34}{args.out / result['outputs']['png']}")
 
 
 def _measure_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:

@@ -72,7 +72,7 @@ def find_installations() -> list[Installation]:
 
 def library_version(library: Path) -> str:
     """The version that MeshLab's library was built as: 2020.09, 2025.07d."""
-    version = re.compile(rb"(?<![\w.])20\d\d\.\d\dd?(?![\w.])")
+    version = re.compile(rb"20\d\d\.\d\dd?")
     found = version.search(library.read_bytes())
     if found is None:
         # Compilers may take such a short text apart. Versions as new as that answer this without
@@ -132,12 +132,8 @@ def main() -> None:
     """Prints the MeshLab installations, without pymeshlab's."""
     for host in find_installations():
         if host.plugins is not None:
-            print(
-                host.flavour or f"unknown-{host.version}",
-                host.library.parent,
-                host.plugins,
-                sep="\t",
-            )
+            flavour = host.flavour or f"unknown-{host.version}"
+            print(flavour, host.library.resolve().parent, host.plugins, sep="\t")
 
 
 if __name__ == "__main__":

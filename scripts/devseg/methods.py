@@ -33,6 +33,21 @@ METHODS = {
             "compute_segmentation_dcharts_per_face",
             {"charts": "charts_number", "max_fitting_error": "max_fitting_error", **_COMMON},
         ),
+        Method(
+            "t-flooding",
+            "compute_segmentation_t_flooding_per_face",
+            {"charts": "charts_number", **_COMMON},
+        ),
+        Method(
+            "vsa",
+            "compute_segmentation_variational_shape_approximation_per_face",
+            {"charts": "charts_number", **_COMMON},
+        ),
+        Method(
+            "mcgim",
+            "compute_segmentation_multi_chart_geometry_images_per_face",
+            {"charts": "charts_number", **_COMMON},
+        ),
     )
 }
 

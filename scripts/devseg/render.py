@@ -12,6 +12,8 @@ from PIL import Image, ImageDraw, ImageFont
 from devseg.raster import Visible, rasterize
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from devseg.host import MeshData
 
 # Pixels are rendered this much finer in both directions and averaged.
@@ -52,6 +54,26 @@ def render_pair(data: MeshData, size: int = 800) -> Image.Image:
     canvas[:, size:] = _reduce(pattern)
     image = Image.fromarray(np.round(canvas * 255).astype(np.uint8))
     _draw_numbers(image, labels, (size, 0))
+    return image
+
+
+def render_meshes(data: Sequence[MeshData], titles: Sequence[str], size: int = 600) -> Image.Image:
+    """Shaded meshes side by side, each with its title below; all from the same side.
+
+    Args:
+        data: the same mesh with different charts.
+        titles: one for each.
+        size: width of each mesh in pixels.
+    """
+    foot = size // 10
+    panels = [_reduce(_mesh_panel(one, size * SUPERSAMPLING)) for one in data]
+    canvas = np.ones((size + foot, size * len(panels), 3))
+    canvas[:size] = np.concatenate(panels, axis=1)
+    image = Image.fromarray(np.round(canvas * 255).astype(np.uint8))
+    draw = ImageDraw.Draw(image)
+    font = ImageFont.load_default(size=foot // 2)
+    for i, title in enumerate(titles):
+        draw.text(((i + 0.5) * size, size + foot // 3), title, fill="black", font=font, anchor="mm")
     return image
 
 

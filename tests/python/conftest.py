@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -32,6 +33,20 @@ def data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no meshes in {folder} (DEVSEG_DATA)")
     return folder
+
+
+@pytest.fixture(scope="session")
+def evaluator() -> ModuleType:
+    """Measures of an atlas by other hands: shares no code with the project."""
+    path = Path(
+        os.environ.get("DEVSEG_EVALUATOR", ROOT.parent / "shared" / "eval" / "evalatlas.py")
+    )
+    if not path.is_file():
+        pytest.skip(f"no evaluator at {path} (DEVSEG_EVALUATOR)")
+    spec = importlib.util.spec_from_file_location("evalatlas", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture

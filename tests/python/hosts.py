@@ -26,7 +26,6 @@ import reference
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "devseg"
 OLD_PYTHON = CACHE / "pymeshlab-2022.2" / "bin" / "python"
-RECORDS = ROOT / "build" / "host-runs"
 
 
 def missing(what: str) -> None:
@@ -50,8 +49,9 @@ def declarations() -> list[dict[str, Any]]:
 
 def record(host: str, filter_name: str, what: str) -> None:
     """Remembers for docs/hosts.md what has been run; called after it has worked."""
-    RECORDS.mkdir(parents=True, exist_ok=True)
-    file = RECORDS / f"{host}.json"
+    assert host in reference.HOSTS
+    reference.RECORDS.mkdir(parents=True, exist_ok=True)
+    file = reference.RECORDS / f"{host}.json"
     known = json.loads(file.read_text()) if file.is_file() else {}
     file.write_text(json.dumps({**known, filter_name: what}, indent=1) + "\n")
 
@@ -71,6 +71,11 @@ def declared_script(filter_: dict[str, Any]) -> list[dict[str, str]]:
         {**reference.mlx_attributes(parameter), "tooltip": parameter["help"]}
         for parameter in filter_["parameters"]
     ]
+
+
+def without_extensions(parameters: list[dict[str, str]]) -> list[dict[str, str]]:
+    """What a file dialog filters by is no part of a declaration."""
+    return [{k: v for k, v in p.items() if k != "ext"} for p in parameters]
 
 
 @dataclass(frozen=True)
@@ -150,8 +155,8 @@ def server_report(server: PrivateMeshLab) -> dict[str, dict[str, Any]]:
 
 def prepared(filter_: dict[str, Any]) -> list[dict[str, Any]]:
     """The filter behind those that make what it may need: charts and texture coordinates."""
-    first = [step for step in declarations() if step["menu_name"] in reference.PREPARATION]
-    return [*first, filter_]
+    by_name = {step["menu_name"]: step for step in declarations()}
+    return [*(by_name[name] for name in reference.PREPARATION), filter_]
 
 
 def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]:
@@ -160,7 +165,7 @@ def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]
         {
             **step,
             "parameters": [
-                {**p, "default": str(file)} if p["name"] == "output_file" else p
+                {**p, "default": str(file)} if p["kind"] == "output file" else p
                 for p in step["parameters"]
             ],
         }

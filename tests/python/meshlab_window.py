@@ -24,7 +24,7 @@ from conftest import ROOT
 
 INSPECTOR = ROOT / "build" / "release" / "tests" / "libdevseg_window_inspector.so"
 SIZE = (1280, 1024)
-PATIENCE = 60.0  # seconds; software rendering on a busy machine is slow
+PATIENCE = 120.0  # seconds; software rendering on a busy machine is slow
 
 Widget = dict[str, Any]
 T = TypeVar("T")
@@ -141,6 +141,14 @@ class MeshLabWindow:
         x, y, width, height = widget["box"]
         self._xdotool("mousemove", str(x + width // 2), str(y + height // 2))
         self._xdotool("click", "1")
+
+    def drag(self, start: tuple[int, int], end: tuple[int, int]) -> None:
+        self._xdotool("mousemove", *map(str, start), "mousedown", "1")
+        for step in (0.1, 0.5, 1.0):
+            time.sleep(0.1)
+            at = (round(a + step * (b - a)) for a, b in zip(start, end, strict=True))
+            self._xdotool("mousemove", *map(str, at))
+        self._xdotool("mouseup", "1")
 
     def focus(self, title: str) -> None:
         """Gives the keyboard to the window whose title has this in it: no window manager does."""

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
-from conftest import ROOT
 from devseg.load import load_mesh
 from devseg.methods import METHODS
 from devseg.pipeline import RunOptions, Session, flatten_mesh
@@ -18,19 +15,6 @@ from devseg.progress import Progress
 
 MESHES = ["bunny_69451", "horse_19996", "fandisk_9926", "rockerarm_20088", "fertility_9000"]
 MESHES += ["tshirt_8710"]
-
-
-@pytest.fixture(scope="module")
-def evaluator() -> ModuleType:
-    path = Path(
-        os.environ.get("DEVSEG_EVALUATOR", ROOT.parent / "shared" / "eval" / "evalatlas.py")
-    )
-    if not path.is_file():
-        pytest.skip(f"no evaluator at {path} (DEVSEG_EVALUATOR)")
-    spec = importlib.util.spec_from_file_location("evalatlas", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("name", MESHES)

@@ -100,6 +100,7 @@ def test_every_filter_runs(server: hosts.PrivateMeshLab, bone: Path, tmp_path: P
         name = filter_["menu_name"]
         assert reported[name]["help"] == filter_["help"], name
         kinds = {kind: rich.removeprefix("Rich") for kind, rich in reference.RICH_TYPES.items()}
+        kinds["output file"] = "FileName"
         assert reported[name]["parameters"] == [
             {"kind": kinds[p["kind"]], "label": p["label"], "help": p["help"]}
             for p in filter_["parameters"]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -87,15 +88,24 @@ def applied(window: MeshLabWindow, name: str) -> int:
     return sum(1 for text in window.log() if line.search(text))
 
 
+def row_of(window: MeshLabWindow, dock: str, label: str) -> list[Widget]:
+    """The widgets of a dialog beside a label, and the label."""
+    shown = window.widgets(dock=dock)
+    named = [w for w in shown if w.get("text") == label]
+    assert named, f"{label} in the dialog of {dock}"
+    return [w for w in shown if abs(middle(w) - middle(named[0])) < 8]
+
+
+def middle(widget: Widget) -> float:
+    return widget["box"][1] + widget["box"][3] / 2
+
+
 def check_dialog(window: MeshLabWindow, filter_: dict[str, Any]) -> None:
     """The filter's help, and each parameter with its label, its default and its help."""
     dock = filter_["menu_name"]
-    shown = window.widgets(dock=dock)
-    assert any(filter_["help"] in (w.get("text") or "") for w in shown)
+    assert any(filter_["help"] in (w.get("text") or "") for w in window.widgets(dock=dock))
     for parameter in filter_["parameters"]:
-        label = [w for w in shown if w.get("text") == parameter["label"]]
-        assert label, parameter["name"]
-        row = [w for w in shown if abs(middle(w) - middle(label[0])) < 8]
+        row = row_of(window, dock, parameter["label"])
         if parameter["kind"] == "boolean":
             values = [w["checked"] for w in row if w["class"] == "QCheckBox"]
             expected = parameter["default"]
@@ -116,8 +126,51 @@ def check_dialog(window: MeshLabWindow, filter_: dict[str, Any]) -> None:
         window.click(window.widgets(dock=dock, text="Help")[0])
 
 
-def middle(widget: Widget) -> float:
-    return widget["box"][1] + widget["box"][3] / 2
+def run_filter(
+    window: MeshLabWindow, filter_: dict[str, Any], folder: Path, picture: Path | None = None
+) -> None:
+    """Finds a filter, checks its dialog, applies it, takes a picture and closes the dialog."""
+    name = filter_["menu_name"]
+    before = applied(window, name)
+
+    def dialog() -> list[Widget]:
+        return window.widgets(dock=name, text="Apply")
+
+    def ended() -> bool:
+        return applied(window, name) > before
+
+    find(window, name)
+    # Filters without parameters have a dialog in some versions only.
+    window.wait_for(f"the dialog of {name}", lambda: dialog() or ended())
+    if dialog():
+        check_dialog(window, filter_)
+        for parameter in filter_["parameters"]:
+            if parameter["kind"] == "output file":
+                row = row_of(window, name, parameter["label"])
+                window.focus(name)
+                window.click(next(w for w in row if w["class"] == "QLineEdit"))
+                window.press("ctrl+a")
+                window.type(str(folder / "from_filter.svg"))
+        window.click(dialog()[0])
+    else:
+        assert not filter_["parameters"]
+    window.wait_for(f"the end of {name}", ended)
+    if picture is not None:
+        show_beside(window, name, picture)
+    if dialog():
+        window.click(window.widgets(dock=name, text="Close")[0])
+
+
+def show_beside(window: MeshLabWindow, dock: str, picture: Path) -> None:
+    """A picture with the dialog at the right, where it hides the log and its file names."""
+    docks = [w for w in window.widgets(dock=dock) if "Dialog" in w["class"]]
+    x, y, width, height = docks[0]["box"]
+    log = next(w["box"] for w in window.widgets(**{"class": "QPlainTextEdit"}))
+    right = window.screenshot().width - x - width
+    down = max(log[1] + log[3] - y - height, 0)
+    window.drag((x + width // 3, y + 10), (x + width // 3 + right, y + 10 + down))
+    time.sleep(1.0)
+    window.screenshot().save(picture)
 
 
 def surface(picture: Image.Image) -> np.ndarray:
@@ -134,51 +187,26 @@ def hues(picture: Image.Image, where: np.ndarray) -> tuple[float, int]:
     return len(colored) / len(hsv), int((share >= 0.01).sum())
 
 
-def test_every_filter_is_found_explains_itself_and_runs(
-    window: MeshLabWindow, flavour: str
-) -> None:
-    plain = window.screenshot()
-    plain.save(PICTURES / f"{flavour}-plain.png")
-    mesh = surface(plain)
-    assert mesh.sum() > 20000
-    assert hues(plain, mesh)[0] < 0.01
-    for filter_ in hosts.declarations():
-        name = filter_["menu_name"]
-        before = applied(window, name)
-
-        def ended(name: str = name, before: int = before) -> bool:
-            return applied(window, name) > before
-
-        def dialog(name: str = name) -> list[Widget]:
-            return window.widgets(dock=name, text="Apply")
-
-        find(window, name)
-        # Filters without parameters have a dialog in some versions only.
-        window.wait_for(f"the dialog of {name}", lambda: dialog() or ended())
-        if dialog():
-            check_dialog(window, filter_)
-            window.click(dialog()[0])
-        else:
-            assert not filter_["parameters"]
-        window.wait_for(f"the end of {name}", ended)
-        if name == "Segmentation: D-Charts":
-            window.screenshot().save(PICTURES / f"{flavour}-dialog.png")
-        if dialog():
-            window.click(window.widgets(dock=name, text="Close")[0])
-        if name == "Segmentation: D-Charts":
-            picture = window.wait_for(
-                "the colours of the charts", lambda: colored(window.screenshot(), mesh)
-            )
-            picture.save(PICTURES / f"{flavour}-charts.png")
-        hosts.record(f"window-{flavour}", name, "found, as declared, runs")
-
-
 def colored(picture: Image.Image, mesh: np.ndarray) -> Image.Image | None:
     share, number = hues(picture, mesh)
     return picture if share > 0.6 and number >= 4 else None
 
 
-def test_pattern_is_exported(window: MeshLabWindow, flavour: str, tmp_path: Path) -> None:
+def test_charts_get_colors_and_their_pattern_is_exported(
+    window: MeshLabWindow, flavour: str, tmp_path: Path
+) -> None:
+    plain = window.screenshot()
+    mesh = surface(plain)
+    assert mesh.sum() > 20000
+    assert hues(plain, mesh)[0] < 0.01
+    segment, flatten = hosts.prepared(hosts.declarations()[0])[:2]
+    run_filter(window, segment, tmp_path, PICTURES / f"{flavour}-dialog.png")
+    picture = window.wait_for(
+        "the colours of the charts", lambda: colored(window.screenshot(), mesh)
+    )
+    picture.save(PICTURES / f"{flavour}-charts.png")
+    run_filter(window, flatten, tmp_path)
+
     file = tmp_path / "bunny.svg"
     window.focus("MeshLab")
     window.press("ctrl+shift+e")
@@ -188,8 +216,7 @@ def test_pattern_is_exported(window: MeshLabWindow, flavour: str, tmp_path: Path
     window.type(str(file))
     window.press("Return")
     okay = window.wait_for(
-        "the saving options",
-        lambda: [w for w in window.widgets(text="OK") + window.widgets(text="&OK")],
+        "the saving options", lambda: window.widgets(text="OK") + window.widgets(text="&OK")
     )
     window.screenshot().save(PICTURES / f"{flavour}-export.png")
     window.click(okay[0])
@@ -197,3 +224,15 @@ def test_pattern_is_exported(window: MeshLabWindow, flavour: str, tmp_path: Path
     text = file.read_text()
     assert text.count("<path") > 3 and text.rstrip().endswith("</svg>")
     hosts.record(f"window-{flavour}", "Saving as SVG", "runs")
+
+
+def test_every_filter_is_found_explains_itself_and_runs(
+    window: MeshLabWindow, flavour: str, tmp_path: Path
+) -> None:
+    for step in hosts.prepared(hosts.declarations()[0])[:2]:
+        run_filter(window, step, tmp_path)
+    # Those that make a layer come last: they make it the one that filters work on.
+    table = hosts.declarations()
+    for filter_ in sorted(table, key=reference.makes_layer):
+        run_filter(window, filter_, tmp_path)
+        hosts.record(f"window-{flavour}", filter_["menu_name"], "found, as declared, runs")

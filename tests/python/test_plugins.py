@@ -188,7 +188,6 @@ def test_neighbors_differ_in_color(segmented: Any) -> None:
 @pytest.mark.parametrize(
     ("parameter", "value"),
     [
-        ("charts_number", 0),
         ("charts_number", -1),
         ("charts_number", 10**6),
         ("max_fitting_error", 0.0),

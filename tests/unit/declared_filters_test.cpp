@@ -1,4 +1,5 @@
 // Every filter of the table, run on one mesh: it does what its declaration says.
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -115,19 +116,42 @@ std::vector<ParameterValue> other_values(const Parameter& p) {
     case ParameterKind::real:
         break;
     }
+    if (p.name == "max_linf_stretch")
+        return {1.01}; // 0 means no bound, and between 0 and 1 there is nothing to ask for
     return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
+}
+
+// Twenty cubes, for creases, and a finger, for a tip: one chart each.
+HostMesh cubes_and_a_finger() {
+    RawMesh all = shapes::finger(12, 20, 1.0, 9.0);
+    for (int i = 1; i <= 20; ++i)
+        all = shapes::join(all, shapes::moved(shapes::cube(2), 1.0, Vec3(3.0 * i, 0.0, 0.0)));
+    return checks::host_of(all);
+}
+
+// Parameters that work only together with another value.
+ParameterValues needed_for(const std::string& name) {
+    if (name == "max_l2_stretch" || name == "max_linf_stretch")
+        return {{"charts_number", 0}};
+    return {};
 }
 
 TEST(DeclaredFilters, EveryParameterChangesTheResult) {
     // What one mesh does not have, such as two pieces of one shape, another one has.
-    const std::vector<HostMesh> hosts{prepared(), samples::everything().host()};
+    const std::vector<HostMesh> hosts{prepared(), samples::unfinished().host(),
+                                      samples::nearly_equal().host(), cubes_and_a_finger()};
     for (const FilterDeclaration& filter : filter_table())
         for (const Parameter& p : filter.parameters) {
             bool changes = false;
             for (std::size_t i = 0; i < hosts.size() && !changes; ++i) {
-                const HostResult plain = run(filter, hosts[i], {});
+                if (filter.needs_uv && hosts[i].wedge_uv.empty())
+                    continue;
+                const ParameterValues others = needed_for(p.name);
+                const HostResult plain = run(filter, hosts[i], others);
                 for (const ParameterValue& value : other_values(p)) {
-                    const HostResult other = run(filter, hosts[i], {{p.name, value}});
+                    ParameterValues changed = others;
+                    changed[p.name] = value;
+                    const HostResult other = run(filter, hosts[i], changed);
                     changes = changes || !same(plain, other) ||
                               (filter.writes == writes_nothing && plain.values != other.values);
                 }

@@ -195,8 +195,7 @@ TEST(Lpfb, BothSidesOfADartAreEquallyLong) {
 }
 
 TEST(Lpfb, AnglesOfAMapKeepTheBoundaryFromCrossingItself) {
-    for (const Disk& disk : {Disk(shapes::torus(14, 9)), Disk(shapes::sphere(2)),
-                             Disk(shapes::double_torus()), Disk(shapes::capped_cylinder(12, 6))}) {
+    for (const Disk& disk : {Disk(shapes::sphere(2)), Disk(shapes::capped_cylinder(12, 6))}) {
         EXPECT_GT(flatten(disk).flips, 0); // far from developable
         const AbfResult map = flatten_abf(disk.problem, AbfOptions{}, Progress{});
         const LpfbResult result = flatten_lpfb(disk.problem, boundary_angles(disk.problem, map.uv),

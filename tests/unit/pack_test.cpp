@@ -1,8 +1,8 @@
 #include "devseg/pack/pack.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -119,6 +119,13 @@ double area(const Shape& shape) {
     return sum;
 }
 
+double total_area(const std::vector<Shape>& shapes) {
+    double sum = 0.0;
+    for (const Shape& shape : shapes)
+        sum += area(shape);
+    return sum;
+}
+
 // Packs, and checks what pack.h promises of every result.
 PackResult expect_promises(const std::vector<Shape>& shapes, const PackOptions& options) {
     const PackResult r = pack(shapes, options);
@@ -158,10 +165,61 @@ TEST(Pack, KeepsItsPromisesOnRandomStars) {
 
 TEST(Pack, RandomStarsUseMostOfTheSquare) {
     const std::vector<Shape> shapes = stars(30, 101);
-    double sum = 0.0;
-    for (const Shape& shape : shapes)
-        sum += area(shape);
+    const double sum = total_area(shapes);
     const PackResult r = expect_promises(shapes, PackOptions{0.002, true});
+    EXPECT_GT(sum / (r.side * r.side), 0.6);
+}
+
+Shape triangle(const Vec2& a, const Vec2& b, const Vec2& c) {
+    Shape shape;
+    shape.faces = {{0, 1, 2}};
+    shape.points = {a, b, c};
+    return shape;
+}
+
+std::vector<Shape> triangles(Index count, std::uint32_t seed) {
+    Random random(seed);
+    std::vector<Shape> shapes;
+    while (static_cast<Index>(shapes.size()) < count)
+        shapes.push_back(triangle({0, 0}, {random.uniform(0.5, 1.0), random.uniform(-0.2, 0.2)},
+                                  {random.uniform(0.0, 0.6), random.uniform(0.4, 1.0)}));
+    return shapes;
+}
+
+PackResult expect_same_bytes_on_one_thread(const std::vector<Shape>& shapes) {
+    PackResult a = pack(shapes, PackOptions{});
+    set_thread_limit(1);
+    const PackResult b = pack(shapes, PackOptions{});
+    set_thread_limit(0);
+    EXPECT_EQ(a.side, b.side);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        EXPECT_EQ(a.placements[i].offset, b.placements[i].offset);
+        EXPECT_EQ(a.placements[i].cosine, b.placements[i].cosine);
+        EXPECT_EQ(a.placements[i].sine, b.placements[i].sine);
+    }
+    return a;
+}
+
+TEST(Pack, ManyTrianglesAreFittedTogether) {
+    for (const Index count : {400, 1500}) {
+        const std::vector<Shape> shapes = triangles(count, 9);
+        const double sum = total_area(shapes);
+        const PackResult r = expect_promises(shapes, PackOptions{0.001, true});
+        EXPECT_GT(sum / (r.side * r.side), 0.6) << count;
+    }
+}
+
+TEST(Pack, ThreadsDoNotMatterToManyCharts) {
+    expect_same_bytes_on_one_thread(triangles(300, 4));
+}
+
+TEST(Pack, TenThousandChartsLieOnShelves) {
+    Random random(6);
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 10001; ++i)
+        shapes.push_back(rectangle(random.uniform(0.5, 1.0), random.uniform(0.5, 1.0)));
+    const double sum = total_area(shapes);
+    const PackResult r = expect_promises(shapes, PackOptions{0.0005, true});
     EXPECT_GT(sum / (r.side * r.side), 0.6);
 }
 
@@ -170,9 +228,7 @@ TEST(Pack, VeryManyChartsAreLaidOutAsWell) {
     std::vector<Shape> shapes;
     for (int i = 0; i < 1100; ++i)
         shapes.push_back(rectangle(random.uniform(0.1, 1.0), random.uniform(0.1, 1.0)));
-    double sum = 0.0;
-    for (const Shape& shape : shapes)
-        sum += area(shape);
+    const double sum = total_area(shapes);
     for (const bool allow_rotation : {true, false}) {
         const PackResult r = expect_promises(shapes, PackOptions{0.001, allow_rotation});
         EXPECT_GT(sum / (r.side * r.side), 0.5);
@@ -216,24 +272,16 @@ TEST(Pack, AHoleIsUsedBySmallerCharts) {
 
 TEST(Pack, NeitherThreadsNorUnitsMatter) {
     const std::vector<Shape> shapes = stars(7, 8);
-    const PackResult a = pack(shapes, PackOptions{});
-    set_thread_limit(1);
-    const PackResult b = pack(shapes, PackOptions{});
-    set_thread_limit(0);
+    const PackResult a = expect_same_bytes_on_one_thread(shapes);
     std::vector<Shape> scaled = shapes;
     const double scale = std::ldexp(1.0, -30); // changes no digit
     for (Shape& shape : scaled)
         for (Vec2& p : shape.points)
             p *= scale;
     const PackResult c = pack(scaled, PackOptions{});
-    EXPECT_EQ(a.side, b.side);
     EXPECT_NEAR(a.side, c.side / scale, 1e-9 * a.side);
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        EXPECT_EQ(a.placements[i].offset, b.placements[i].offset);
-        EXPECT_EQ(a.placements[i].cosine, b.placements[i].cosine);
-        EXPECT_EQ(a.placements[i].sine, b.placements[i].sine);
+    for (std::size_t i = 0; i < shapes.size(); ++i)
         EXPECT_NEAR(a.placements[i].cosine, c.placements[i].cosine, 1e-9);
-    }
 }
 
 // Ribbons: their length is many times the side of a square of their area.
@@ -241,9 +289,9 @@ TEST(Pack, ThinChartsTakeNoMoreTimeAndMemoryThanOthers) {
     for (const double ratio : {1e2, 1e3, 1e4, 1e6}) {
         const std::vector<Shape> shapes = {rectangle(1.0, 1.0 / ratio),
                                            rectangle(0.3, 0.1 / ratio)};
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock(); // of the processor: the machine may be busy
         expect_promises(shapes, PackOptions{});
-        ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << ratio;
+        ASSERT_LT(std::clock() - start, 4 * CLOCKS_PER_SEC) << ratio;
     }
 }
 
@@ -260,12 +308,17 @@ TEST(Pack, PaddingOutOfRangeIsRefused) {
 }
 
 TEST(Pack, Cancels) {
-    const std::vector<Shape> shapes = stars(6, 2);
-    std::vector<PackItem> items;
-    for (const Shape& shape : shapes)
-        items.push_back({&shape.faces, &shape.points});
-    Progress progress([](double, const char*) { return false; });
-    EXPECT_THROW(pack_charts(items, PackOptions{}, progress), Cancelled);
+    for (const std::vector<Shape>& shapes : {stars(6, 2), triangles(900, 2)}) {
+        std::vector<PackItem> items;
+        for (const Shape& shape : shapes)
+            items.push_back({&shape.faces, &shape.points});
+        for (const int stop : {1, 3}) {
+            int calls = 0;
+            Progress progress([&](double, const char*) { return ++calls < stop; });
+            EXPECT_THROW(pack_charts(items, PackOptions{}, progress), Cancelled);
+            EXPECT_EQ(calls, stop);
+        }
+    }
 }
 
 } // namespace

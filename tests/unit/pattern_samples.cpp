@@ -64,19 +64,26 @@ Cloth with_dart(double angle) {
     return cloth;
 }
 
-Cloth everything() {
-    Cloth cloth = with_dart(1.0);
+Cloth unfinished() {
+    Cloth cloth = with_dart(6.0);
     cloth.add(shapes::with_noise(shapes::grid(8, 8, 80.0, 80.0), 2.0, 7),
               [](const Vec3& p, const Vec3& middle) {
                   const bool small = middle.x() > 70.0 && middle.y() > 70.0;
                   return Vec2(flat(p) + Vec2(small ? 105.0 : 100.0, 0.0));
               });
-    cloth.add(shapes::helix_strip(60, 1.3, 20.0, 30.0, 0.5),
+    cloth.add(shapes::helix_strip(30, 1.3, 20.0, 30.0, 0.5),
               [](const Vec3& p, const Vec3&) { return Vec2(flat(p) + Vec2(40.0, 160.0)); });
+    return cloth;
+}
+
+Cloth nearly_equal() {
+    Cloth cloth = with_dart(6.0);
     for (const double size : {30.0, 30.3})
         cloth.add(shapes::grid(3, 2, size, 20.0), [size](const Vec3& p, const Vec3&) {
             return Vec2(flat(p) + Vec2(200.0 * (size - 30.0) + 100.0, 120.0));
         });
+    cloth.add(shapes::annulus(90, 1, 10.0, 30.0),
+              [](const Vec3& p, const Vec3&) { return Vec2(flat(p) + Vec2(40.0, 160.0)); });
     return cloth;
 }
 

@@ -36,8 +36,11 @@ Cloth two_pieces(double seam_x = 40.0);
 /// in degrees.
 Cloth with_dart(double angle);
 
-/// Everything at once: a small chart beside a large one, on cloth that is not quite flat, a narrow
-/// dart, a strip that runs over itself in the texture, and two pieces that are nearly the same.
-Cloth everything();
+/// What optimisation finds to do: a dart, a small chart beside a large one on cloth that is not
+/// quite flat, and a strip that runs over itself in the texture.
+Cloth unfinished();
+
+/// The grid with a dart, two pieces that are nearly the same, and a ring.
+Cloth nearly_equal();
 
 } // namespace devseg::samples

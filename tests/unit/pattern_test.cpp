@@ -111,7 +111,9 @@ TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
         HostMesh host =
             checks::host_of(method[0] == 't' ? shapes::tetrahedron() : shapes::double_torus());
         const HostResult charts = checks::run("Segmentation: D-Charts", host,
-                                              {{"charts_number", method[0] == 't' ? 4 : 6}});
+                                              {{"charts_number", method[0] == 't' ? 4 : 6},
+                                               {"merge_charts", false},
+                                               {"straighten_boundaries", false}});
         checks::take_charts(host, charts);
         host.wedge_uv = checks::run("Charts: Flatten", host, {{"method", 4}}).wedge_uv;
         const GatedMesh gated = gate_mesh(host.geometry);
@@ -299,6 +301,18 @@ TEST(Shapes, StrainIsThatOfTheLinesInTheMaterial) {
     EXPECT_NEAR(piece.strain.mean, 1.21 / scale - 1.0, 1e-6);
     EXPECT_NEAR(piece.strain.area_change, 1.21 / (scale * scale) - 1.0, 1e-6);
     EXPECT_GE(piece.strain.worst_face, 0);
+}
+
+TEST(Shapes, OptionsOutOfRangeAreRefused) {
+    for (double PatternOptions::*field :
+         {&PatternOptions::simplify_mm, &PatternOptions::corner_angle, &PatternOptions::curve_mm,
+          &PatternOptions::notch_spacing_mm, &PatternOptions::fold_angle,
+          &PatternOptions::max_piece_mm, &PatternOptions::pair_tolerance_mm})
+        for (const double bad : {-1.0, std::nan("")}) {
+            PatternOptions options;
+            options.*field = bad;
+            EXPECT_THROW(samples::two_pieces().pattern(options), InvalidParameter);
+        }
 }
 
 TEST(Shapes, FoldsHaveTheAngleBetweenTheirFaces) {

@@ -7,6 +7,7 @@
 #include <queue>
 #include <utility>
 
+#include "devseg/cut/handle_cutter.h"
 #include "devseg/cut/join_loops.h"
 
 namespace devseg {
@@ -25,22 +26,16 @@ double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
-PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
-                      Index root) {
-    PathForest forest;
-    forest.distance.assign(s.vertex.size(), infinity);
-    forest.toward.assign(s.vertex.size(), -1);
+// Lowers distances by paths that end at the sources.
+void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
+                 const std::vector<Index>& sources, PathForest& forest) {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    const auto start_at = [&](Index v) {
+    for (const Index v : sources) {
         forest.distance[at(v)] = 0.0;
+        forest.toward[at(v)] = -1;
         queue.emplace(0.0, v);
-    };
-    if (s.loops.empty())
-        start_at(root);
-    else
-        for (const Index h : s.loops.front())
-            start_at(s.origin(h));
+    }
     while (!queue.empty()) {
         const auto [d, v] = queue.top();
         queue.pop();
@@ -58,6 +53,20 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
             }
         }
     }
+}
+
+PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
+                      Index root) {
+    PathForest forest;
+    forest.distance.assign(s.vertex.size(), infinity);
+    forest.toward.assign(s.vertex.size(), -1);
+    std::vector<Index> sources;
+    if (s.loops.empty())
+        sources.push_back(root);
+    else
+        for (const Index h : s.loops.front())
+            sources.push_back(s.origin(h));
+    relax_paths(mesh, s, edges, sources, forest);
     return forest;
 }
 
@@ -67,10 +76,25 @@ public:
         : mesh_(mesh), s_(surface), seam_(seam) {}
 
     // For charts with several boundary loops. Returns the length of the cuts, as all of these.
-    double join() {
-        for (const Index h : join_loops(mesh_, s_))
+    double join() { return cut(join_loops(mesh_, s_)); }
+
+    double cut(const std::vector<Index>& half_edges) {
+        for (const Index h : half_edges)
             cut_edge(h);
         return length_;
+    }
+
+    void cut_path(const PathForest& forest, Index v) {
+        while (forest.toward[at(v)] >= 0) {
+            cut_edge(forest.toward[at(v)]);
+            v = s_.target(forest.toward[at(v)]);
+        }
+    }
+    double length() const { return length_; }
+
+    static Index farthest(const PathForest& forest) {
+        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
+                                  forest.distance.begin());
     }
 
     // For charts with at most one loop.
@@ -136,13 +160,6 @@ private:
         }
     }
 
-    void cut_path(const PathForest& forest, Index v) {
-        while (forest.toward[at(v)] >= 0) {
-            cut_edge(forest.toward[at(v)]);
-            v = s_.target(forest.toward[at(v)]);
-        }
-    }
-
     // The edges outside the path forest and outside the maximum spanning tree of the dual graph,
     // [EHP04, section 5]: two for each handle. An edge weighs as much as the cycle that it closes.
     std::vector<Index> handle_edges(const PathForest& forest) const {
@@ -195,10 +212,6 @@ private:
         const PathForest from_far = grow_paths(mesh_, s_, edges, far);
         cut_path(from_far, farthest(from_far));
     }
-    static Index farthest(const PathForest& forest) {
-        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
-                                  forest.distance.begin());
-    }
 
     const Mesh& mesh_;
     const ChartSurface& s_;
@@ -207,18 +220,58 @@ private:
     bool any_cut_ = false;
 };
 
+// Cuts of one way to open a chart.
+struct Opening {
+    std::vector<std::uint8_t> seam; // 3 #F
+    ChartSurface surface;           // may have a boundary of two edges
+    double length = 0.0;
+};
+
+void join(const Mesh& mesh, Opening& opening) {
+    if (opening.surface.loops.size() < 2)
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam).join();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [EHP04], once all loops are joined.
+void open_joined_first(const Mesh& mesh, Opening& opening) {
+    join(mesh, opening);
+    if (opening.surface.is_disk())
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam).cut_handles();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [YGZS05]: a loop through each handle, then the loops are joined.
+void open_handles_first(const Mesh& mesh, Opening& opening) {
+    opening.length +=
+        Cutter(mesh, opening.surface, opening.seam).cut(cut_handles(mesh, opening.surface));
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+    join(mesh, opening);
+}
+
+bool has_handles(const ChartSurface& surface) {
+    return surface.euler_characteristic() + static_cast<Index>(surface.loops.size()) < 2;
+}
+
 } // namespace
 
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
                          double* cut_length) {
     double length = 0.0;
-    if (surface.loops.size() > 1) {
-        length += Cutter(mesh, surface, seam).join();
-        surface = extract_surface(mesh, std::move(surface.face), seam);
-    }
     if (!surface.is_disk()) {
-        length += Cutter(mesh, surface, seam).cut_handles();
-        surface = extract_surface(mesh, std::move(surface.face), seam);
+        Opening best{seam, surface, 0.0};
+        open_joined_first(mesh, best);
+        if (has_handles(surface)) {
+            Opening other{seam, surface, 0.0};
+            open_handles_first(mesh, other);
+            if (other.surface.is_disk() && other.length < best.length)
+                best = std::move(other);
+        }
+        seam = std::move(best.seam);
+        surface = std::move(best.surface);
+        length += best.length;
     }
     if (surface.loops.front().size() < 3) {
         length += Cutter(mesh, surface, seam).lengthen();
@@ -229,18 +282,39 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
     return surface;
 }
 
-DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
+Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
+                  const TipRule& rule, double& cut_length) {
+    const VertexEdges edges(disk);
+    const PathForest forest = grow_paths(mesh, disk, edges, 0);
+    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule);
+    Cutter cutter(mesh, disk, seam);
+    for (const Index tip : tips)
+        cutter.cut_path(forest, tip);
+    cut_length += cutter.length();
+    return static_cast<Index>(tips.size());
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
+                             Progress& progress) {
     DiskCuts result;
     result.charts = charts;
     std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
-        if (surfaces[c].is_disk() && surfaces[c].loops.front().size() > 2)
-            continue;
-        ++result.cut_charts;
-        cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
+        const double before = result.cut_length;
+        if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
+            surfaces[c] =
+                cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
+        if (options.cut_tips)
+            result.cut_tips += cut_to_tips(mesh, surfaces[c], result.charts.seam, options.tip_rule,
+                                           result.cut_length);
+        result.cut_charts += result.cut_length > before ? 1 : 0;
     }
     return result;
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
+    return cut_charts_to_disks(mesh, charts, {false, {}}, progress);
 }
 
 } // namespace devseg

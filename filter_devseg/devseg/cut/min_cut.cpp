@@ -10,10 +10,18 @@ namespace {
 constexpr double rounding = 1e-12; // of the largest weight
 }
 
-void MinCut::link(Index a, Index b, double weight) {
+Index MinCut::link(Index a, Index b, double weight) {
     arcs_.push_back({b, weight});
     arcs_.push_back({a, weight});
     saturated_ = std::max(saturated_, rounding * weight);
+    built_ = false;
+    return static_cast<Index>(arcs_.size() / 2) - 1;
+}
+
+void MinCut::raise(Index link, double weight) {
+    arcs_[2 * at(link)].capacity += weight;
+    arcs_[2 * at(link) + 1].capacity += weight;
+    saturated_ = std::max(saturated_, rounding * arcs_[2 * at(link)].capacity);
 }
 
 void MinCut::build() {
@@ -27,6 +35,7 @@ void MinCut::build() {
     std::vector<Index> place(begin_.begin(), begin_.end() - 1);
     for (std::size_t i = 0; i < arcs_.size(); ++i)
         order_[at(place[at(from(i))]++)] = static_cast<Index>(i);
+    built_ = true;
 }
 
 // Breadth-first distance from the sources; true if a sink is reached.
@@ -54,12 +63,27 @@ bool MinCut::rank_nodes() {
     return reached;
 }
 
-// Sends one path of flow from `source` along increasing ranks; returns how much arrived. Written
-// with a stack of its own, because paths are as long as meshes are large.
-double MinCut::push(Index source, double limit) {
-    std::vector<Index> path; // arcs
+// Sends flow from `source` along increasing ranks until none arrives any more. Written with a stack
+// of its own, because paths are as long as meshes are large.
+void MinCut::push(Index source) {
+    path_.clear();
     Index v = source;
-    while (sides_[at(v)] != CutSide::sink) {
+    while (true) {
+        if (sides_[at(v)] == CutSide::sink) {
+            double flow = std::numeric_limits<double>::max();
+            for (const Index i : path_)
+                flow = std::min(flow, arcs_[at(i)].capacity);
+            std::size_t first_full = path_.size();
+            for (std::size_t k = path_.size(); k-- > 0;) {
+                arcs_[at(path_[k])].capacity -= flow;
+                arcs_[at(path_[k] ^ 1)].capacity += flow;
+                if (arcs_[at(path_[k])].capacity <= saturated_)
+                    first_full = k;
+            }
+            // The path up to its first full arc serves again.
+            v = arcs_[at(path_[first_full] ^ 1)].to;
+            path_.resize(first_full);
+        }
         Index& k = cursor_[at(v)];
         while (k < begin_[at(v) + 1]) {
             const Arc& arc = arcs_[at(order_[at(k)])];
@@ -68,34 +92,27 @@ double MinCut::push(Index source, double limit) {
             ++k;
         }
         if (k < begin_[at(v) + 1]) {
-            path.push_back(order_[at(k)]);
-            v = arcs_[at(path.back())].to;
+            path_.push_back(order_[at(k)]);
+            v = arcs_[at(path_.back())].to;
             continue;
         }
-        if (path.empty())
-            return 0.0;
+        if (path_.empty())
+            return;
         // A dead end: step back, and do not come here again.
-        v = arcs_[at(path.back() ^ 1)].to;
+        v = arcs_[at(path_.back() ^ 1)].to;
         ++cursor_[at(v)];
-        path.pop_back();
+        path_.pop_back();
     }
-    for (const Index i : path)
-        limit = std::min(limit, arcs_[at(i)].capacity);
-    for (const Index i : path) {
-        arcs_[at(i)].capacity -= limit;
-        arcs_[at(i ^ 1)].capacity += limit;
-    }
-    return limit;
 }
 
 std::vector<CutSide> MinCut::solve() {
-    build();
+    if (!built_)
+        build();
     while (rank_nodes()) {
         cursor_.assign(begin_.begin(), begin_.end() - 1);
         for (std::size_t v = 0; v < sides_.size(); ++v)
             if (sides_[v] == CutSide::source)
-                while (push(static_cast<Index>(v), std::numeric_limits<double>::max()) > 0.0) {
-                }
+                push(static_cast<Index>(v));
     }
     std::vector<CutSide> result = sides_;
     for (std::size_t v = 0; v < result.size(); ++v)

@@ -20,8 +20,10 @@ class MinCut {
 public:
     explicit MinCut(std::vector<CutSide> sides) : sides_(std::move(sides)) {}
 
-    /// Two nodes that cost `weight` ≥ 0 to separate.
-    void link(Index a, Index b, double weight);
+    /// Two nodes that cost `weight` ≥ 0 to separate. Returns the number of the link. Links may be
+    /// added and raised between two calls of solve, which goes on from the flow that it has found.
+    Index link(Index a, Index b, double weight);
+    void raise(Index link, double weight);
 
     /// All sides; open nodes that no source reaches without a saturated link become sinks.
     std::vector<CutSide> solve();
@@ -33,7 +35,7 @@ private:
     };
     void build();
     bool rank_nodes();
-    double push(Index node, double limit);
+    void push(Index source);
 
     std::vector<CutSide> sides_;
     std::vector<Arc> arcs_;    // arc i and arc i ^ 1 are a pair
@@ -41,6 +43,8 @@ private:
     std::vector<Index> order_;
     std::vector<Index> rank_;
     std::vector<Index> cursor_;
+    std::vector<Index> path_; // arcs of the path at hand
+    bool built_ = false;
     double saturated_ = 0.0; // a rest of capacity below this is rounding
 };
 

@@ -15,8 +15,8 @@ namespace devseg {
 /// The options of filters without parameters.
 struct NoOptions {};
 
-/// What to say of a number outside its range.
-std::string out_of_range(const std::string& name, double minimum, double maximum, double found);
+/// The value; throws InvalidParameter outside its range.
+double checked(const std::string& name, double minimum, double maximum, double value);
 
 template <class Options>
 class Declare {
@@ -34,15 +34,12 @@ public:
         return add(ParameterKind::integer, field, std::move(name), std::move(label), minimum,
                    maximum, {}, std::move(help));
     }
-    /// Values outside of minimum … maximum are refused.
     Declare& real(double Options::*field, std::string name, std::string label, double minimum,
                   double maximum, std::string help) {
         add(ParameterKind::real, field, name, std::move(label), minimum, maximum, {},
             std::move(help));
         setters_.back() = [=](Options& options, const ParameterValue& value) {
-            options.*field = std::get<double>(value);
-            if (!(options.*field >= minimum && options.*field <= maximum))
-                throw InvalidParameter(out_of_range(name, minimum, maximum, options.*field));
+            options.*field = checked(name, minimum, maximum, std::get<double>(value));
         };
         return *this;
     }

@@ -8,9 +8,12 @@
 namespace devseg {
 
 std::vector<FilterDeclaration> segmentation_filters();
+std::vector<FilterDeclaration> t_flooding_filters();
+std::vector<FilterDeclaration> baseline_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> pattern_filters();
 std::vector<FilterDeclaration> measure_filters();
+std::vector<FilterDeclaration> circle_map_filters();
 
 /// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,
 /// its connected components.

@@ -41,6 +41,8 @@ FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progre
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
         {"gauss_area_std", m.gauss_area_std},
+        {"gauss_area_mean", m.gauss_area_mean},
+        {"crease_share", m.crease_share},
         {"max_fitting_error", m.max_fitting_error},
         {"seam_length", m.seam_length},
         {"largest_chart_area_share", m.largest_chart_area_share},
@@ -91,8 +93,9 @@ FilterDeclaration segmentation_measures() {
                               FilterCategory::measure, segmentation_help)
         .result("charts_number", "charts")
         .result("disk_charts_number", "charts that are disks once cut along the seams")
-        .result("gauss_area_std", "standard deviation over the charts of the sum of |2 pi − angle "
-                                  "sum| of their inner vertices, steradians")
+        .result("gauss_area_std", "standard deviation of the charts' Gauss areas, steradians")
+        .result("gauss_area_mean", "mean of the charts' Gauss areas, steradians")
+        .result("crease_share", "share of the length of creases (45 degrees) that is cut, 0 to 1")
         .result("max_fitting_error", "largest squared cosine difference of a face's normal to its "
                                      "chart's best cone, no unit")
         .result("seam_length", "length of all cut edges, each counted once, model units")

@@ -67,8 +67,8 @@ Declare<O> with_seams(Declare<O> filter) {
     return filter
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
-              "moves it by less than this, in millimetres (and a thousandth of the piece's size). "
-              "0 keeps all vertices.")
+              "moves it by less than this, in millimetres; less on pieces below 100 mm, in "
+              "proportion to their size. 0 keeps all vertices.")
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears, by changing the angles of the outlines as little as possible.")

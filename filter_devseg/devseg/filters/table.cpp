@@ -10,20 +10,23 @@ namespace devseg {
 const std::vector<FilterDeclaration>& filter_table() {
     static const std::vector<FilterDeclaration> table = [] {
         std::vector<FilterDeclaration> all;
-        for (auto group :
-             {segmentation_filters(), flattening_filters(), pattern_filters(), measure_filters()})
+        for (auto group : {segmentation_filters(), t_flooding_filters(), baseline_filters(),
+                           flattening_filters(), pattern_filters(), measure_filters(),
+                           circle_map_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();
     return table;
 }
 
-std::string out_of_range(const std::string& name, double minimum, double maximum, double found) {
+double checked(const std::string& name, double minimum, double maximum, double value) {
+    if (value >= minimum && value <= maximum)
+        return value;
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << name << ": expected a number from " << minimum << " to " << maximum << ", found "
-         << found;
-    return text.str();
+         << value;
+    throw InvalidParameter(text.str());
 }
 
 ChartMap find_charts(const FilterInput& input) {

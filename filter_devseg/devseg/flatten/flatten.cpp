@@ -19,7 +19,10 @@
 #include "devseg/flatten/lpfb.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/multilevel.h"
 #include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/peaks.h"
+#include "devseg/flatten/push_apart.h"
 #include "devseg/flatten/slits.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
@@ -30,15 +33,6 @@ namespace devseg {
 
 namespace {
 
-// Pushing apart: rounds, each stiffer than the one before.
-constexpr int push_rounds = 10;
-constexpr double first_stiffness = 100.0; // in units of the energy per chart area
-constexpr double stiffer = 2.0;
-constexpr double gap_share = 3e-4; // distance to leave between parts, of the chart's size
-// Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a cut
-// keeps the pattern truer than a deformation.
-constexpr double push_cost = 0.01;
-
 // Least distance of the two sides of a cut, as a share of the root of the model's area: far above
 // what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
 // person or a cutter sees (0.015 mm on a sheet of 300 mm).
@@ -46,6 +40,12 @@ constexpr double slit_gap = 5e-5;
 
 // A face that keeps less of its area has collapsed.
 constexpr double collapsed = 1e-5;
+
+// Coarse-to-fine maps of larger charts are taken as they are: their energy is within 1e-4 of the
+// minimum, and one factorization of the whole chart would cost more than all levels together.
+constexpr Index most_polished_faces = 120000;
+// Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
+constexpr double coarse_gap = 4e-3;
 
 constexpr double lpfb_area_change = 0.1;
 constexpr double lpfb_stretch = 2.0;
@@ -75,12 +75,45 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& 
                            std::to_string(problem.faces.size()) + " faces");
 }
 
-void apply_symmetric_dirichlet(const FlatteningProblem& problem, FlatChart& chart,
+std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
+                                  const FlatteningProblem& problem, bool& refined,
+                                  const Progress& progress) {
+    refined = false;
+    if (surface.face_count() < multilevel_threshold)
+        return valid_start(problem, progress);
+    // Parts that lie on each other are pushed apart where that is cheap.
+    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface& disk) {
+        std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
+                                                            SymmetricDirichletOptions{}, progress)
+                                   .uv;
+        const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+        const Pairs pairs = overlapping_pairs(disk, uv, tolerance);
+        if (!pairs.empty() && surface.face_count() > most_polished_faces)
+            if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance, progress, coarse_gap))
+                uv = std::move(*apart);
+        return uv;
+    };
+    try {
+        std::vector<Vec2> uv = flatten_multilevel(mesh, surface, problem, solve, progress);
+        refined = count_flips(problem, uv) == 0;
+        if (refined)
+            return uv;
+    } catch (const NumericalFailure&) { // needles can leave no room for a vertex
+    }
+    return valid_start(problem, progress);
+}
+
+void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
                                const Progress& progress) {
-    SymmetricDirichletResult result = minimise_symmetric_dirichlet(
-        problem, valid_start(problem, progress), SymmetricDirichletOptions{}, progress);
-    chart.uv = std::move(result.uv);
-    chart.converged = result.converged;
+    bool refined = false;
+    chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
+    if (!refined || chart.surface.face_count() <= most_polished_faces) {
+        SymmetricDirichletResult result =
+            minimise_symmetric_dirichlet(problem, chart.uv, SymmetricDirichletOptions{}, progress);
+        chart.uv = std::move(result.uv);
+        chart.converged = result.converged;
+    }
+    relieve_peaks(problem, chart.surface.twin, false, chart.uv, progress);
     scale_to_area(problem, chart.uv);
 }
 
@@ -121,7 +154,7 @@ bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double toler
         chart.uv = std::move(own.second);
         return true;
     }
-    apply_symmetric_dirichlet(problem, chart, progress);
+    apply_symmetric_dirichlet(mesh, problem, chart, progress);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     const std::vector<double> angles = boundary_angles(problem, chart.uv);
     auto near =
@@ -139,7 +172,7 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
     try {
         switch (method) {
         case FlattenMethod::symmetric_dirichlet:
-            apply_symmetric_dirichlet(problem, chart, progress);
+            apply_symmetric_dirichlet(mesh, problem, chart, progress);
             return true;
         case FlattenMethod::lscm:
             chart.uv = flatten_lscm(problem);
@@ -168,45 +201,6 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
     }
     // Conformal maps of strongly curved charts can shrink faces until 32-bit coordinates flip them.
     return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
-}
-
-// Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
-// where a vertex has new ones.
-std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
-                                    std::vector<Contact> contacts) {
-    const std::size_t found = contacts.size();
-    for (const Contact& contact : old)
-        if (std::none_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(found),
-                         [&](const Contact& c) { return c.vertex == contact.vertex; }))
-            contacts.push_back(contact);
-    return contacts;
-}
-
-// The map with its overlapping parts pushed apart; nothing if that does not help, or costs too
-// much shape.
-std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
-                                            const FlatChart& chart, Pairs pairs, double tolerance,
-                                            const Progress& progress) {
-    const double before = symmetric_dirichlet_energy(problem, chart.uv);
-    std::vector<Vec2> uv = chart.uv;
-    ContactPenalty penalty;
-    penalty.stiffness = first_stiffness / problem.total_area;
-    penalty.gap = gap_share * std::sqrt(problem.total_area);
-    SymmetricDirichletOptions options;
-    options.max_iterations = 30;
-    for (int round = 0; round < push_rounds; ++round) {
-        penalty.contacts =
-            merge_contacts(penalty.contacts, find_contacts(chart.surface, uv, pairs));
-        uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
-        scale_to_area(problem, uv);
-        if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
-            return std::nullopt;
-        pairs = overlapping_pairs(chart.surface, uv, tolerance);
-        if (pairs.empty())
-            return uv;
-        penalty.stiffness *= stiffer;
-    }
-    return std::nullopt;
 }
 
 std::vector<Index> on_mesh(const ChartSurface& surface, std::vector<Index> half_edges) {
@@ -242,7 +236,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
     try {
         if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
             chart.mended = true;
-            apply_symmetric_dirichlet(problem, chart, progress);
+            apply_symmetric_dirichlet(mesh, problem, chart, progress);
         }
     } catch (const NumericalFailure&) {
         if (chart.surface.face_count() < 2)
@@ -256,10 +250,13 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
         return {};
     // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
     // would not be theirs any more.
-    const bool may_push = method == FlattenMethod::symmetric_dirichlet || chart.mended;
-    if (auto apart =
-            may_push ? push_apart(problem, chart, pairs, tolerance, progress) : std::nullopt) {
+    const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
+                          chart.surface.face_count() <= most_polished_faces;
+    if (auto apart = may_push
+                         ? push_apart(problem, chart.surface, chart.uv, pairs, tolerance, progress)
+                         : std::nullopt) {
         chart.uv = std::move(*apart);
+        relieve_peaks(problem, chart.surface.twin, true, chart.uv, progress);
         open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
         chart.pushed = true;
         chart.energy = symmetric_dirichlet_energy(problem, chart.uv);

@@ -30,6 +30,30 @@ std::array<double, 3> solid_lengths(std::array<double, 3> length, double floor) 
 
 } // namespace
 
+RestTriangle make_rest_triangle(std::array<double, 3> length, double floor) {
+    length = solid_lengths(length, floor);
+    const double a = length[0]; // 0 → 1
+    const double b = length[1]; // 1 → 2
+    const double c = length[2]; // 2 → 0
+    const double x = (a * a + c * c - b * b) / (2.0 * a);
+    // Kahan's formula: Heron's loses all digits on needles.
+    std::array<double, 3> sorted = length;
+    std::sort(sorted.begin(), sorted.end());
+    const double p = sorted[2];
+    const double q = sorted[1];
+    const double r = sorted[0];
+    RestTriangle triangle;
+    const double area =
+        0.25 *
+        std::sqrt(std::max(0.0, (p + (q + r)) * (r - (p - q)) * (r + (p - q)) * (p + (q - r))));
+    triangle.area = area;
+    triangle.edges << a, x, 0.0, 2.0 * area / a;
+    triangle.cotangent = {(b * b + c * c - a * a) / (4.0 * area),
+                          (c * c + a * a - b * b) / (4.0 * area),
+                          (a * a + b * b - c * c) / (4.0 * area)};
+    return triangle;
+}
+
 FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& surface) {
     if (!surface.is_disk())
         throw NumericalFailure("expected a chart that is a disk, found one with " +
@@ -51,32 +75,15 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& 
         std::array<double, 3> length{};
         for (Index k = 0; k < 3; ++k)
             length[at(k)] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));
-        length = solid_lengths(length, floor);
-        const double a = length[0]; // 0 → 1
-        const double b = length[1]; // 1 → 2
-        const double c = length[2]; // 2 → 0
-        const double x = (a * a + c * c - b * b) / (2.0 * a);
-        // Kahan's formula: Heron's loses all digits on needles.
-        std::array<double, 3> sorted = length;
-        std::sort(sorted.begin(), sorted.end());
-        const double p = sorted[2];
-        const double q = sorted[1];
-        const double r = sorted[0];
-        const double area =
-            0.25 *
-            std::sqrt(std::max(0.0, (p + (q + r)) * (r - (p - q)) * (r + (p - q)) * (p + (q - r))));
-        const double y = 2.0 * area / a;
-        Eigen::Matrix2d edges;
-        edges << a, x, 0.0, y;
+        const RestTriangle triangle = make_rest_triangle(length, floor);
+        const Eigen::Matrix2d& e = triangle.edges;
         Eigen::Matrix2d inverse;
-        inverse << 1.0 / a, -x / (a * y), 0.0, 1.0 / y;
-        problem.edges.push_back(edges);
+        inverse << 1.0 / e(0, 0), -e(0, 1) / (e(0, 0) * e(1, 1)), 0.0, 1.0 / e(1, 1);
+        problem.edges.push_back(e);
         problem.inverse.push_back(inverse);
-        problem.area.push_back(area);
-        problem.total_area += area;
-        problem.cotangent.push_back({(b * b + c * c - a * a) / (4.0 * area),
-                                     (c * c + a * a - b * b) / (4.0 * area),
-                                     (a * a + b * b - c * c) / (4.0 * area)});
+        problem.area.push_back(triangle.area);
+        problem.total_area += triangle.area;
+        problem.cotangent.push_back(triangle.cotangent);
     }
     return problem;
 }

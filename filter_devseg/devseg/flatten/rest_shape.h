@@ -24,6 +24,17 @@ struct FlatteningProblem {
     double total_area = 0.0;
 };
 
+/// One triangle laid into the plane.
+struct RestTriangle {
+    Eigen::Matrix2d edges; // columns are the edges 0→1 and 0→2
+    double area = 0.0;
+    std::array<double, 3> cotangent{}; // of the angle opposite to edge k → k + 1
+};
+
+/// The triangle with these edge lengths (k → k + 1); lengths that make it too thin to have a shape
+/// are widened, and none is shorter than `floor` times a small factor.
+RestTriangle make_rest_triangle(std::array<double, 3> length, double floor);
+
 /// Throws NumericalFailure unless the surface is a disk. Triangles that are too thin to have a
 /// shape of their own in double precision are given the least extra width that makes them solid
 /// (all three lengths grow by the same amount, as in intrinsic mollification), so that every

@@ -28,6 +28,7 @@ constexpr int stall_window = 10;      // steps over which progress is judged
 constexpr double locked = 1e20;       // stiffness of vertices that stay: their steps vanish
 constexpr double near_isometry = 1.2; // energy below which one factorization is enough
 constexpr double little_gain = 1e-3;  // share of the energy that a Newton step must gain
+constexpr double steps_to_come = 4.0; // gains like the last one that a descent may still hope for
 
 // The cotangent Laplacian of the rest shape, made definite by a shift far below its own size: the
 // energy's Hessian at an isometry, up to a factor and the rotations.
@@ -170,6 +171,10 @@ private:
     Positions change_;
 };
 
+bool is_hopeless(double energy, double last_gain, const SymmetricDirichletOptions& options) {
+    return energy - steps_to_come * last_gain > options.give_up_energy;
+}
+
 // Newton's method until the map is near enough to an isometry for the Laplacian to be a good model
 // of the Hessian, or until it gains little.
 void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
@@ -183,7 +188,8 @@ void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions&
         if (!descent.advance(newton.direction(descent.x(), descent.gradient())))
             return;
         ++result.iterations;
-        if (before - descent.energy() < little_gain * before)
+        const double gain = before - descent.energy();
+        if (gain < little_gain * before || is_hopeless(descent.energy(), gain, options))
             return;
     }
 }
@@ -194,6 +200,7 @@ void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& o
     std::deque<double> recent{descent.energy()};
     while (result.iterations < options.max_iterations && !result.converged) {
         progress.check();
+        const double before = descent.energy();
         if (!descent.advance(model.direction(descent.gradient()))) {
             result.converged = model.empty(); // then not even the plain gradient leads down
             model.forget();
@@ -201,6 +208,8 @@ void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& o
         }
         model.remember(descent.last_step(), descent.last_change());
         ++result.iterations;
+        if (is_hopeless(descent.energy(), before - descent.energy(), options))
+            return;
         recent.push_back(descent.energy());
         if (recent.size() > stall_window) {
             result.converged =

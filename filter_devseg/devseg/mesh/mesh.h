@@ -92,17 +92,21 @@ FaceComponents face_components(const Mesh& mesh, Connected connected) {
 /// Calls visit(h) for the half-edges that leave the origin of `half_edge`, one for each face around
 /// it; returns whether the faces go all around, which is false on the boundary.
 template <class Visit>
-bool visit_star(const Mesh& mesh, Index half_edge, Visit visit) {
+bool visit_star(const std::vector<Index>& twin, Index half_edge, Visit visit) {
     Index leaving = half_edge;
     do {
         visit(leaving);
-        leaving = mesh.twin[at(Mesh::previous(leaving))];
+        leaving = twin[at(Mesh::previous(leaving))];
     } while (leaving >= 0 && leaving != half_edge);
     if (leaving == half_edge)
         return true;
-    for (Index back = mesh.twin[at(half_edge)]; back >= 0; back = mesh.twin[at(Mesh::next(back))])
+    for (Index back = twin[at(half_edge)]; back >= 0; back = twin[at(Mesh::next(back))])
         visit(Mesh::next(back));
     return false;
+}
+template <class Visit>
+bool visit_star(const Mesh& mesh, Index half_edge, Visit visit) {
+    return visit_star(mesh.twin, half_edge, visit);
 }
 
 } // namespace devseg

@@ -1,45 +1,28 @@
 #include "devseg/metrics/segmentation.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "devseg/segment/conic_proxy.h"
+#include "devseg/segment/gauss_area.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+// [YGZS05, section 4]: the threshold of all its examples.
+constexpr double crease_angle = 45.0 * 3.14159265358979323846 / 180.0;
 
-double angle_at_corner(const Mesh& mesh, Index h) {
-    const Vec3& corner = mesh.points[at(mesh.origin(h))];
-    const Vec3 a = mesh.points[at(mesh.target(h))] - corner;
-    const Vec3 b = mesh.points[at(mesh.origin(Mesh::previous(h)))] - corner;
-    return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-// Σ |2π − angle sum| over the vertices inside the chart: 0 for a developable chart.
-double absolute_curvature(const Mesh& mesh, const ChartSurface& surface) {
-    std::vector<double> defect(surface.vertex.size(), 2.0 * pi);
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        defect[at(surface.origin(h))] -= angle_at_corner(mesh, surface.mesh_half_edge(h));
-    for (const std::vector<Index>& loop : surface.loops)
-        for (const Index h : loop)
-            defect[at(surface.origin(h))] = 0.0;
-    double sum = 0.0;
-    for (const double d : defect)
-        sum += std::abs(d);
-    return sum;
-}
-
-double standard_deviation(const std::vector<double>& values) {
-    double mean = 0.0;
-    for (const double v : values)
-        mean += v / static_cast<double>(values.size());
-    double variance = 0.0;
-    for (const double v : values)
-        variance += (v - mean) * (v - mean) / static_cast<double>(values.size());
-    return std::sqrt(variance);
+double share_of_creases(const Mesh& mesh, const std::vector<std::uint8_t>& crease,
+                        const std::vector<std::uint8_t>& seam) {
+    double all = 0.0;
+    double cut = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (crease[at(h)] == 0)
+            continue;
+        all += mesh.edge_length(h);
+        cut += seam[at(h)] != 0 ? mesh.edge_length(h) : 0.0;
+    }
+    return all > 0.0 ? cut / all : 1.0;
 }
 
 } // namespace
@@ -48,10 +31,8 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& char
     SegmentationMeasures result;
     result.charts_number = charts.count;
     result.seam_length = seam_length(mesh, charts);
-    std::vector<double> curvature;
     for (const ChartSurface& surface : extract_charts(mesh, charts)) {
         result.disk_charts_number += surface.is_disk() ? 1 : 0;
-        curvature.push_back(absolute_curvature(mesh, surface));
         NormalMoments moments;
         for (const Index f : surface.face)
             moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
@@ -62,7 +43,12 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& char
         result.largest_chart_area_share =
             std::max(result.largest_chart_area_share, moments.area / mesh.total_area);
     }
-    result.gauss_area_std = standard_deviation(curvature);
+    const GaussAreas areas = compute_gauss_areas(mesh, crease_angle);
+    const std::vector<double> sums = chart_gauss_areas(mesh, areas, charts.chart, charts.count);
+    result.gauss_area_std = standard_deviation(sums);
+    for (const double sum : sums)
+        result.gauss_area_mean += sum / static_cast<double>(charts.count);
+    result.crease_share = share_of_creases(mesh, areas.crease, charts.seam);
     return result;
 }
 

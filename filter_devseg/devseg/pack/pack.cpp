@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "devseg/errors.h"
 #include "devseg/pack/compaction.h"
+#include "devseg/pack/first_fit.h"
 #include "devseg/pack/nest.h"
 #include "devseg/pack/proximity.h"
 #include "devseg/pack/shelves.h"
@@ -19,6 +21,13 @@ namespace {
 constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
 constexpr double least_use = 0.1;         // what padding alone must leave of it
 constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each
+// Above this number of charts a first fit comes before nesting, and often is enough; above the next
+// one its grid would be too coarse.
+constexpr std::size_t few_to_fit = 40;
+constexpr std::size_t most_fitted = 10000;
+constexpr double enough_use = 0.75;        // of the box
+constexpr double enough_use_of_many = 0.6; // where nesting would take seconds
+constexpr std::size_t many_charts = 250;
 // Independent searches, and how many of them are not given up halfway. An even number keeps two
 // threads busy; it is the same whatever the threads.
 constexpr std::size_t chains = 4;
@@ -77,7 +86,8 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
 
 std::vector<Placement> find_placements(const NestProblem& problem, Progress& progress) {
     const bool few = problem.outlines.size() <= few_charts;
-    std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : chains);
+    const bool many = problem.outlines.size() > few_to_fit; // whose work is enough for two chains
+    std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : many ? finished_chains : chains);
     parallel_for(
         static_cast<int>(begun.size()),
         [&](int k) {
@@ -104,6 +114,29 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
                              [&](const auto& a, const auto& b) { return bad(a) < bad(b); });
 }
 
+std::vector<Placement> nest(NestProblem& problem, Progress& progress) {
+    prepare(problem, progress);
+    return find_placements(problem, progress);
+}
+
+// The better one of two ways, of which the second is slow.
+std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& options,
+                                   Progress& progress) {
+    const std::vector<Outline>& outlines = problem.outlines;
+    std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, progress);
+    parallel_for(
+        1, [&](int) { fitted = compact(outlines, fitted, options, progress); }, progress);
+    const double area =
+        std::accumulate(outlines.begin(), outlines.end(), 0.0,
+                        [](double sum, const Outline& outline) { return sum + outline.area; });
+    const Vec2 fitted_box = box_of(outlines, fitted).size();
+    const double enough = outlines.size() > many_charts ? enough_use_of_many : enough_use;
+    if (outlines.size() > most_nested || area >= enough * fitted_box.prod())
+        return fitted;
+    std::vector<Placement> nested = nest(problem, progress);
+    return badness(box_of(outlines, nested).size()) < badness(fitted_box) ? nested : fitted;
+}
+
 } // namespace
 
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
@@ -126,12 +159,12 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
         },
         progress);
     problem.side = guess_side(problem.outlines, options);
-    if (items.size() == 1 || items.size() > most_nested) {
+    if (items.size() == 1 || items.size() > most_fitted)
         result.placements = pack_on_shelves(problem.outlines, options, problem.side, progress);
-    } else {
-        prepare(problem, progress);
-        result.placements = find_placements(problem, progress);
-    }
+    else if (items.size() > few_to_fit)
+        result.placements = fit_or_nest(problem, options, progress);
+    else
+        result.placements = nest(problem, progress);
     const Box box = box_of(problem.outlines, result.placements);
     // The border of the square keeps half of the padding as well.
     result.side = box.size().maxCoeff() / (1.0 - options.padding);

@@ -114,9 +114,12 @@ std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pie
     return result;
 }
 
-void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& moved) {
+void shelve(std::vector<PatternPiece>& pieces, std::vector<std::size_t> moved) {
     if (moved.empty())
         return;
+    std::stable_sort(moved.begin(), moved.end(), [&](std::size_t a, std::size_t b) {
+        return pieces[a].box.sizes().y() > pieces[b].box.sizes().y();
+    });
     const Eigen::AlignedBox2d layout = bounding_box(pieces);
     const double gap = shelf_gap * layout.sizes().maxCoeff();
     Vec2 corner(layout.min().x(), layout.max().y() + gap);

@@ -21,7 +21,7 @@ bool overlap(const PatternPiece& a, const PatternPiece& b);
 /// The pieces that overlap one before them.
 std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pieces);
 
-/// Moves these pieces to rows above all others. The pieces' boxes must be set.
-void shelve(std::vector<PatternPiece>& pieces, const std::vector<std::size_t>& moved);
+/// Moves these pieces to rows above all others, the highest first. The pieces' boxes must be set.
+void shelve(std::vector<PatternPiece>& pieces, std::vector<std::size_t> moved);
 
 } // namespace devseg

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 
@@ -88,10 +89,11 @@ Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
 }
 
 // A map of the surface without flips and overlaps, if the method finds one without cuts.
-bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart) {
+bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
+                   const std::function<bool()>& go_on) {
     const Mesh part = mesh_of(mesh, chart.surface);
     const ChartMap one = make_chart_map(part, std::vector<Index>(part.faces.size(), 0), {}, false);
-    Progress quiet;
+    Progress quiet([&](double, const char*) { return go_on(); });
     const FlattenResult result = flatten_charts(part, one, method, quiet);
     if (result.flat.size() != 1 || result.cuts > 0 || result.flat.front().mended)
         return false;
@@ -126,8 +128,9 @@ double joint_error(const Mesh& mesh, const ChartSurface& small, const ChartSurfa
 // While charts are joined: labels of faces and the charts that are left, by label.
 class Joiner {
 public:
-    Joiner(const Mesh& mesh, const OptimizeOptions& options, FlatLayout& layout)
-        : mesh_(mesh), options_(options), layout_(layout), label_(layout.charts.chart) {
+    Joiner(const Mesh& mesh, const OptimizeOptions& options, FlatLayout& layout, Progress& progress)
+        : mesh_(mesh), options_(options), layout_(layout), progress_(progress),
+          label_(layout.charts.chart) {
         method_ = keeps_lengths(mesh, layout, spread(mesh, layout.flat))
                       ? FlattenMethod::lpfb
                       : FlattenMethod::symmetric_dirichlet;
@@ -139,8 +142,9 @@ public:
                    options_.max_gusset_area * mesh_.total_area;
     }
 
-    // Joins the chart to the first neighbour that takes it.
-    bool join(std::size_t c) {
+    // Joins the chart to the first neighbour that takes it; `done` is the share of the work so far.
+    bool join(std::size_t c, double done) {
+        done_ = done;
         const FlatChart& small = layout_.flat[c];
         std::map<Index, double> border; // length, by neighbour
         for (const Index f : small.surface.face)
@@ -177,7 +181,8 @@ private:
         both.surface = extract_surface(mesh_, std::move(faces), seam);
         const double limit =
             std::max(energy_of(mesh_, small), energy_of(mesh_, neighbour)) + energy_increase;
-        if (!both.surface.is_disk() || !flatten_whole(mesh_, method_, both) ||
+        if (!both.surface.is_disk() ||
+            !flatten_whole(mesh_, method_, both, [&] { return go_on(); }) ||
             energy_of(mesh_, both) > limit)
             return false;
         for (const Index f : small.surface.face)
@@ -189,9 +194,21 @@ private:
         return true;
     }
 
+    // Asks the user while a chart is flattened, which says itself that it was cancelled.
+    bool go_on() {
+        try {
+            progress_.update(done_);
+        } catch (const Cancelled&) {
+            return false;
+        }
+        return true;
+    }
+
     const Mesh& mesh_;
     const OptimizeOptions& options_;
     FlatLayout& layout_;
+    Progress& progress_;
+    double done_ = 0.0;
     std::vector<Index> label_; // #F
     FlattenMethod method_ = FlattenMethod::symmetric_dirichlet;
 };
@@ -240,11 +257,12 @@ void reattach_gussets(const Mesh& mesh, const OptimizeOptions& options, FlatLayo
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return area_of(mesh, layout.flat[a].surface) < area_of(mesh, layout.flat[b].surface);
     });
-    Joiner joiner(mesh, options, layout);
+    Joiner joiner(mesh, options, layout, progress);
     for (std::size_t i = 0; i < order.size(); ++i) {
-        progress.update(static_cast<double>(i) / static_cast<double>(order.size()));
+        const double done = static_cast<double>(i) / static_cast<double>(order.size());
+        progress.update(done);
         if (joiner.is_small(order[i]))
-            joiner.join(order[i]);
+            joiner.join(order[i], done);
     }
     if (layout.reattached > 0)
         rebuild(mesh, spread(mesh, layout.flat), layout.charts.seam, layout);

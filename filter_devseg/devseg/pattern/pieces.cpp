@@ -4,6 +4,7 @@
 #include <cmath>
 #include <locale>
 #include <sstream>
+#include <utility>
 
 #include "devseg/errors.h"
 #include "devseg/pattern/curves.h"
@@ -61,6 +62,19 @@ void check_options(const PatternOptions& o) {
         throw InvalidParameter("height_mm: expected a number above 0, or 0 to scale by "
                                "mm_per_unit, found " +
                                number(o.height_mm));
+    const std::pair<const char*, double> others[] = {
+        {"simplify_mm", o.simplify_mm},
+        {"corner_angle", o.corner_angle},
+        {"curve_mm", o.curve_mm},
+        {"notch_spacing_mm", o.notch_spacing_mm},
+        {"fold_angle", o.fold_angle},
+        {"max_piece_mm", o.max_piece_mm},
+        {"pair_tolerance_mm", o.pair_tolerance_mm},
+    };
+    for (const auto& [name, value] : others)
+        if (!(value >= 0.0) || !std::isfinite(value))
+            throw InvalidParameter(std::string(name) + ": expected a number from 0 on, found " +
+                                   number(value));
 }
 
 // Millimetres for one internal unit of the mesh.

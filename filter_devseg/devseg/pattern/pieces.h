@@ -16,8 +16,8 @@ struct PatternOptions {
                               // replaces mm_per_unit where it is above 0
     bool labels = true;       // write each piece's name into it
 
-    // A vertex of an outline is left out where that moves neither side of the seam by more; also
-    // never more than a thousandth of a piece's size. 0 keeps all vertices.
+    // A vertex of an outline is left out where that moves neither side of the seam by more; pieces
+    // smaller than 100 mm have less, in proportion to their size. 0 keeps all vertices.
     double simplify_mm = 0.1;
     double corner_angle = 35.0;     // degrees: an outline that turns by more has a corner
     double curve_mm = 0.1;          // largest distance of the curves from the outline

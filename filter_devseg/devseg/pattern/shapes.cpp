@@ -168,17 +168,40 @@ bool same_shape(const PatternPiece& piece, const PatternPiece& model, bool mirro
     return fits_from(a, b, from, best, tolerance);
 }
 
-// What two pieces of one shape must agree on: cheap to compare.
-bool may_be_same(const PatternPiece& a, const PatternPiece& b, double tolerance) {
-    const double around_a = perimeter(a.outer.points);
-    const double around_b = perimeter(b.outer.points);
+// What pieces of one shape agree on, however they are turned: cheap to compare.
+struct Signature {
+    double around = 0.0;      // length of the outline
+    double mean_radius = 0.0; // root mean square distance of the outline from its centre
+    double radius = 0.0;      // the largest
+};
+
+Signature signature_of(const PatternPiece& piece) {
+    const std::vector<Vec2> points = even_points(piece.outer.points, places);
+    Signature signature;
+    signature.around = perimeter(piece.outer.points);
+    Vec2 centre = Vec2::Zero();
+    for (const Vec2& p : points)
+        centre += p / static_cast<double>(points.size());
+    for (const Vec2& p : points)
+        signature.mean_radius += (p - centre).squaredNorm() / static_cast<double>(points.size());
+    signature.mean_radius = std::sqrt(signature.mean_radius);
+    for (const Vec2& p : piece.outer.points)
+        signature.radius = std::max(signature.radius, (p - centre).norm());
+    return signature;
+}
+
+bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& of_a,
+                 const Signature& of_b, double tolerance) {
     const auto near = [](double x, double y, double distance) {
         return std::abs(x - y) <= distance;
     };
+    // Evenly spaced points of ragged outlines are not at the same places: twice the tolerance.
     // An outline that moves by d changes the area by d times its length at most.
     return a.holes.size() == b.holes.size() &&
-           near(a.area, b.area, tolerance * std::max(around_a, around_b)) &&
-           near(around_a, around_b, raggedness * around_a);
+           near(of_a.mean_radius, of_b.mean_radius, 2.0 * tolerance) &&
+           near(of_a.radius, of_b.radius, 4.0 * tolerance) &&
+           near(a.area, b.area, tolerance * std::max(of_a.around, of_b.around)) &&
+           near(of_a.around, of_b.around, raggedness * of_a.around);
 }
 
 // The stretch of the line through `p` around p that lies inside the piece.
@@ -235,6 +258,9 @@ void set_sizes(PatternPiece& piece, GrainDirection grain) {
 
 void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm) {
     std::vector<std::size_t> models;
+    std::vector<Signature> signatures;
+    for (const PatternPiece& piece : pieces)
+        signatures.push_back(signature_of(piece));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         PatternPiece& piece = pieces[i];
         piece.model = static_cast<Index>(i);
@@ -244,7 +270,7 @@ void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm) {
         const double tolerance = std::min(tolerance_mm, size_share * std::sqrt(piece.area));
         for (const std::size_t m : models) {
             PatternPiece& model = pieces[m];
-            if (!may_be_same(piece, model, tolerance))
+            if (!may_be_same(piece, model, signatures[i], signatures[m], tolerance))
                 continue;
             const bool straight = same_shape(piece, model, false, tolerance);
             if (!straight && !same_shape(piece, model, true, tolerance))

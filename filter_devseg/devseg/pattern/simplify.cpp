@@ -13,9 +13,9 @@ namespace devseg {
 
 namespace {
 
-// A vertex that is left out may move the outline by this share of the outline's size (the square
-// root of its area) at most: the areas of small pieces stay true to better than half a percent.
-constexpr double size_share = 1e-3;
+// The tolerance holds for outlines of this size (the square root of the area, mm) and above, and in
+// proportion for smaller ones: at 0.1 mm the areas of all pieces stay true to half a percent.
+constexpr double full_size = 100.0;
 
 // Cuts that were made to split a piece are straightened: along them, what one part loses the other
 // gains, within this share of their size.
@@ -268,9 +268,12 @@ void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
 void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
                        double tolerance) {
     std::vector<std::vector<Index>> kept;
-    for (const Chain& chain : chains)
-        kept.push_back(collapse_vertices(points_of(pieces, chain),
-                                         std::min(tolerance, size_share * size_of(pieces, chain))));
+    for (const Chain& chain : chains) {
+        const double size = size_of(pieces, chain);
+        const double own =
+            chain.is_cut ? cut_share * size : tolerance * std::min(1.0, size / full_size);
+        kept.push_back(collapse_vertices(points_of(pieces, chain), own));
+    }
     // Every round keeps all vertices of further pieces: this ends.
     std::vector<std::uint8_t> whole(pieces.size(), 0);
     for (std::size_t p = 0; p < pieces.size(); ++p)

@@ -27,8 +27,9 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
 void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
                   double corner_angle);
 
-/// Leaves vertices out of all outlines, by `tolerance` mm and a thousandth of each piece's size at
-/// most. An outline that would cross itself for that keeps all of them.
+/// Leaves vertices out of all outlines, within `tolerance` mm for outlines of 100 mm (the square
+/// root of the area) and above, and in proportion for smaller ones. An outline that would cross
+/// itself for that keeps all of them.
 void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
                        double tolerance);
 

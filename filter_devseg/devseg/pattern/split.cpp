@@ -1,6 +1,7 @@
 #include "devseg/pattern/split.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "devseg/cut/min_cut.h"
@@ -14,8 +15,10 @@ namespace {
 // it leaves parts that are as large as allowed, and no play for further cuts.
 constexpr double edge_cost = 0.5;
 
-// The cut may move by this share of the allowed length at least, to find a short way.
-constexpr double least_play = 0.1;
+// The cut may move to find a short way, by this share of the allowed length at least, and not so
+// far that it takes off a mere tip.
+constexpr double least_play = 0.05;
+constexpr double most_play = 0.15;
 
 struct CutLine {
     Vec2 along; // unit, across the cut
@@ -30,7 +33,7 @@ CutLine choose_line(const PieceBox& box, double start, double longest) {
     const double low = box.long_side - (parts - before) * longest;
     const double high = before * longest;
     const double middle = 0.5 * (low + high);
-    const double half = std::max(0.5 * (high - low), 0.5 * least_play * longest);
+    const double half = std::clamp(0.5 * (high - low), least_play * longest, most_play * longest);
     return {box.direction, start + middle - half, start + middle + half};
 }
 
@@ -63,6 +66,44 @@ std::vector<CutSide> sides_of(const ChartSurface& surface, const CornerUv& uv,
                      (1.0 + edge_cost * off * off) * (to - from).norm());
         }
     return cut.solve();
+}
+
+// Turns all parts of a side over to the other one but its largest: the rest is crumbs between the
+// cut and the outline, and arms that no cut of this chart should take off.
+void join_crumbs(const ChartSurface& surface, const CornerUv& uv, std::vector<CutSide>& sides) {
+    std::vector<Index> part(sides.size(), -1);
+    std::vector<double> area;
+    std::vector<Index> stack;
+    for (std::size_t start = 0; start < sides.size(); ++start) {
+        if (part[start] >= 0)
+            continue;
+        const Index own = static_cast<Index>(area.size());
+        area.push_back(0.0);
+        part[start] = own;
+        stack.push_back(static_cast<Index>(start));
+        while (!stack.empty()) {
+            const Index f = stack.back();
+            stack.pop_back();
+            area.back() += std::abs(uv_area(uv, surface.face[at(f)]));
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = surface.twin[at(h)];
+                if (twin < 0 || part[at(twin / 3)] >= 0 || sides[at(twin / 3)] != sides[at(f)])
+                    continue;
+                part[at(twin / 3)] = own;
+                stack.push_back(twin / 3);
+            }
+        }
+    }
+    std::array<Index, 2> largest{-1, -1}; // of the source and of the sink
+    const auto place = [&](std::size_t f) { return sides[f] == CutSide::source ? 0U : 1U; };
+    for (std::size_t f = 0; f < sides.size(); ++f) {
+        Index& best = largest[place(f)];
+        if (best < 0 || area[at(part[f])] > area[at(best)])
+            best = part[f];
+    }
+    for (std::size_t f = 0; f < sides.size(); ++f)
+        if (part[f] != largest[0] && part[f] != largest[1])
+            sides[f] = sides[f] == CutSide::source ? CutSide::sink : CutSide::source;
 }
 
 void mark_cut(const Mesh& mesh, const ChartSurface& surface, const std::vector<CutSide>& sides,
@@ -106,7 +147,9 @@ SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const Chart
             for (const Vec2& p : points)
                 start = std::min(start, box.direction.dot(p));
             const CutLine line = choose_line(box, start, longest);
-            mark_cut(mesh, surface, sides_of(surface, uv, line), result, seam);
+            std::vector<CutSide> sides = sides_of(surface, uv, line);
+            join_crumbs(surface, uv, sides);
+            mark_cut(mesh, surface, sides, result, seam);
             again = true;
         }
         if (again)

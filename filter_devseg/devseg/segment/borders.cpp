@@ -104,11 +104,11 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh) {
 // back after each border, so that the cost follows the borders and not the mesh.
 class Straightener {
 public:
-    Straightener(const Mesh& mesh, const std::vector<ConicProxy>& proxies, double max_fitting_error,
+    Straightener(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error, int rings,
                  std::vector<Index>& chart)
         : mesh_(mesh), normals_(smooth_normals(mesh)), proxies_(proxies),
-          max_fitting_error_(max_fitting_error), chart_(chart), fuzzy_(mesh.faces.size(), 0),
-          blocked_(mesh.points.size(), 0),
+          max_fitting_error_(max_fitting_error), rings_(rings), chart_(chart),
+          fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
           distance_(mesh.points.size(), std::numeric_limits<double>::infinity()),
           arrival_(mesh.points.size(), -1), new_border_(mesh.twin.size(), 0),
           outgoing_(mesh.points.size(), -1), valence_(mesh.points.size(), 0),
@@ -137,36 +137,42 @@ public:
 private:
     // Both charts grown into each other [JKS05, section 3.3], from the faces at this border.
     void grow_fuzzy_area(const BorderSegment& segment) {
+        std::vector<Index> left;
+        std::vector<Index> right;
         for (const Index h : segment.half_edges) {
-            grow_from(h / 3, segment.chart_b);
-            grow_from(mesh_.twin[at(h)] / 3, segment.chart_a);
+            left.push_back(h / 3);
+            right.push_back(mesh_.twin[at(h)] / 3);
         }
+        grow_from(std::move(left), segment.chart_a, segment.chart_b);
+        grow_from(std::move(right), segment.chart_b, segment.chart_a);
     }
-    void grow_from(Index start, Index into) {
-        if (fuzzy_[at(start)] != 0 || !fits(start, into))
-            return;
-        const Index own = chart_[at(start)];
-        std::vector<Index> stack{start};
-        fuzzy_[at(start)] = 1;
-        area_.push_back(start);
-        while (!stack.empty()) {
-            const Index f = stack.back();
-            stack.pop_back();
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0)
-                    continue;
-                const Index g = twin / 3;
-                if (chart_[at(g)] != own || fuzzy_[at(g)] != 0 || !fits(g, into))
-                    continue;
-                fuzzy_[at(g)] = 1;
-                area_.push_back(g);
-                stack.push_back(g);
-            }
+    // Breadth first, so that the number of rings can be limited.
+    void grow_from(std::vector<Index> ring, Index own, Index into) {
+        const auto take = [&](Index f) {
+            if (chart_[at(f)] != own || fuzzy_[at(f)] != 0 || !fits(f, into))
+                return false;
+            fuzzy_[at(f)] = 1;
+            area_.push_back(f);
+            return true;
+        };
+        ring.erase(std::remove_if(ring.begin(), ring.end(), [&](Index f) { return !take(f); }),
+                   ring.end());
+        for (int depth = 1; !ring.empty() && (rings_ == 0 || depth < rings_); ++depth) {
+            std::vector<Index> next;
+            for (const Index f : ring)
+                for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                    const Index twin = mesh_.twin[at(h)];
+                    if (twin >= 0 && take(twin / 3))
+                        next.push_back(twin / 3);
+                }
+            ring = std::move(next);
         }
     }
     bool fits(Index f, Index c) const {
-        return proxies_[at(c)].fitting_error(normals_[at(f)]) < max_fitting_error_;
+        for (const ConicProxy& proxy : proxies_[at(c)])
+            if (proxy.fitting_error(normals_[at(f)]) < max_fitting_error_)
+                return true;
+        return false;
     }
 
     // A vertex that a new border may pass: no other chart, no boundary and no other border of the
@@ -373,24 +379,27 @@ private:
         return result;
     }
 
-    // Takes the new labels unless a chart would fall apart, vanish or change its topology.
+    // Takes the new labels unless a chart would fall apart, shrink by much or change its topology.
     bool apply(const BorderSegment& segment, const std::vector<std::pair<Index, Index>>& labels) {
         const Index first = segment.half_edges.front();
         const Topology before_a = topology(first / 3);
         const Topology before_b = topology(mesh_.twin[at(first)] / 3);
         std::vector<std::pair<Index, Index>> undo;
         Index sum[2] = {before_a.faces, before_b.faces}; // faces that the charts should have
+        Index lost[2] = {0, 0};
         for (const auto& [f, c] : labels) {
             if (chart_[at(f)] == c)
                 continue;
             undo.emplace_back(f, chart_[at(f)]);
             sum[c == segment.chart_a ? 0 : 1] += 1;
             sum[c == segment.chart_a ? 1 : 0] -= 1;
+            lost[c == segment.chart_a ? 1 : 0] += 1;
             chart_[at(f)] = c;
         }
         if (undo.empty())
             return false;
-        bool good = sum[0] > 0 && sum[1] > 0;
+        bool good = sum[0] > 0 && sum[1] > 0 && lost[0] <= largest_loss * before_a.faces &&
+                    lost[1] <= largest_loss * before_b.faces;
         for (int i = 0; i < 2 && good; ++i) {
             const Index c = i == 0 ? segment.chart_a : segment.chart_b;
             const auto found = std::find_if(labels.begin(), labels.end(),
@@ -410,13 +419,15 @@ private:
     }
 
     static constexpr double worthwhile = 1.0 - 1e-9; // shorter than rounding would explain
+    static constexpr double largest_loss = 0.3;      // of a chart's faces: it must stay what it is
     static constexpr std::uint8_t passable = 1;
     static constexpr std::uint8_t closed = 2;
 
     const Mesh& mesh_;
     std::vector<Vec3> normals_; // #F
-    const std::vector<ConicProxy>& proxies_;
+    const ChartProxies& proxies_;
     double max_fitting_error_;
+    int rings_;
     std::vector<Index>& chart_;
     std::vector<std::uint8_t> fuzzy_;      // #F: 1 = in the area; 2, 3 = given to chart a, b
     std::vector<Index> area_;              // the faces in the fuzzy area
@@ -432,9 +443,9 @@ private:
 
 } // namespace
 
-Index straighten_borders(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
-                         double max_fitting_error, std::vector<Index>& chart, Progress& progress) {
-    Straightener straightener(mesh, proxies, max_fitting_error, chart);
+Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
+                         int rings, std::vector<Index>& chart, Progress& progress) {
+    Straightener straightener(mesh, proxies, max_fitting_error, rings, chart);
     Index replaced = 0;
     std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
     // Each border changes what the next ones find: the longest first, whatever the order of faces.

@@ -24,11 +24,15 @@ struct BorderSegment {
 
 std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vector<Index>& chart);
 
+/// What faces may fit in each chart: one proxy, or several for charts that were joined.
+using ChartProxies = std::vector<std::vector<ConicProxy>>;
+
 /// Replaces each border by the shortest path between its ends, or the shortest loop around it,
 /// within the fuzzy area of its two charts: the faces near the border that fit both proxies better
-/// than `max_fitting_error`. A border stays as it is where a new one would take a chart apart or
-/// change its number of boundary loops. Returns the number of borders that were replaced.
-Index straighten_borders(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
-                         double max_fitting_error, std::vector<Index>& chart, Progress& progress);
+/// than `max_fitting_error`, at most `rings` faces away from it (0: any number). A border stays as
+/// it is where a new one would take a chart apart or change its number of boundary loops. Returns
+/// the number of borders that were replaced.
+Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
+                         int rings, std::vector<Index>& chart, Progress& progress);
 
 } // namespace devseg

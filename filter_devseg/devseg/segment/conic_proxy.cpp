@@ -37,4 +37,15 @@ ConicProxy fit_conic(const NormalMoments& moments) {
     return proxy;
 }
 
+std::vector<ConicProxy> fit_conics(const Mesh& mesh, const std::vector<Index>& chart, Index count) {
+    std::vector<NormalMoments> moments(at(count));
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        if (chart[at(f)] >= 0)
+            moments[at(chart[at(f)])].add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+    std::vector<ConicProxy> proxies;
+    for (const NormalMoments& m : moments)
+        proxies.push_back(fit_conic(m));
+    return proxies;
+}
+
 } // namespace devseg

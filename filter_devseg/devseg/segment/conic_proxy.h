@@ -5,6 +5,8 @@
 //           Computer Graphics Forum 24(3), 2005. doi:10.1111/j.1467-8659.2005.00883.x
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "devseg/mesh/mesh.h"
@@ -41,5 +43,8 @@ struct NormalMoments {
 /// the axis is the eigenvector of the smallest eigenvalue of S. No Newton solver is needed.
 /// A chart with one normal only (a plane) takes this normal as its axis.
 ConicProxy fit_conic(const NormalMoments& moments);
+
+/// The proxy of each chart 0 … count − 1; faces labelled −1 belong to none.
+std::vector<ConicProxy> fit_conics(const Mesh& mesh, const std::vector<Index>& chart, Index count);
 
 } // namespace devseg

@@ -9,7 +9,6 @@
 
 #include "devseg/errors.h"
 #include "devseg/mesh/charts.h"
-#include "devseg/segment/borders.h"
 #include "devseg/segment/growth.h"
 #include "devseg/segment/seeds.h"
 
@@ -39,27 +38,6 @@ template <class T>
     std::ostringstream text;
     text << name << ": expected " << range << ", found " << found;
     throw InvalidParameter(text.str());
-}
-
-void check_options(const Mesh& mesh, const DChartsOptions& o) {
-    if (o.charts_number < 1 || o.charts_number > mesh.face_count())
-        refuse("charts_number",
-               "a number from 1 to " + std::to_string(mesh.face_count()) + " (the number of faces)",
-               o.charts_number);
-    if (!(o.max_fitting_error > 0.0) || !(o.max_fitting_error <= 4.0))
-        refuse("max_fitting_error", "a number above 0 and at most 4 (0.2 is usual)",
-               o.max_fitting_error);
-    const auto exponent = [](const char* name, double value) {
-        if (!(value >= 0.0) || !(value <= 10.0))
-            refuse(name, "a number from 0 to 10", value);
-    };
-    exponent("alpha", o.alpha);
-    exponent("beta", o.beta);
-    exponent("gamma", o.gamma);
-    if (o.max_iterations < 1)
-        refuse("max_iterations", "a number of at least 1", o.max_iterations);
-    if (o.random_seed < 0)
-        refuse("random_seed", "a number of at least 0", o.random_seed);
 }
 
 struct Seed {
@@ -210,18 +188,6 @@ Seed initial_seed(const Mesh& mesh, Index face) {
     return best;
 }
 
-std::vector<ConicProxy> fit_proxies(const Mesh& mesh, const std::vector<Index>& chart,
-                                    Index count) {
-    std::vector<NormalMoments> moments(at(count));
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (chart[at(f)] >= 0)
-            moments[at(chart[at(f)])].add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
-    std::vector<ConicProxy> proxies;
-    for (const NormalMoments& m : moments)
-        proxies.push_back(fit_conic(m));
-    return proxies;
-}
-
 // Of the faces that fit best, the one nearest to the chart's centre [JKS05, section 3.1]. Faces
 // below the error floor count as equally good: on a plane or a cylinder all faces compete.
 Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const ConicProxy& proxy,
@@ -255,7 +221,7 @@ Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const ConicPr
 
 void reseed(const Mesh& mesh, const std::vector<Index>& chart, std::vector<Seed>& seeds) {
     const Index count = static_cast<Index>(seeds.size());
-    const std::vector<ConicProxy> proxies = fit_proxies(mesh, chart, count);
+    const std::vector<ConicProxy> proxies = fit_conics(mesh, chart, count);
     std::vector<std::vector<Index>> faces(at(count));
     for (Index f = 0; f < mesh.face_count(); ++f)
         if (chart[at(f)] >= 0)
@@ -383,6 +349,27 @@ void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
 
 } // namespace
 
+void check_options(const Mesh& mesh, const DChartsOptions& o) {
+    if (o.charts_number < 1 || o.charts_number > mesh.face_count())
+        refuse("charts_number",
+               "a number from 1 to " + std::to_string(mesh.face_count()) + " (the number of faces)",
+               o.charts_number);
+    if (!(o.max_fitting_error > 0.0) || !(o.max_fitting_error <= 4.0))
+        refuse("max_fitting_error", "a number above 0 and at most 4 (0.2 is usual)",
+               o.max_fitting_error);
+    const auto exponent = [](const char* name, double value) {
+        if (!(value >= 0.0) || !(value <= 10.0))
+            refuse(name, "a number from 0 to 10", value);
+    };
+    exponent("alpha", o.alpha);
+    exponent("beta", o.beta);
+    exponent("gamma", o.gamma);
+    if (o.max_iterations < 1)
+        refuse("max_iterations", "a number of at least 1", o.max_iterations);
+    if (o.random_seed < 0)
+        refuse("random_seed", "a number of at least 0", o.random_seed);
+}
+
 DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress) {
     check_options(mesh, options);
     DChartsResult result;
@@ -401,13 +388,7 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     progress.begin_phase("filling holes", 0.1);
     fill_holes(mesh, options, growth, seeds, result, progress);
 
-    result.proxies = fit_proxies(mesh, result.chart, static_cast<Index>(seeds.size()));
-    if (options.straighten_boundaries) {
-        progress.begin_phase("straightening borders", 0.1);
-        result.straightened_borders = straighten_borders(
-            mesh, result.proxies, options.max_fitting_error, result.chart, progress);
-        result.proxies = fit_proxies(mesh, result.chart, static_cast<Index>(seeds.size()));
-    }
+    result.proxies = fit_conics(mesh, result.chart, static_cast<Index>(seeds.size()));
     result.fitting_error.resize(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         result.fitting_error[f] =

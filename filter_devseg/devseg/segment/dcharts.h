@@ -1,8 +1,7 @@
 // D-Charts: quasi-developable segmentation into unions of cones [JKS05].
 //
 // What is here: sections 2, 3.1 and 3.2 of the paper (Lloyd iterations, hole filling). The
-// post-processing of section 3.3 (straight boundaries, merging, darts) works on the result and has
-// its place between fill_holes and the return in segment_dcharts.
+// post-processing of section 3.3 (straight boundaries, merging, darts) is in refine/.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +14,13 @@
 namespace devseg {
 
 struct DChartsOptions {
-    int charts_number = 10;            // initial estimate; hole filling may add charts
-    double max_fitting_error = 0.2;    // F_max: bound of the fitting error while growing
-    double alpha = 1.0;                // weight of developability, exponent of F
-    double beta = 0.7;                 // weight of roundness, exponent of C
-    double gamma = 0.5;                // weight of straight boundaries, exponent of P
-    bool straighten_boundaries = true; // shortest borders within the fuzzy areas
-    int max_iterations = 100;          // Lloyd rounds at most
-    int random_seed = 0;               // 0: a start that does not depend on the order of the faces
+    int charts_number = 10;         // initial estimate; hole filling may add charts
+    double max_fitting_error = 0.2; // F_max: bound of the fitting error while growing
+    double alpha = 1.0;             // weight of developability, exponent of F
+    double beta = 0.7;              // weight of roundness, exponent of C
+    double gamma = 0.5;             // weight of straight boundaries, exponent of P
+    int max_iterations = 100;       // Lloyd rounds at most
+    int random_seed = 0;            // 0: a start that does not depend on the order of the faces
 };
 
 struct DChartsResult {
@@ -32,8 +30,10 @@ struct DChartsResult {
     int rounds = 0;                    // Lloyd rounds that were run
     bool converged = false;            // fewer than 5 % of the faces changed in the last round
     Index hole_charts = 0;             // charts that hole filling added
-    Index straightened_borders = 0;    // borders that were replaced by shorter ones
 };
+
+/// Throws InvalidParameter for options that segment_dcharts cannot work with.
+void check_options(const Mesh& mesh, const DChartsOptions& options);
 
 /// Throws InvalidParameter for options out of range (1 ≤ charts_number ≤ #F, F_max > 0,
 /// exponents ≥ 0, max_iterations ≥ 1) and Cancelled.

@@ -40,21 +40,4 @@ void CandidateHeap::pop() {
     entries_[hole] = last;
 }
 
-Tournament::Tournament(Index players) {
-    while (leaves_ < players)
-        leaves_ *= 2;
-    keys_.assign(at(leaves_), std::numeric_limits<float>::infinity());
-    winner_.assign(at(2 * leaves_), 0);
-    for (Index i = 0; i < leaves_; ++i)
-        winner_[at(leaves_ + i)] = i;
-    for (Index node = leaves_ - 1; node > 0; --node)
-        winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
-}
-
-void Tournament::set(Index player, float key) {
-    keys_[at(player)] = key;
-    for (Index node = (leaves_ + player) / 2; node > 0; node /= 2)
-        winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
-}
-
 } // namespace devseg

@@ -33,19 +33,34 @@ private:
 };
 
 /// Finds the chart with the smallest key among all, after one chart's key changed: O(log n).
+/// `none` is the key of charts without candidates and larger than all others.
+template <class Key = float>
 class Tournament {
 public:
-    explicit Tournament(Index players);
-    void set(Index player, float key);
+    explicit Tournament(Index players, Key none = std::numeric_limits<Key>::infinity()) {
+        while (leaves_ < players)
+            leaves_ *= 2;
+        keys_.assign(at(leaves_), none);
+        winner_.assign(at(2 * leaves_), 0);
+        for (Index i = 0; i < leaves_; ++i)
+            winner_[at(leaves_ + i)] = i;
+        for (Index node = leaves_ - 1; node > 0; --node)
+            winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
+    }
+    void set(Index player, Key key) {
+        keys_[at(player)] = key;
+        for (Index node = (leaves_ + player) / 2; node > 0; node /= 2)
+            winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
+    }
     Index winner() const { return winner_[1]; }
-    float key(Index player) const { return keys_[at(player)]; }
+    const Key& key(Index player) const { return keys_[at(player)]; }
 
 private:
     Index better(Index a, Index b) const {
         return keys_[at(b)] < keys_[at(a)] ? b : a; // ties: the lower number, which is a
     }
     Index leaves_ = 1;
-    std::vector<float> keys_;
+    std::vector<Key> keys_;
     std::vector<Index> winner_;
 };
 

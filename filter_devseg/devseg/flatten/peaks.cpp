@@ -1,0 +1,129 @@
+#include "devseg/flatten/peaks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/symmetric_dirichlet.h"
+#include "devseg/flatten/vertex_relaxation.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double harmless = 1.005;    // stretch of a face that is no peak anyway
+constexpr double usual_share = 0.995; // of the area: what is stretched more may be a peak
+constexpr double above_usual = 1.01;  // stretch of a peak over that of the usual faces
+constexpr int rings = 3;              // of faces around peaks, whose vertices move
+constexpr int sweeps = 40;
+// s: at 20, faces with a stretch of 1.4 weigh e² times as much; lower ones cost less.
+constexpr double steepness[] = {20.0, 10.0, 5.0};
+constexpr double allowed_cost = 0.25; // growth of the energy's excess over that of an isometry
+
+// The larger singular value of the map from the plane to the surface.
+double stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv, std::size_t f) {
+    const Eigen::Matrix2d j = jacobian(problem, uv, f);
+    const double det = j.determinant();
+    const double sum = j.squaredNorm() / (det * det);
+    return std::sqrt(0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 / (det * det)))));
+}
+
+double largest_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double largest = 1.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        largest = std::max(largest, stretch(problem, uv, f));
+    return largest;
+}
+
+double usual_stretch(const FlatteningProblem& problem, const std::vector<double>& stretches) {
+    std::vector<std::size_t> order(stretches.size());
+    for (std::size_t f = 0; f < order.size(); ++f)
+        order[f] = f;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return stretches[a] != stretches[b] ? stretches[a] < stretches[b] : a < b;
+    });
+    double area = 0.0;
+    for (const std::size_t f : order) {
+        area += problem.area[f];
+        if (area >= usual_share * problem.total_area)
+            return stretches[f];
+    }
+    return stretches[order.back()];
+}
+
+// Vertices of the faces above the limit and of some rings around them, each with a half-edge that
+// leaves it.
+std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& problem,
+                                                   const std::vector<Index>& twin,
+                                                   const std::vector<double>& stretches,
+                                                   double limit) {
+    std::vector<std::uint8_t> seen(problem.faces.size(), 0);
+    std::vector<Index> ring;
+    for (std::size_t f = 0; f < stretches.size(); ++f)
+        if (stretches[f] > limit) {
+            seen[f] = 1;
+            ring.push_back(static_cast<Index>(f));
+        }
+    std::vector<Index> region = ring;
+    for (int depth = 0; depth < rings; ++depth) {
+        std::vector<Index> next;
+        for (const Index f : ring)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+                visit_star(twin, h, [&](Index k) {
+                    if (seen[at(k / 3)]++ == 0)
+                        next.push_back(k / 3);
+                    seen[at(k / 3)] = 1;
+                });
+        region.insert(region.end(), next.begin(), next.end());
+        ring = std::move(next);
+    }
+    std::vector<std::pair<Index, Index>> vertices;
+    for (const Index f : region)
+        for (Index k = 0; k < 3; ++k)
+            vertices.emplace_back(problem.faces[at(f)][at(k)], 3 * f + k);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end(),
+                               [](const auto& a, const auto& b) { return a.first == b.first; }),
+                   vertices.end());
+    return vertices;
+}
+
+} // namespace
+
+void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+                   bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress) {
+    std::vector<double> stretches(problem.faces.size());
+    for (std::size_t f = 0; f < stretches.size(); ++f)
+        stretches[f] = stretch(problem, uv, f);
+    const double limit = std::max(harmless, above_usual * usual_stretch(problem, stretches));
+    auto vertices = vertices_near(problem, twin, stretches, limit);
+    if (hold_boundary)
+        vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
+                                      [&](const auto& entry) {
+                                          return !visit_star(twin, entry.second, [](Index) {});
+                                      }),
+                       vertices.end());
+    if (vertices.empty())
+        return;
+    const double before = symmetric_dirichlet_energy(problem, uv) - 1.0;
+    VertexStar star;
+    for (const double s : steepness) {
+        std::vector<Vec2> moved = uv;
+        star.steepness = s;
+        for (int i = 0; i < sweeps; ++i) {
+            progress.check();
+            for (const auto& [v, leaving] : vertices) {
+                gather_star({problem.faces, twin, problem.area, problem.cotangent}, moved, leaving,
+                            star);
+                moved[at(v)] = relax_vertex(star, moved[at(v)]);
+            }
+        }
+        if (symmetric_dirichlet_energy(problem, moved) - 1.0 <= (1.0 + allowed_cost) * before &&
+            largest_stretch(problem, moved) < largest_stretch(problem, uv)) {
+            uv = std::move(moved);
+            return;
+        }
+    }
+}
+
+} // namespace devseg

@@ -1,0 +1,457 @@
+#include "devseg/mesh/coarsen.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "devseg/parallel.h"
+
+namespace devseg {
+
+namespace {
+
+// Weight of the length of the collapsed edge against the distance to the planes around it: flat
+// parts lose their vertices evenly, which keeps triangles round.
+constexpr double length_weight = 3e-3;
+constexpr double boundary_weight = 10.0; // of planes that stand on boundary edges
+
+constexpr double least_turn = 0.3;   // cosine of the angle that a face may turn in one collapse
+constexpr double least_shape = 0.05; // of a new triangle; 1 is equilateral, 0 is a needle
+constexpr Index check_every = 1 << 14;
+
+// Σ area (n·x + d)² over planes, as a symmetric form.
+struct Quadric {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, c = 0;
+    double area = 0;
+
+    void add_plane(const Vec3& n, double d, double weight) {
+        xx += weight * n.x() * n.x();
+        xy += weight * n.x() * n.y();
+        xz += weight * n.x() * n.z();
+        yy += weight * n.y() * n.y();
+        yz += weight * n.y() * n.z();
+        zz += weight * n.z() * n.z();
+        x += weight * d * n.x();
+        y += weight * d * n.y();
+        z += weight * d * n.z();
+        c += weight * d * d;
+    }
+    void add(const Quadric& q) {
+        xx += q.xx;
+        xy += q.xy;
+        xz += q.xz;
+        yy += q.yy;
+        yz += q.yz;
+        zz += q.zz;
+        x += q.x;
+        y += q.y;
+        z += q.z;
+        c += q.c;
+        area += q.area;
+    }
+    double operator()(const Vec3& p) const {
+        return p.x() * (xx * p.x() + 2.0 * (xy * p.y() + xz * p.z() + x)) +
+               p.y() * (yy * p.y() + 2.0 * (yz * p.z() + y)) + p.z() * (zz * p.z() + 2.0 * z) + c;
+    }
+};
+
+class Coarsener {
+public:
+    Coarsener(const std::vector<Vec3>& points, CoarseSurface& surface, Progress* shared)
+        : points_(points), s_(surface), outgoing_(points.size(), -1), quadric_(points.size()),
+          best_(points.size()), stale_(points.size(), 1), touched_(points.size(), 0),
+          shared_(shared) {
+        for (Index h = 0; h < static_cast<Index>(s_.twin.size()); ++h)
+            outgoing_[at(origin(h))] = h;
+        for (Index f = 0; f < static_cast<Index>(s_.faces.size()); ++f)
+            add_face_quadric(f);
+    }
+
+    // One round of independent collapses; false if none was possible. A round without any is
+    // followed by one that looks at all vertices anew: what happens two edges away can make a
+    // collapse legal without making it stale.
+    bool round(Index removable, const Progress& progress) {
+        choose_candidates(removable, progress);
+        std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
+        Index removed = 0;
+        for (const Index v : order_) {
+            if (removed == removable)
+                break;
+            if (touched_[at(v)] != 0 || !try_collapse(v))
+                continue;
+            if (++removed % check_every == 0)
+                progress.check();
+        }
+        if (removed == 0 && thorough_)
+            return false;
+        thorough_ = removed == 0;
+        if (thorough_)
+            std::fill(stale_.begin(), stale_.end(), std::uint8_t{1});
+        else
+            s_.rounds.push_back(s_.collapses.size());
+        return true;
+    }
+
+private:
+    struct Candidate {
+        double cost = 0.0;
+        Index half_edge = -1;
+    };
+
+    Index origin(Index h) const { return s_.faces[at(h / 3)][at(h % 3)]; }
+    Index target(Index h) const { return origin(Mesh::next(h)); }
+
+    void add_face_quadric(Index f) {
+        const Triangle& t = s_.faces[at(f)];
+        const Vec3& a = points_[at(t[0])];
+        const Vec3 normal = (points_[at(t[1])] - a).cross(points_[at(t[2])] - a);
+        const double length = normal.norm();
+        if (!(length > 0.0))
+            return;
+        const Vec3 n = normal / length;
+        for (const Index v : t) {
+            quadric_[at(v)].add_plane(n, -n.dot(a), 0.5 * length);
+            quadric_[at(v)].area += 0.5 * length;
+        }
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            if (s_.twin[at(h)] >= 0)
+                continue;
+            const Vec3& p = points_[at(origin(h))];
+            const Vec3 edge = points_[at(target(h))] - p;
+            const Vec3 side = edge.cross(n);
+            if (!(side.squaredNorm() > 0.0))
+                continue;
+            const Vec3 m = side.normalized();
+            for (const Index v : {origin(h), target(h)})
+                quadric_[at(v)].add_plane(m, -m.dot(p), boundary_weight * edge.squaredNorm());
+        }
+    }
+
+    // The cheapest collapse of each vertex whose surroundings changed; then those to try, in order.
+    void choose_candidates(Index removable, const Progress& progress) {
+        refresh(progress);
+        order_.clear();
+        for (Index v = 0; v < static_cast<Index>(points_.size()); ++v)
+            if (outgoing_[at(v)] >= 0 && best_[at(v)].half_edge >= 0)
+                order_.push_back(v);
+        const auto cheaper = [&](Index a, Index b) {
+            return best_[at(a)].cost != best_[at(b)].cost ? best_[at(a)].cost < best_[at(b)].cost
+                                                          : a < b;
+        };
+        // The dearer half waits: what goes next to a vertex may make it cheaper.
+        const std::size_t count =
+            thorough_ ? order_.size() : std::min((order_.size() + 1) / 2, 8 * at(removable));
+        std::nth_element(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(count),
+                         order_.end(), cheaper);
+        order_.resize(count);
+        std::sort(order_.begin(), order_.end(), cheaper);
+    }
+
+    // Finds the best collapses again where surroundings changed.
+    void refresh(const Progress& progress) {
+        const Index count = static_cast<Index>(points_.size());
+        const auto refresh_part = [&](int part) {
+            progress.check();
+            for (Index v = part * check_every; v < std::min(count, (part + 1) * check_every); ++v)
+                if (outgoing_[at(v)] >= 0 && stale_[at(v)] != 0) {
+                    best_[at(v)] = cheapest_collapse(v);
+                    stale_[at(v)] = 0;
+                }
+        };
+        const int parts = (count + check_every - 1) / check_every;
+        if (shared_ != nullptr) {
+            parallel_for(parts, refresh_part, *shared_);
+        } else {
+            for (int part = 0; part < parts; ++part)
+                refresh_part(part);
+        }
+    }
+
+    Candidate cheapest_collapse(Index v) const {
+        Candidate best;
+        const auto consider = [&](Index h) {
+            const Vec3& p = points_[at(target(h))];
+            Candidate c;
+            c.half_edge = h;
+            c.cost = std::max(0.0, quadric_[at(v)](p) + quadric_[at(target(h))](p)) +
+                     length_weight * quadric_[at(v)].area * (p - points_[at(v)]).squaredNorm();
+            if ((best.half_edge < 0 || c.cost < best.cost) && is_legal(h))
+                best = c;
+        };
+        const bool on_boundary = !visit_star(s_.twin, outgoing_[at(v)], [](Index) {});
+        visit_star(s_.twin, outgoing_[at(v)], [&](Index h) {
+            if (!on_boundary || s_.twin[at(h)] < 0)
+                consider(h);
+        });
+        return best;
+    }
+
+    bool is_legal(Index h) const { return keeps_topology(h) && keeps_shape(h); }
+
+    // The link condition: the ends of the edge have no common neighbours but the two opposite
+    // vertices, which must keep three faces (a boundary vertex, one).
+    bool keeps_topology(Index h) const {
+        const Index v = origin(h);
+        const Index w = target(h);
+        const Index twin = s_.twin[at(h)];
+        if (!keeps_apex(h) || (twin >= 0 && !keeps_apex(twin)))
+            return false;
+        Ring around_v;
+        Ring around_w;
+        const bool inner_v = gather_ring(v, around_v);
+        const bool inner_w = gather_ring(w, around_w);
+        if (!inner_v && !inner_w && twin >= 0)
+            return false; // an edge through the inside that joins two boundary vertices
+        if (around_v.size == around_v.vertex.size() || around_w.size == around_w.vertex.size())
+            return false; // a hub: it may stay
+        Index common = 0;
+        for (std::size_t i = 0; i < around_v.size; ++i)
+            for (std::size_t k = 0; k < around_w.size; ++k)
+                common += around_v.vertex[i] == around_w.vertex[k] ? 1 : 0;
+        return common == (twin >= 0 ? 2 : 1);
+    }
+    struct Ring {
+        std::array<Index, 64> vertex;
+        std::size_t size = 0;
+        void add(Index v) {
+            if (size < vertex.size())
+                vertex[size++] = v;
+        }
+    };
+    bool gather_ring(Index u, Ring& ring) const {
+        return visit_star(s_.twin, outgoing_[at(u)], [&](Index k) {
+            ring.add(target(k));
+            if (s_.twin[at(Mesh::previous(k))] < 0)
+                ring.add(origin(Mesh::previous(k)));
+        });
+    }
+    // The vertex opposite to the edge has a face besides this one, and an inner one three.
+    bool keeps_apex(Index h) const {
+        const Index toward = Mesh::next(h);
+        const Index back = Mesh::previous(h);
+        if (s_.twin[at(toward)] < 0 && s_.twin[at(back)] < 0)
+            return false;
+        Index faces = 0;
+        const bool inner = visit_star(s_.twin, back, [&](Index) { ++faces; });
+        return !inner || faces > 3;
+    }
+    bool keeps_shape(Index h) const {
+        const Index v = origin(h);
+        const Vec3& p = points_[at(target(h))];
+        const Index face = h / 3;
+        const Index other = s_.twin[at(h)] < 0 ? -1 : s_.twin[at(h)] / 3;
+        bool good = true;
+        visit_star(s_.twin, h, [&](Index k) {
+            if (!good || k / 3 == face || k / 3 == other)
+                return;
+            const Vec3& a = points_[at(target(k))];
+            const Vec3& b = points_[at(origin(Mesh::previous(k)))];
+            const Vec3 old = (a - points_[at(v)]).cross(b - points_[at(v)]);
+            const Vec3 now = (a - p).cross(b - p);
+            const double size = now.norm();
+            const double lengths =
+                (a - p).squaredNorm() + (b - p).squaredNorm() + (a - b).squaredNorm();
+            good = old.dot(now) >= least_turn * old.norm() * size &&
+                   2.0 * std::sqrt(3.0) * size > least_shape * lengths;
+        });
+        return good;
+    }
+
+    bool try_collapse(Index v) {
+        const Index h = best_[at(v)].half_edge;
+        const Index w = target(h);
+        if (!is_legal(h)) { // a collapse nearby changed the surroundings of the kept vertex
+            stale_[at(v)] = 1;
+            return false;
+        }
+        quadric_[at(w)].add(quadric_[at(v)]);
+        visit_star(s_.twin, h, [&](Index k) {
+            touch(target(k));
+            touch(origin(Mesh::previous(k)));
+        });
+        collapse(h);
+        outgoing_[at(v)] = -1;
+        return true;
+    }
+    void touch(Index v) { touched_[at(v)] = stale_[at(v)] = 1; }
+
+    void collapse(Index h) {
+        const Index w = target(h);
+        const Index twin = s_.twin[at(h)];
+        visit_star(s_.twin, h, [&](Index k) {
+            if (k / 3 != h / 3 && (twin < 0 || k / 3 != twin / 3))
+                s_.faces[at(k / 3)][at(k % 3)] = w;
+        });
+        take_out(h);
+        if (twin >= 0)
+            take_out(twin);
+        s_.collapses.push_back(h);
+    }
+    // Removes the face of h and joins its two other edges.
+    void take_out(Index h) {
+        const Index first = s_.twin[at(Mesh::next(h))];
+        const Index second = s_.twin[at(Mesh::previous(h))];
+        if (first >= 0)
+            s_.twin[at(first)] = second;
+        if (second >= 0)
+            s_.twin[at(second)] = first;
+        s_.alive[at(h / 3)] = 0;
+        --s_.alive_faces;
+        for (const Index k : {first, second})
+            if (k >= 0) { // between the apex and the kept vertex
+                outgoing_[at(origin(k))] = k;
+                outgoing_[at(target(k))] = Mesh::next(k);
+            }
+    }
+
+    const std::vector<Vec3>& points_;
+    CoarseSurface& s_;
+    std::vector<Index> outgoing_; // #V: a half-edge that leaves the vertex, −1 once it is removed
+    std::vector<Quadric> quadric_;
+    std::vector<Candidate> best_;
+    std::vector<std::uint8_t> stale_;   // #V: best_ must be found again
+    std::vector<std::uint8_t> touched_; // #V: a neighbour was removed in this round
+    Progress* shared_;                  // of the whole run, where more threads may be used
+    bool thorough_ = false;             // the last round removed nothing
+    std::vector<Index> order_;          // candidates, the cheapest first
+};
+
+} // namespace
+
+namespace {
+
+CoarseSurface coarsen_with(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
+                           const std::vector<Index>& twin, Index target_faces,
+                           const Progress& progress, Progress* shared) {
+    CoarseSurface surface;
+    surface.faces = faces;
+    surface.twin = twin;
+    surface.alive.assign(faces.size(), 1);
+    surface.alive_faces = static_cast<Index>(faces.size());
+    if (surface.alive_faces <= target_faces)
+        return surface;
+    Coarsener coarsener(points, surface, shared);
+    while (surface.alive_faces > target_faces &&
+           coarsener.round((surface.alive_faces - target_faces + 1) / 2, progress)) {
+    }
+    return surface;
+}
+
+} // namespace
+
+CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
+                      const std::vector<Index>& twin, Index target_faces,
+                      const Progress& progress) {
+    return coarsen_with(points, faces, twin, target_faces, progress, nullptr);
+}
+
+CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress) {
+    return coarsen_with(mesh.points, mesh.faces, mesh.twin, target_faces, progress, &progress);
+}
+
+Index undo_collapse(CoarseSurface& s) {
+    const Index h = s.collapses.back();
+    s.collapses.pop_back();
+    const Index twin = s.twin[at(h)];
+    for (const Index side : {twin, h}) {
+        if (side < 0)
+            continue;
+        s.alive[at(side / 3)] = 1;
+        ++s.alive_faces;
+        for (const Index k : {Mesh::next(side), Mesh::previous(side)})
+            if (s.twin[at(k)] >= 0)
+                s.twin[at(s.twin[at(k)])] = k;
+    }
+    const Index v = s.faces[at(h / 3)][at(h % 3)];
+    visit_star(s.twin, h, [&](Index k) { s.faces[at(k / 3)][at(k % 3)] = v; });
+    return h;
+}
+
+CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface) {
+    CoarseMesh result;
+    std::vector<Index> number(surface.faces.size(), -1);
+    std::vector<Index> vertex(fine.points.size(), -1);
+    for (Index f = 0; f < fine.face_count(); ++f) {
+        if (surface.alive[at(f)] == 0)
+            continue;
+        number[at(f)] = static_cast<Index>(result.face.size());
+        result.face.push_back(f);
+        Triangle t{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index v = surface.faces[at(f)][k];
+            if (vertex[at(v)] < 0) {
+                vertex[at(v)] = static_cast<Index>(result.vertex.size());
+                result.vertex.push_back(v);
+                result.mesh.points.push_back(fine.points[at(v)]);
+            }
+            t[k] = vertex[at(v)];
+        }
+        result.mesh.faces.push_back(t);
+    }
+    for (const Index f : result.face)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = surface.twin[at(h)];
+            result.mesh.twin.push_back(twin < 0 ? -1 : 3 * number[at(twin / 3)] + twin % 3);
+        }
+    result.mesh.unit_length = fine.unit_length;
+    compute_face_geometry(result.mesh);
+    return result;
+}
+
+namespace {
+
+// Length of the borders around the two faces beside h, had they these labels.
+double border_length(const std::vector<Vec3>& points, const CoarseSurface& s, Index h,
+                     const std::vector<Index>& label, Index here, Index there) {
+    const auto length = [&](Index k) {
+        return (points[at(s.faces[at(k / 3)][at(k % 3)])] -
+                points[at(s.faces[at(k / 3)][at(Mesh::next(k) % 3)])])
+            .norm();
+    };
+    const Index twin = s.twin[at(h)];
+    double sum = twin >= 0 && here != there ? length(h) : 0.0;
+    for (const auto& [side, own] : {std::pair(h, here), std::pair(twin, there)})
+        if (side >= 0)
+            for (const Index k : {Mesh::next(side), Mesh::previous(side)}) {
+                const Index across = s.twin[at(k)];
+                if (across >= 0 && label[at(across / 3)] != own)
+                    sum += length(k);
+            }
+    return sum;
+}
+
+} // namespace
+
+std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
+                                 std::vector<Index> label) {
+    const auto across = [&](Index k) {
+        const Index twin = surface.twin[at(k)];
+        return twin < 0 ? -1 : label[at(twin / 3)];
+    };
+    while (!surface.collapses.empty()) {
+        const Index h = undo_collapse(surface);
+        const Index twin = surface.twin[at(h)];
+        double shortest = -1.0;
+        Index best_here = -1;
+        Index best_there = -1;
+        for (const Index a : {across(Mesh::next(h)), across(Mesh::previous(h))})
+            for (const Index b : {twin < 0 ? a : across(Mesh::next(twin)),
+                                  twin < 0 ? a : across(Mesh::previous(twin))}) {
+                if (a < 0 || b < 0)
+                    continue;
+                const double length = border_length(points, surface, h, label, a, b);
+                if (shortest < 0.0 || length < shortest) {
+                    shortest = length;
+                    best_here = a;
+                    best_there = b;
+                }
+            }
+        label[at(h / 3)] = best_here;
+        if (twin >= 0)
+            label[at(twin / 3)] = best_there;
+    }
+    return label;
+}
+
+} // namespace devseg

@@ -1,0 +1,55 @@
+// Coarser versions of a surface by half-edge collapses, and the way back, one vertex at a time.
+//
+// References
+//   [GH97] M. Garland, P. Heckbert: Surface Simplification Using Quadric Error Metrics. SIGGRAPH
+//          1997. doi:10.1145/258734.258849
+//   [H96]  H. Hoppe: Progressive Meshes. SIGGRAPH 1996. doi:10.1145/237170.237216
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+
+/// A surface with a part of its vertices removed. A collapse takes the two faces beside an edge out
+/// (one on a boundary) and gives the other faces of the removed vertex to the kept one, so that
+/// faces and half-edges keep their numbers, and a removed face keeps the corners and twins it had.
+struct CoarseSurface {
+    std::vector<Triangle> faces;     // #F
+    std::vector<Index> twin;         // 3 #F
+    std::vector<std::uint8_t> alive; // #F
+    std::vector<Index> collapses;    // half-edges, removed → kept vertex, in their order
+    std::vector<std::size_t> rounds; // number of collapses at the end of each round
+    Index alive_faces = 0;
+};
+
+/// Removes vertices, those first that change the surface least [GH97], until at most `target_faces`
+/// are left, or no vertex can go. The topology stays; boundary vertices move along the boundary
+/// only. A round removes vertices that are not neighbours of each other.
+CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
+                      const std::vector<Index>& twin, Index target_faces, const Progress& progress);
+
+/// The same with all cores; not from within a task of parallel_for.
+CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress);
+
+/// Undoes the last collapse; returns its half-edge, which leaves the vertex that is back.
+Index undo_collapse(CoarseSurface& surface);
+
+/// The faces that are alive, as a mesh of their own.
+struct CoarseMesh {
+    Mesh mesh;
+    std::vector<Index> face;   // #f of the coarse mesh: number in the fine mesh
+    std::vector<Index> vertex; // #v of the coarse mesh: number in the fine mesh
+};
+CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface);
+
+/// Labels of the alive faces (−1 for others) → labels of all faces, by undoing all collapses. The
+/// two faces that come back with a vertex take the label of a neighbour each, so that regions stay
+/// connected; where they may choose, borders stay short.
+std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
+                                 std::vector<Index> label);
+
+} // namespace devseg

@@ -1,0 +1,115 @@
+#include "devseg/refine/carry_over.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/cut/disks.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/segment/borders.h"
+#include "devseg/segment/fragments.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr Index coarse_faces = 6000;          // enough to decide where borders run
+constexpr Index creased_coarse_faces = 24000; // where they must run along creases
+constexpr Index faces_per_chart = 150;        // of the coarse surface, at least
+constexpr double worth_coarsening = 2.0;      // faces over those of the coarse surface
+
+// What faces fit in each chart: the proxies of all patches that it was joined from.
+ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
+                               const std::vector<Index>& patch) {
+    const Index patches = 1 + *std::max_element(patch.begin(), patch.end());
+    const std::vector<ConicProxy> proxies = fit_conics(mesh, patch, patches);
+    ChartProxies result(draft.faces.size());
+    std::vector<std::uint8_t> seen(proxies.size() * draft.faces.size(), 0);
+    for (std::size_t f = 0; f < patch.size(); ++f) {
+        std::uint8_t& known = seen[at(patch[f]) * draft.faces.size() + at(draft.chart[f])];
+        if (known == 0)
+            result[at(draft.chart[f])].push_back(proxies[at(patch[f])]);
+        known = 1;
+    }
+    return result;
+}
+
+} // namespace
+
+WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Progress& progress)
+    : full_(full) {
+    const Index wanted =
+        std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
+    if (full.face_count() <= worth_coarsening * wanted)
+        return;
+    surface_ = std::make_unique<CoarseSurface>(coarsen_in_parallel(full, wanted, progress));
+    coarse_ = std::make_unique<CoarseMesh>(extract_coarse_mesh(full, *surface_));
+}
+
+FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Index>& patch,
+                                      double max_fitting_error, bool straighten,
+                                      Progress& progress) const {
+    FullCharts result;
+    if (!coarse_) {
+        result.chart = draft.chart;
+        result.seam = draft.seam;
+        result.darts = static_cast<Index>(draft.tips.size());
+    } else {
+        std::vector<Index> label(full_.faces.size(), -1);
+        for (std::size_t f = 0; f < coarse_->face.size(); ++f)
+            label[at(coarse_->face[f])] = draft.chart[f];
+        result.chart = refine_labels(full_.points, *surface_, std::move(label));
+        if (straighten) {
+            const double ratio =
+                static_cast<double>(full_.face_count()) / coarse_->mesh.face_count();
+            const int rings = 2 + static_cast<int>(2.0 * std::sqrt(ratio));
+            straighten_borders(full_, proxies_of_charts(coarse_->mesh, draft, patch),
+                               max_fitting_error, rings, result.chart, progress);
+        }
+        result.chart = absorb_fragments(full_, result.chart, fragment_share);
+        result.seam.assign(full_.twin.size(), 0);
+        std::vector<Index> tips;
+        for (const Index v : draft.tips)
+            tips.push_back(coarse_->vertex[at(v)]);
+        result.darts = cut_darts_to(full_, result.chart, tips, result.seam);
+    }
+    result.chart = make_chart_map(full_, result.chart, result.seam, false).chart;
+    return result;
+}
+
+Index WorkingSurface::cut_more_darts(const DartOptions& options, const std::vector<Index>& chart,
+                                     std::vector<std::uint8_t>& seam, Progress& progress) const {
+    Draft draft = make_draft(full_, chart, seam, options.chart.l2, progress);
+    const Index count = cut_darts(full_, options, draft, progress);
+    seam = draft.seam;
+    return count;
+}
+
+StretchBounds WorkingSurface::measure(const std::vector<Index>& chart,
+                                      const std::vector<std::uint8_t>& seam,
+                                      Progress& progress) const {
+    progress.begin_phase("measuring the final map", 0.2);
+    const ChartMap charts =
+        cut_charts_to_disks(full_, make_chart_map(full_, chart, seam, false), progress).charts;
+    StretchBounds reached{1.0, 1.0};
+    double excess = 0.0;
+    for (const FlatChart& flat :
+         flatten_charts(full_, charts, FlattenMethod::symmetric_dirichlet, progress).flat) {
+        TrialMap map;
+        measure_stretch(make_flattening_problem(full_, flat.surface), flat.uv, map);
+        excess += map.excess();
+        reached.linf = std::max(reached.linf, map.linf);
+    }
+    reached.l2 = std::sqrt(1.0 + std::max(0.0, excess) / full_.total_area);
+    return reached;
+}
+
+std::vector<double> WorkingSurface::fitting_errors(const std::vector<Index>& chart) const {
+    const Index count = 1 + *std::max_element(chart.begin(), chart.end());
+    const std::vector<ConicProxy> proxies = fit_conics(full_, chart, count);
+    std::vector<double> errors(full_.faces.size());
+    for (std::size_t f = 0; f < errors.size(); ++f)
+        errors[f] = proxies[at(chart[f])].fitting_error(full_.face_normals[f]);
+    return errors;
+}
+
+} // namespace devseg

@@ -1,0 +1,244 @@
+#include "devseg/refine/developable_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "devseg/errors.h"
+#include "devseg/refine/carry_over.h"
+#include "devseg/refine/darts.h"
+#include "devseg/refine/merging.h"
+#include "devseg/refine/splitting.h"
+#include "devseg/segment/expansion.h"
+#include "devseg/segment/fragments.h"
+
+namespace devseg {
+
+namespace {
+
+// What border is worth against the fitting error of faces.
+constexpr double smooth_length_weight = 0.045;
+
+// Where creases shape the surface, its parts are cones, cylinders and planes but for the
+// tessellation: charts must fit them closely, borders belong on creases whatever their length, and
+// joins must be nearly exact.
+constexpr double creased_fitting_error = 0.008; // F_max at most
+constexpr double creased_length_weight = 0.001;
+constexpr double creased_threshold = 0.02; // factor of η
+
+constexpr double bent_cosine = 0.866; // of 30 degrees
+constexpr double sharp_cosine = 0.5;  // of 60 degrees
+constexpr double sharp_share = 0.6;   // of the bent edges
+constexpr double least_creases = 1.0; // over the root of the area
+
+constexpr int automatic_seeds = 10; // where the number of charts is to be found
+constexpr int most_splits = 200;
+constexpr double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
+constexpr int most_attempts = 5;
+constexpr double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
+constexpr double chart_excess = 4.0; // of one chart over that of the whole
+constexpr double loose_linf = 8.0;   // worst spots count little where they have no bound
+
+// Stretch that joined charts may have, from η: at η = 0.01, L2 1.005 and L∞ 1.4.
+StretchBounds bounds_from(double merge_threshold) {
+    return {1.0 + 0.5 * merge_threshold, 1.0 + 4.0 * std::sqrt(merge_threshold)};
+}
+
+// Whether creases, rather than smooth or rough regions, give the surface its shape: then most edges
+// that are not smooth are sharp.
+bool is_creased(const Mesh& mesh) {
+    double bent = 0.0;
+    double sharp = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin <= h)
+            continue;
+        const double cosine = mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)]);
+        bent += cosine < bent_cosine ? mesh.edge_length(h) : 0.0;
+        sharp += cosine < sharp_cosine ? mesh.edge_length(h) : 0.0;
+    }
+    return sharp > least_creases * std::sqrt(mesh.total_area) && sharp > sharp_share * bent;
+}
+
+void check_bounds(const DevelopableChartsOptions& o) {
+    const auto refuse = [](const char* name, const char* expected, double found) {
+        std::ostringstream text;
+        text << name << ": expected " << expected << ", found " << found;
+        throw InvalidParameter(text.str());
+    };
+    if (!(o.merge_threshold > 0.0) || !(o.merge_threshold <= 1.0))
+        refuse("merge_threshold", "a number above 0 and at most 1 (0.01 is usual)",
+               o.merge_threshold);
+    if (!(o.max_l2_stretch > 1.0))
+        refuse("max_l2_stretch", "a number above 1 (1.005 is usual)", o.max_l2_stretch);
+    if (o.max_linf_stretch != 0.0 && !(o.max_linf_stretch > 1.0))
+        refuse("max_linf_stretch", "0 for no bound, or a number above 1", o.max_linf_stretch);
+}
+
+// One run: the surface on which decisions are made, and how charts grow on it.
+class Designer {
+public:
+    Designer(const Mesh& mesh, const DevelopableChartsOptions& options, Progress& progress)
+        : options_(options), progress_(progress), creased_(is_creased(mesh)), growing_(options),
+          working_(mesh, creased_, std::max(options.charts_number, automatic_seeds), progress) {
+        if (options.charts_number == 0)
+            growing_.charts_number = std::min(automatic_seeds, mesh.face_count());
+        if (creased_)
+            growing_.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
+    }
+
+    DevelopableCharts run() {
+        grow_patches();
+        return options_.charts_number == 0 ? run_automatic() : run_with_estimate();
+    }
+
+private:
+    struct Aim {
+        StretchBounds chart;
+        double max_excess = std::numeric_limits<double>::infinity();
+        bool few = false; // few charts matter more than wide necks between their parts
+    };
+
+    void grow_patches() {
+        const Mesh& mesh = working_.mesh();
+        const DChartsResult grown = segment_dcharts(mesh, growing_, progress_);
+        result_.rounds = grown.rounds;
+        result_.converged = grown.converged;
+        result_.hole_charts = grown.hole_charts;
+        patch_ = grown.chart;
+        progress_.begin_phase("straightening borders", 0.1);
+        if (options_.straighten_boundaries) {
+            ExpansionOptions expansion;
+            expansion.max_fitting_error = growing_.max_fitting_error;
+            expansion.length_weight = creased_ ? creased_length_weight : smooth_length_weight;
+            relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
+        }
+        patch_ = absorb_fragments(mesh, patch_, fragment_share);
+    }
+
+    DevelopableCharts run_with_estimate() {
+        if (!options_.merge_charts && !options_.add_darts)
+            return finish(make_untried_draft(working_.mesh(), patch_));
+        Aim aim;
+        aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
+        progress_.begin_phase("trying charts", 0.05);
+        Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
+        improve(aim, draft);
+        return finish(draft);
+    }
+
+    void improve(const Aim& aim, Draft& draft) {
+        if (options_.merge_charts) {
+            progress_.begin_phase("joining charts", 0.3);
+            MergeOptions merging;
+            merging.chart = aim.chart;
+            merging.max_excess = aim.max_excess;
+            merging.least_neck = aim.few ? 0.0 : merging.least_neck;
+            result_.joins = merge_charts(working_.mesh(), merging, draft, progress_);
+        }
+        if (options_.add_darts) {
+            progress_.begin_phase("cutting darts", 0.1);
+            DartOptions darts;
+            darts.chart = aim.chart;
+            cut_darts(working_.mesh(), darts, draft, progress_);
+        }
+    }
+
+    // Splits the charts that contribute most until the stretch of all leaves room for joins.
+    void split_worst(const Aim& aim, Draft& draft) {
+        std::vector<std::uint8_t> whole; // charts that could not be split
+        for (int i = 0; i < most_splits && draft.excess() > room_for_joins * aim.max_excess; ++i) {
+            whole.resize(draft.faces.size(), 0);
+            Index worst = -1;
+            for (Index c = 0; c < static_cast<Index>(draft.faces.size()); ++c)
+                if (!draft.faces[at(c)].empty() && whole[at(c)] == 0 &&
+                    (worst < 0 || draft.map[at(c)].excess() > draft.map[at(worst)].excess()))
+                    worst = c;
+            if (worst < 0)
+                return;
+            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+                whole[at(worst)] = 1;
+        }
+    }
+
+    // The fewest charts within the bounds: what the coarse surface may use of them is lowered until
+    // the map of the full surface keeps them.
+    DevelopableCharts run_automatic() {
+        const double allowed = options_.max_l2_stretch * options_.max_l2_stretch - 1.0;
+        const bool has_linf = options_.max_linf_stretch > 0.0;
+        double share = first_share;
+        double linf = has_linf ? options_.max_linf_stretch
+                               : bounds_from(loose_linf * (options_.max_l2_stretch - 1.0)).linf;
+        progress_.begin_phase("trying charts", 0.05);
+        const Draft start =
+            make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, progress_);
+        DevelopableCharts best;
+        for (int attempt = 0; attempt < most_attempts; ++attempt) {
+            Aim aim;
+            aim.chart = {std::sqrt(1.0 + chart_excess * allowed), linf};
+            aim.max_excess = share * allowed * working_.mesh().total_area;
+            aim.few = true;
+            Draft draft = start;
+            split_worst(aim, draft);
+            improve(aim, draft);
+            DevelopableCharts found = finish(draft);
+            StretchBounds reached = working_.measure(found.chart, found.seam, progress_);
+            if (has_linf && options_.add_darts && reached.linf > options_.max_linf_stretch) {
+                DartOptions darts;
+                darts.chart = {aim.chart.l2, options_.max_linf_stretch};
+                found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
+                reached = working_.measure(found.chart, found.seam, progress_);
+            }
+            found.l2_stretch = reached.l2;
+            found.linf_stretch = reached.linf;
+            found.bounds_kept = reached.l2 <= options_.max_l2_stretch &&
+                                (!has_linf || reached.linf <= options_.max_linf_stretch);
+            if (attempt == 0 || found.l2_stretch < best.l2_stretch || found.bounds_kept)
+                best = std::move(found);
+            if (best.bounds_kept)
+                return best;
+            share *= std::min(0.9, allowed / (reached.l2 * reached.l2 - 1.0));
+            if (has_linf)
+                linf = 1.0 + (linf - 1.0) * std::min(0.9, (options_.max_linf_stretch - 1.0) /
+                                                              (reached.linf - 1.0));
+        }
+        return best;
+    }
+
+    DevelopableCharts finish(const Draft& draft) {
+        progress_.begin_phase("finishing borders", 0.1);
+        FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
+                                              options_.straighten_boundaries, progress_);
+        DevelopableCharts result = result_;
+        result.chart = std::move(full.chart);
+        result.seam = std::move(full.seam);
+        result.darts = full.darts;
+        result.fitting_error = working_.fitting_errors(result.chart);
+        return result;
+    }
+
+    const DevelopableChartsOptions& options_;
+    Progress& progress_;
+    const bool creased_;
+    DChartsOptions growing_;
+    WorkingSurface working_;
+    std::vector<Index> patch_; // #F of the working surface: charts before joining
+    DevelopableCharts result_; // what is known so far
+};
+
+} // namespace
+
+DevelopableCharts segment_developable_charts(const Mesh& mesh,
+                                             const DevelopableChartsOptions& options,
+                                             Progress& progress) {
+    DChartsOptions growing = options;
+    if (growing.charts_number == 0)
+        growing.charts_number = 1;
+    check_options(mesh, growing);
+    check_bounds(options);
+    progress.begin_phase("coarsening", 0.2);
+    return Designer(mesh, options, progress).run();
+}
+
+} // namespace devseg

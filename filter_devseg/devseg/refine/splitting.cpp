@@ -1,0 +1,79 @@
+#include "devseg/refine/splitting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/segment/expansion.h"
+#include "devseg/segment/fragments.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double fragment_share = 0.05; // of the chart: smaller parts are not worth a chart
+
+// The faces as a mesh of their own, in the given order.
+Mesh submesh(const Mesh& mesh, const std::vector<Index>& faces) {
+    Mesh part;
+    std::vector<Index> number(mesh.faces.size(), -1);
+    std::vector<Index> vertex(mesh.points.size(), -1);
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        number[at(faces[i])] = static_cast<Index>(i);
+    const ChartSurface surface = extract_surface(
+        mesh, faces, enclose(mesh, faces, std::vector<std::uint8_t>(mesh.twin.size(), 0)));
+    for (const Index v : surface.vertex)
+        part.points.push_back(mesh.points[at(v)]);
+    part.faces = surface.corners;
+    part.twin = surface.twin;
+    part.unit_length = mesh.unit_length;
+    compute_face_geometry(part);
+    return part;
+}
+
+Index count_labels(const std::vector<Index>& label) {
+    return 1 + *std::max_element(label.begin(), label.end());
+}
+
+} // namespace
+
+bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
+                 Draft& draft, Progress& progress) {
+    const std::vector<Index> faces = draft.faces[at(chart)];
+    if (faces.size() < 2)
+        return false;
+    const Mesh part = submesh(mesh, faces);
+    DChartsOptions two = options;
+    two.charts_number = 2;
+    const DChartsResult grown = segment_dcharts(part, two, progress);
+    std::vector<Index> label = grown.chart;
+    ExpansionOptions expansion;
+    expansion.max_fitting_error = options.max_fitting_error;
+    relabel_by_expansion(part, grown.proxies, expansion, label, progress);
+    label = absorb_fragments(part, label, fragment_share);
+    if (count_labels(label) < 2) // the shortest border is none: take the charts as they grew
+        label = absorb_fragments(part, grown.chart, fragment_share);
+    const Index count = count_labels(label);
+    if (count < 2)
+        return false;
+
+    const Index first_new = static_cast<Index>(draft.faces.size());
+    draft.faces[at(chart)].clear();
+    draft.faces.resize(draft.faces.size() + at(count - 1));
+    draft.map.resize(draft.faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const Index c = label[i] == 0 ? chart : first_new + label[i] - 1;
+        draft.chart[at(faces[i])] = c;
+        draft.faces[at(c)].push_back(faces[i]);
+        for (Index h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
+            draft.seam[at(h)] = 0;
+    }
+    TrialEffort effort;
+    effort.wanted_l2 = wanted_l2;
+    for (Index l = 0; l < count; ++l) {
+        const std::size_t c = at(l == 0 ? chart : first_new + l - 1);
+        draft.map[c] = try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
+    }
+    return true;
+}
+
+} // namespace devseg

@@ -1,0 +1,15 @@
+// Splitting a chart that is stretched too much.
+#pragma once
+
+#include "devseg/refine/draft.h"
+#include "devseg/segment/dcharts.h"
+
+namespace devseg {
+
+/// Grows two D-Charts within the chart, far from each other, and gives the second and what it left
+/// over labels of their own. Cuts inside the chart are healed. Returns whether the chart is in
+/// parts now; false for a single face.
+bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
+                 Draft& draft, Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,49 @@
+// Refusals that the segmentation methods share.
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include "devseg/errors.h"
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
+
+template <class T>
+[[noreturn]] void refuse_option(const char* name, const std::string& expected, T found) {
+    std::ostringstream text;
+    text << name << ": expected " << expected << ", found " << found;
+    throw InvalidParameter(text.str());
+}
+
+/// Refuses values outside of low < value ≤ high, and those that are no number.
+inline void check_range(const char* name, double value, double low, double high,
+                        const std::string& expected) {
+    if (!(value > low) || !(value <= high))
+        refuse_option(name, expected, value);
+}
+
+inline void check_charts_number(const Mesh& mesh, int charts_number) {
+    if (charts_number < 1 || charts_number > mesh.face_count())
+        refuse_option("charts_number",
+                      "a number from 1 to " + std::to_string(mesh.face_count()) +
+                          " (the number of faces)",
+                      charts_number);
+}
+
+inline void check_rounds(int max_iterations, int random_seed) {
+    if (max_iterations < 1)
+        refuse_option("max_iterations", "a number of at least 1", max_iterations);
+    if (random_seed < 0)
+        refuse_option("random_seed", "a number of at least 0", random_seed);
+}
+
+/// Charts never join components: as many charts as asked for, and at least one for each component.
+inline Index at_least_one_per_component(const Mesh& mesh, int charts_number) {
+    return std::max(static_cast<Index>(charts_number),
+                    face_components(mesh, [](Index) { return true; }).count);
+}
+
+} // namespace devseg

@@ -1,0 +1,70 @@
+#include "devseg/flatten/peaks.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "devseg/flatten/lscm.h"
+#include "devseg/flatten/symmetric_dirichlet.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+// A bowl with one vertex pulled out a little: besides the stretch of the bowl, a flat map has a
+// peak at one place.
+checks::Disk spiked_plate() {
+    RawMesh raw = shapes::grid(40, 40, 40.0, 40.0);
+    for (Vec3& p : raw.points)
+        p.z() = 0.012 * ((p.x() - 20.0) * (p.x() - 20.0) + (p.y() - 20.0) * (p.y() - 20.0));
+    raw.points[20 * 41 + 12].z() += 1.0;
+    return checks::Disk(raw);
+}
+
+double worst(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double largest = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        largest = std::max(largest, 1.0 / checks::stretches(problem, uv, f)[1]);
+    return largest;
+}
+
+std::vector<Vec2> isometric(const FlatteningProblem& problem) {
+    Progress progress;
+    return minimise_symmetric_dirichlet(problem, flatten_lscm(problem), {}, progress).uv;
+}
+
+TEST(Peaks, TheWorstFaceIsRelievedAtLittleCost) {
+    const checks::Disk disk = spiked_plate();
+    const std::vector<Vec2> before = isometric(disk.problem);
+    std::vector<Vec2> after = before;
+    Progress progress;
+    relieve_peaks(disk.problem, disk.surface.twin, false, after, progress);
+    EXPECT_LT(worst(disk.problem, after), worst(disk.problem, before) - 0.02);
+    EXPECT_EQ(checks::count_flips(disk.problem.faces, after), 0);
+    const double excess = symmetric_dirichlet_energy(disk.problem, before) - 1.0;
+    EXPECT_LE(symmetric_dirichlet_energy(disk.problem, after) - 1.0, 1.25 * excess);
+}
+
+TEST(Peaks, TheOutlineStaysWhereAsked) {
+    const checks::Disk disk = spiked_plate();
+    const std::vector<Vec2> before = isometric(disk.problem);
+    std::vector<Vec2> after = before;
+    Progress progress;
+    relieve_peaks(disk.problem, disk.surface.twin, true, after, progress);
+    EXPECT_NE(after, before);
+    for (const Index v : disk.problem.boundary)
+        EXPECT_EQ(after[at(v)], before[at(v)]);
+}
+
+TEST(Peaks, AnIsometryStaysAsItIs) {
+    const checks::Disk disk(shapes::grid(10, 10));
+    const std::vector<Vec2> before = isometric(disk.problem);
+    std::vector<Vec2> after = before;
+    Progress progress;
+    relieve_peaks(disk.problem, disk.surface.twin, false, after, progress);
+    EXPECT_EQ(after, before);
+}
+
+} // namespace
+} // namespace devseg
