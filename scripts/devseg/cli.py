@@ -12,8 +12,9 @@ from typing import Any
 
 from devseg.errors import DevsegError, one_line
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS
+from devseg.pattern import PATTERN_FORMATS, add_pattern_options, pattern_parameters
 
-FORMATS = ("svg", "ply", "obj")
+FORMATS = (*PATTERN_FORMATS, "ply", "obj")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -125,6 +126,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     scale.add_argument(
         "--mm-per-unit", type=_positive, metavar="S", help="size of a model unit; default: 1"
     )
+    add_pattern_options(parser)
     parser.add_argument(
         "--json", action="store_true", help="print the results as JSON (a list for several inputs)"
     )
@@ -185,11 +187,8 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
             parser.error(f"--{name.replace('_', '-')} does not apply to --method {method.name}")
         segmentation[method.options[name]] = value
     _check_names(args, parser)
-    if args.height_mm:
-        scale = {"height_mm": args.height_mm}
-    else:
-        scale = {"mm_per_unit": args.mm_per_unit or 1.0}
-    options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, scale)
+    pattern = pattern_parameters(args)
+    options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, pattern)
     results = []
     for path in args.input:
         result = run(path, options)
@@ -220,6 +219,8 @@ def _check_names(args: argparse.Namespace, parser: argparse.ArgumentParser) -> N
 
 _LABELS = {
     "svg": "pattern",
+    "pdf": "pattern",
+    "dxf": "pattern",
     "ply": "mesh",
     "obj": "mesh",
     "png": "picture",

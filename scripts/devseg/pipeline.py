@@ -14,6 +14,7 @@ from devseg.errors import DevsegError, host_message
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, Method
 from devseg.outputs import staged, to_json
+from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -31,8 +32,8 @@ class RunOptions:
         method: segmentation method.
         segmentation: parameters of its filter that differ from the defaults.
         flatten: key of FLATTENINGS.
-        formats: svg, ply, obj.
-        scale: the pattern's size: either mm_per_unit or height_mm.
+        formats: svg, pdf, dxf, ply, obj.
+        pattern: parameters of the export filter that differ from the defaults.
     """
 
     out: Path
@@ -40,7 +41,7 @@ class RunOptions:
     segmentation: Mapping[str, Any]
     flatten: str
     formats: tuple[str, ...]
-    scale: Mapping[str, float]
+    pattern: Mapping[str, Any]
 
 
 class Session:
@@ -61,6 +62,10 @@ class Session:
         if values:
             self.parameters[name] = values
         return self._guard(self.meshes.apply_filter, name, **parameters) or {}
+
+    def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
+        """Writes the pattern, in the format of the file's extension."""
+        self._guard(self.meshes.apply_filter, EXPORT_FILTER, output_file=str(file), **parameters)
 
     def save(self, file: Path, **parameters: Any) -> None:
         """Saves the current mesh, in the format of the file's extension."""
@@ -104,7 +109,7 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
             "method": options.method.name,
             "mesh": size,
             **measures,
-            "parameters": {**session.parameters, "pattern": dict(options.scale)},
+            "parameters": {**session.parameters, "pattern": dict(options.pattern)},
             "versions": versions(),
             "warnings": warnings,
             "seconds": progress.seconds,
@@ -146,8 +151,8 @@ def _write(session: Session, options: RunOptions, stem: Path, progress: Progress
     for extension in options.formats:
         target = Path(f"{file}{extension}")
         with progress.stage(extension):
-            if extension == "svg":
-                session.save(target, labels=True, **options.scale)
+            if extension in PATTERN_FORMATS:
+                session.export(target, options.pattern)
             elif extension == "ply":
                 session.save(
                     target,

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "devseg/filters/filter.h"
+#include "filters/export_filter.h"
 #include "unit/checks.h"
 #include "unit/host_checks.h"
 
@@ -23,8 +24,8 @@ bool is_snake_case(const std::string& name) {
 TEST(FilterTable, NamesAreUniqueAndInTheHostsForms) {
     std::set<std::string> menu;
     std::set<std::string> python;
-    EXPECT_GE(filter_table().size(), 7U);
-    for (const FilterDeclaration& filter : filter_table()) {
+    EXPECT_GE(plugin_filters().size(), 7U);
+    for (const FilterDeclaration& filter : plugin_filters()) {
         SCOPED_TRACE(filter.menu_name);
         EXPECT_TRUE(menu.insert(filter.menu_name).second);
         EXPECT_TRUE(python.insert(filter.python_name).second);
@@ -41,7 +42,7 @@ TEST(FilterTable, NamesAreUniqueAndInTheHostsForms) {
 TEST(FilterTable, HelpHasTwoPartsAndMethodsNameTheirSource) {
     const std::regex reference("See:<br>(<i>[^<]+</i><br><b>\"[^<]+\"</b><br>[^<]+, \\d{4}, "
                                "doi:10\\.\\d{4,}/[^ <]+(<br>)?)+$");
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : plugin_filters()) {
         SCOPED_TRACE(filter.menu_name);
         EXPECT_GE(filter.help.size(), 100U);
         EXPECT_TRUE(contains(filter.help, "<br>"));
@@ -67,7 +68,7 @@ TEST(FilterTable, HelpHasTwoPartsAndMethodsNameTheirSource) {
 }
 
 TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : plugin_filters()) {
         std::set<std::string> names;
         for (const Parameter& p : filter.parameters) {
             SCOPED_TRACE(filter.menu_name + ", " + p.name);
@@ -118,7 +119,7 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
 }
 
 TEST(FilterTable, ResultsAreDescribed) {
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : plugin_filters()) {
         std::set<std::string> names;
         for (const ResultField& r : filter.results) {
             SCOPED_TRACE(filter.menu_name + ", " + r.name);

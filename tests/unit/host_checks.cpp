@@ -19,7 +19,9 @@ double number(const ParameterValue& value) {
         return *b ? 1.0 : 0.0;
     if (const auto* i = std::get_if<int>(&value))
         return *i;
-    return std::get<double>(value);
+    if (const auto* d = std::get_if<double>(&value))
+        return *d;
+    return 0.0; // texts
 }
 
 double value(const HostResult& result, const std::string& name) {

@@ -1,0 +1,96 @@
+"""The options of pattern files on the command line, and the filter parameters they set."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from typing import Any
+
+EXPORT_FILTER = "export_pattern"
+# Formats that the export filter writes.
+PATTERN_FORMATS = ("svg", "pdf", "dxf")
+PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
+DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
+
+
+def length(least: float = 0.0) -> Callable[[str], float]:
+    """A parser of finite numbers of at least `least`."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (value >= least and math.isfinite(value)):
+            raise argparse.ArgumentTypeError(
+                f"expected a number of at least {least:g}, found '{text}'"
+            )
+        return value
+
+    return parse
+
+
+def add_pattern_options(parser: argparse.ArgumentParser) -> None:
+    """The options that shape svg, pdf and dxf files, beside the scale."""
+    group = parser.add_argument_group("pattern files (svg, pdf, dxf)")
+    group.add_argument("--preset", choices=PRESETS, help="what to make; default: plain")
+    group.add_argument(
+        "--page", metavar="PAGE", help="none, a4, letter, a3 or WxH in mm; default: none"
+    )
+    group.add_argument("--page-margin-mm", type=length(), metavar="M", help="default: 10")
+    group.add_argument(
+        "--seam-allowance-mm", type=length(), metavar="A", help="around each piece; default: 0"
+    )
+    group.add_argument(
+        "--notch-spacing-mm", type=length(), metavar="D", help="between notches; default: 0, none"
+    )
+    group.add_argument(
+        "--fold-angle", type=length(), metavar="DEG", help="least angle of a fold; default: 22.5"
+    )
+    group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
+    for name, text in (
+        ("glue-tabs", "flaps to glue the pieces with"),
+        ("fold-lines", "mountain and valley folds"),
+        ("edge-numbers", "the number of each seam on both sides"),
+        ("grain-line", "an arrow along the threads of the cloth"),
+        ("mirror", "as seen from inside the model"),
+    ):
+        group.add_argument(f"--{name}", action="store_true", help=text, default=None)
+    group.add_argument(
+        "--no-tiling", action="store_false", dest="tiling", default=None, help="refuse large pieces"
+    )
+    group.add_argument(
+        "--no-cover", action="store_false", dest="cover", default=None, help="PDF: patterns only"
+    )
+
+
+_PARAMETERS = (
+    "page",
+    "page_margin_mm",
+    "seam_allowance_mm",
+    "notch_spacing_mm",
+    "fold_angle",
+    "glue_tabs",
+    "fold_lines",
+    "edge_numbers",
+    "grain_line",
+    "mirror",
+    "tiling",
+    "cover",
+)
+
+
+def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
+    """The parameters of the export filter that were given; the scale always is."""
+    given = {name: getattr(args, name) for name in _PARAMETERS}
+    parameters = {name: value for name, value in given.items() if value is not None}
+    if args.preset:
+        parameters["preset"] = PRESETS[args.preset]
+    if args.dxf_kind:
+        parameters["dxf_kind"] = DXF_KINDS[args.dxf_kind]
+    if args.height_mm:
+        parameters["height_mm"] = args.height_mm
+    else:
+        parameters["mm_per_unit"] = args.mm_per_unit or 1.0
+    return parameters
