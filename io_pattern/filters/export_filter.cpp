@@ -30,8 +30,9 @@ Declare<O> with_scale(Declare<O> filter) {
               "Scales the pattern so that the finished model is this high, measured along the y "
               "axis, in millimetres. 0 = use the millimetres per unit.")
         .choice(&O::preset, "preset", "Preset", {"Plain", "Sewing", "Papercraft", "Laser"},
-                "What to make: a preset switches on what the craft needs beside the options "
-                "below. Plain adds nothing.")
+                "What to make; a preset switches on what the craft needs beside the options below. "
+                "Plain adds nothing; Sewing: allowance, notches, grain lines; Papercraft: folds, "
+                "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
         .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
               "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
@@ -46,8 +47,8 @@ Declare<O> with_seams(Declare<O> filter) {
               "preset Sewing).")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
-                "Convex corners of the cut line: pointed, cut off, or rounded. Concave ones are "
-                "trimmed.")
+                "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "
+                "Concave ones are trimmed.")
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears.")
@@ -89,8 +90,8 @@ Declare<O> with_paper(Declare<O> filter) {
                  "with their arrows upright where they are laid out anew.")
         .boolean(&O::mirror, "mirror", "Mirror", "Draw the pieces as seen from inside the model.")
         .choice(&O::dxf_kind, "dxf_kind", "Kind of DXF", {"Automatic", "Cutter", "Apparel"},
-                "For cutters and drawing programs, or for apparel CAD (ASTM D6673). Automatic: "
-                "apparel with the preset Sewing.");
+                "Cutter: for cutters and drawing programs; Apparel: for apparel CAD (ASTM D6673). "
+                "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
 FilterOutput run_export(const FilterInput& input, const ExportOptions& options,

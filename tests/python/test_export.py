@@ -22,7 +22,7 @@ def flattened(pymeshlab: Any) -> Any:
     """A ball without poles, in several flat pieces."""
     ms = pymeshlab.MeshSet()
     ms.add_mesh(pymeshlab.Mesh(*meshes.sphere()))
-    ms.compute_segmentation_dcharts_per_face(charts_number=6)
+    ms.compute_segmentation_dcharts_per_face(charts_number=6, merge_charts=False)
     ms.compute_texcoord_parametrization_charts_per_wedge()
     return ms
 

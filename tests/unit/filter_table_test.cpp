@@ -34,7 +34,7 @@ TEST(FilterTable, NamesAreUniqueAndInTheHostsForms) {
             filter.menu_name, std::regex("(Segmentation|Charts|Pattern): ([A-Z]|t-).*[a-zA-Z]")));
         EXPECT_TRUE(is_snake_case(filter.python_name));
         EXPECT_TRUE(std::regex_search(filter.python_name,
-                                      std::regex("^(compute|apply|meshing|generate|get)_")));
+                                      std::regex("^(compute|apply|meshing|generate|get|export)_")));
         EXPECT_TRUE(filter.run != nullptr);
     }
 }
