@@ -118,7 +118,7 @@ def test_refused_parameters_end_with_our_message(
     server: hosts.PrivateMeshLab, bone: Path, tmp_path: Path
 ) -> None:
     steps = [f for f in hosts.declarations() if f["menu_name"] == "Segmentation: D-Charts"]
-    script = mlx(tmp_path / "bad.mlx", steps, charts_number="0")
+    script = mlx(tmp_path / "bad.mlx", steps, charts_number="-1")
     done = server.serve("-i", bone, "-o", tmp_path / "out.ply", "-s", script)
     assert done.returncode != 0
     assert "error: charts_number: expected " in done.stdout

@@ -18,7 +18,7 @@ namespace devseg {
 
 namespace {
 
-constexpr double share_of_box = 0.75;     // in the badness
+constexpr double share_of_box = 0.9;      // in the badness
 constexpr double least_distance = 5.0e-4; // that is kept, as a share of the side
 constexpr double distance_slack = 1.0e-4; // kept in addition, as a share of the distance
 constexpr double most_move = 0.45;        // of the least distance: outlines never cross

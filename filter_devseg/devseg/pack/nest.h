@@ -15,7 +15,7 @@
 
 namespace devseg {
 
-constexpr std::size_t few_charts = 4; // that cannot fill a square
+constexpr std::size_t few_charts = 5; // that cannot fill a square
 
 struct NestProblem {
     std::vector<Outline> outlines;

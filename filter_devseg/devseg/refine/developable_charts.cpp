@@ -71,7 +71,7 @@ void check_bounds(const DevelopableChartsOptions& o) {
         refuse("merge_threshold", "a number above 0 and at most 1 (0.01 is usual)",
                o.merge_threshold);
     if (!(o.max_l2_stretch > 1.0))
-        refuse("max_l2_stretch", "a number above 1 (1.005 is usual)", o.max_l2_stretch);
+        refuse("max_l2_stretch", "a number above 1 (1.01 is usual)", o.max_l2_stretch);
     if (o.max_linf_stretch != 0.0 && !(o.max_linf_stretch > 1.0))
         refuse("max_linf_stretch", "0 for no bound, or a number above 1", o.max_linf_stretch);
 }

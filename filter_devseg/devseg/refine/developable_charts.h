@@ -17,7 +17,7 @@ struct DevelopableChartsOptions : DChartsOptions {
     double merge_threshold = 0.01;     // η: how little
     bool add_darts = true;             // cut towards the worst spots of charts
     // With charts_number = 0: the fewest charts whose final map keeps these bounds.
-    double max_l2_stretch = 1.005;
+    double max_l2_stretch = 1.01;
     double max_linf_stretch = 0.0; // 0: no bound
 };
 
