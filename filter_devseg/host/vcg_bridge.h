@@ -140,7 +140,9 @@ inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
     }
     for (const auto& [name, values] : layer.face_attributes)
         write_face_attribute(m, name, values);
-    model.updateBoxAndNormals();
+    // The model's own method for this has another name in every version of the host.
+    vcg::tri::UpdateBounding<CMeshO>::Box(m);
+    vcg::tri::UpdateNormal<CMeshO>::PerVertexNormalizedPerFace(m);
 }
 
 /// Selects exactly the given live faces, so that the user sees which ones are meant.
