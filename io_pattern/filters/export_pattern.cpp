@@ -6,6 +6,7 @@
 
 #include "devseg/errors.h"
 #include "sheet/apparel_dxf.h"
+#include "sheet/carry_folds.h"
 #include "sheet/cover.h"
 #include "sheet/pattern_drawing.h"
 #include "writers/dxf_writer.h"
@@ -86,7 +87,9 @@ ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOp
     const Format format = format_of(given.output_file);
     const ExportOptions options = resolved(given);
     page_format(options); // says what is wrong with it before the work begins
-    const Pattern pattern = make_pattern(mesh, uv, options, progress);
+    Pattern pattern = make_pattern(mesh, uv, options, progress);
+    if (options.fold_lines)
+        carry_folds(uv, pattern);
     PatternLayout layout = lay_out_pattern(pattern, options, progress);
     progress.begin_phase("writing", 0.1);
     progress.update(0.0);

@@ -48,18 +48,10 @@ std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
     return text;
 }
 
-// Seams in a row that join the same piece are one entry: "3 to 7: P02".
-std::string seam_list(const Pattern& pattern, Index piece) {
-    std::string text;
-    std::string first;
-    std::string last;
-    std::string target;
-    const auto finish = [&] {
-        if (!first.empty())
-            text += (text.empty() ? "" : ", ") + first + (first == last ? "" : " to " + last) +
-                    ": " + target;
-    };
-    for (const Seam& seam : pattern.seams) {
+// The numbers of the seams to each neighbour: "P02: 1-4, 9; P03: 5".
+std::string seam_list(const Pattern& pattern, const std::vector<Seam>& numbered, Index piece) {
+    std::vector<std::pair<std::string, std::string>> numbers_to;
+    for (const Seam& seam : numbered) {
         const Index a = seam.sides[0].piece;
         const Index b = seam.sides[1].piece;
         if (a != piece && b != piece)
@@ -68,14 +60,16 @@ std::string seam_list(const Pattern& pattern, Index piece) {
         const std::string name = seam.is_dart     ? "dart"
                                  : other == piece ? "itself"
                                                   : pattern.pieces[at(other)].name;
-        if (name != target || first.empty()) {
-            finish();
-            first = seam.label;
-            target = name;
-        }
-        last = seam.label;
+        const auto entry = std::find_if(numbers_to.begin(), numbers_to.end(),
+                                        [&](const auto& known) { return known.first == name; });
+        if (entry == numbers_to.end())
+            numbers_to.emplace_back(name, name + ": " + seam.label);
+        else
+            entry->second += ", " + seam.label;
     }
-    finish();
+    std::string text;
+    for (const auto& [name, numbers] : numbers_to)
+        text += (text.empty() ? "" : "; ") + numbers;
     return text;
 }
 
@@ -88,7 +82,7 @@ std::vector<Row> table_rows(const Pattern& pattern, const PatternLayout& layout,
         const Vec2 size = drawn.box().sizes();
         rows.push_back({{piece.name, number_text(size.x(), 0) + " x " + number_text(size.y(), 0),
                          page_list(static_cast<Index>(i), pages), cut_text(piece, pattern)},
-                        seam_list(pattern, drawn.piece)});
+                        seam_list(pattern, layout.numbered, drawn.piece)});
     }
     return rows;
 }
@@ -96,12 +90,12 @@ std::vector<Row> table_rows(const Pattern& pattern, const PatternLayout& layout,
 std::vector<std::string> wrapped(const std::string& text, double width) {
     std::vector<std::string> lines(1);
     for (std::size_t from = 0; from < text.size();) {
-        const std::size_t comma = text.find(", ", from);
-        const std::size_t end = comma == std::string::npos ? text.size() : comma + 2;
-        const std::string item = text.substr(from, end - from);
-        if (!lines.back().empty() && text_width(lines.back() + item, text_size) > width)
+        const std::size_t blank = text.find(' ', from);
+        const std::size_t end = blank == std::string::npos ? text.size() : blank + 1;
+        const std::string word = text.substr(from, end - from);
+        if (!lines.back().empty() && text_width(lines.back() + word, text_size) > width)
             lines.emplace_back();
-        lines.back() += item;
+        lines.back() += word;
         from = end;
     }
     return lines;
@@ -168,7 +162,7 @@ void add_pictures(const Mesh& mesh, const Pattern& pattern, Book& book) {
 void add_table(const std::vector<Row>& rows, Book& book) {
     const auto column = [&](std::size_t i) { return columns[i] * book.width(); };
     const char* const heads[] = {"Piece", "Size in mm", "Page", "Cut",
-                                 "Seams: numbers, joined piece"};
+                                 "Joined pieces: seam numbers"};
     book.advance(line_pitch);
     for (std::size_t i = 0; i < 5; ++i)
         book.write(column(i), text_size, heads[i]);
@@ -176,14 +170,18 @@ void add_table(const std::vector<Row>& rows, Book& book) {
     book.marks().paths.push_back(
         {"", {{{Vec2(book.left(), rule), Vec2(book.left() + book.width(), rule)}, false}}});
     for (const Row& row : rows) {
-        bool first = true;
-        for (const std::string& line : wrapped(row.seams, book.width() - column(4))) {
+        std::vector<std::vector<std::string>> cells;
+        std::size_t lines = 0;
+        for (std::size_t i = 0; i < 5; ++i) {
+            const double end = i < 4 ? column(i + 1) - text_size : book.width();
+            cells.push_back(wrapped(i < 4 ? row.cells[i] : row.seams, end - column(i)));
+            lines = std::max(lines, cells.back().size());
+        }
+        for (std::size_t line = 0; line < lines; ++line) {
             book.advance(line_pitch);
-            for (std::size_t i = 0; i < 4 && first; ++i)
-                book.write(column(i), text_size,
-                           wrapped(row.cells[i], column(i + 1) - column(i) - text_size).front());
-            book.write(column(4), text_size, line);
-            first = false;
+            for (std::size_t i = 0; i < 5; ++i)
+                if (line < cells[i].size())
+                    book.write(column(i), text_size, cells[i][line]);
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include "devseg/errors.h"
 #include "sheet/nesting.h"
+#include "sheet/seam_groups.h"
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
 
@@ -190,11 +191,12 @@ PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& optio
     if (options.glue_tabs)
         tabs = make_tabs(pattern, options.tab_depth_mm, progress);
     note_tabs(tabs, layout);
+    layout.numbered = group_seams(pattern, least_numbered_seam);
     progress.begin_phase("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
-            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
+            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], layout.numbered, options));
         if (options.mirror)
             layout.pieces.back().mirror();
     }

@@ -20,6 +20,7 @@ struct PatternSheet {
 struct PatternLayout {
     std::vector<SheetPiece> pieces; // in the order of the pattern, on their sheets
     std::vector<PatternSheet> sheets;
+    std::vector<Seam> numbered; // the seams whose numbers are written
     std::optional<PageFormat> page;
     std::vector<std::string> notes; // for the user, one sentence each
 };

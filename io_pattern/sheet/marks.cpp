@@ -203,25 +203,32 @@ void add_grain(const PatternPiece& piece, SheetPiece& result) {
         {barb(from, -direction, arrow_angle), from, barb(from, -direction, -arrow_angle)}};
 }
 
+template <class Visit>
+void for_sides(const std::vector<Seam>& seams, Index piece, Visit visit) {
+    for (const Seam& seam : seams)
+        for (const SeamSide& side : seam.sides)
+            if (side.piece == piece)
+                visit(seam, side);
+}
+
 } // namespace
 
-void add_marks(const Pattern& pattern, const ExportOptions& options, SheetPiece& result) {
+void add_marks(const Pattern& pattern, const std::vector<Seam>& numbered,
+               const ExportOptions& options, SheetPiece& result) {
     const PatternPiece& piece = pattern.pieces[at(result.piece)];
     Room room(result);
     if (options.labels)
         add_name(piece, pattern, result, room);
     if (options.grain_line)
         add_grain(piece, result);
-    for (const Seam& seam : pattern.seams)
-        for (const SeamSide& side : seam.sides) {
-            if (side.piece != result.piece)
-                continue;
-            const PiecePath& path = piece.path(side.path);
-            for (const double distance : side.notches)
-                add_notch(path, side, distance, options.seam_allowance_mm, result);
-            if (options.edge_numbers)
-                add_number(path, side, seam.label, result, room);
-        }
+    for_sides(pattern.seams, result.piece, [&](const Seam&, const SeamSide& side) {
+        for (const double distance : side.notches)
+            add_notch(piece.path(side.path), side, distance, options.seam_allowance_mm, result);
+    });
+    if (options.edge_numbers)
+        for_sides(numbered, result.piece, [&](const Seam& seam, const SeamSide& side) {
+            add_number(piece.path(side.path), side, seam.label, result, room);
+        });
 }
 
 } // namespace devseg

@@ -6,6 +6,7 @@
 namespace devseg {
 
 /// Adds the marks that the options want; the cut and sew lines must be there.
-void add_marks(const Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
+void add_marks(const Pattern& pattern, const std::vector<Seam>& numbered,
+               const ExportOptions& options, SheetPiece& piece);
 
 } // namespace devseg

@@ -145,7 +145,7 @@ void SheetPiece::mirror() {
 }
 
 SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<GlueTab>& tabs,
-                         const ExportOptions& options) {
+                         const std::vector<Seam>& numbered, const ExportOptions& options) {
     const PatternPiece& piece = pattern.pieces[at(index)];
     SheetPiece result;
     result.piece = index;
@@ -163,7 +163,7 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
     }
     if (options.fold_lines)
         add_folds(piece, result);
-    add_marks(pattern, options, result);
+    add_marks(pattern, numbered, options, result);
     return result;
 }
 

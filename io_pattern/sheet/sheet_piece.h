@@ -42,8 +42,9 @@ struct SheetPiece {
     void mirror();
 };
 
-/// The piece as the options want it, where the pattern has it. `tabs` may be empty.
+/// The piece as the options want it, where the pattern has it. `tabs` may be empty; `numbered` are
+/// the seams whose numbers are written (seam_groups.h).
 SheetPiece compose_piece(const Pattern& pattern, Index piece, const std::vector<GlueTab>& tabs,
-                         const ExportOptions& options);
+                         const std::vector<Seam>& numbered, const ExportOptions& options);
 
 } // namespace devseg

@@ -46,7 +46,7 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float]) 
         pages = 1 if page == "a4" else 999
         assert files.words_outside(folder / f"{name}_{preset}_{page}.pdf", pages) == []
     overlap = itself = twice = difference = 0.0
-    wrong: dict[str, int] = {}
+    wrong: dict[int, int] = {}
     for page in ("none", "a4"):
         svg = found[page, "svg"]
         cut = svg["cut"]
@@ -64,7 +64,7 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float]) 
             difference = max(difference, *np.abs(np.subtract(lengths, other)))
         if preset != "Plain":
             texts = svg["engrave" if preset == "Laser" else "numbers"].texts
-            wrong |= files.wrong_counts([t for t in texts if not t.startswith("P")])
+            wrong |= files.wrong_counts([t for t in texts if t[0].isdigit()], len(seams))
     net = found["none", "svg"].get("sew", found["none", "svg"]["cut"])
     around = sum(p.length * (1 if p.closed else 2) for p in net.parts)
     against = around - 2 * sum(seams) if preset in ("Plain", "Sewing") else 0.0

@@ -189,9 +189,13 @@ def length_cut_twice(layer: Layer, grid: float = 0.01) -> float:
     return float(total - unary_union(MultiLineString(lines)).length)
 
 
-def wrong_counts(texts: list[str]) -> dict[str, int]:
-    """Seam numbers that are not written exactly twice."""
-    return {text: number for text, number in Counter(texts).items() if number != 2}
+def wrong_counts(texts: list[str], seams: int) -> dict[int, int]:
+    """Seam numbers that are not written exactly twice: alone, or in a range such as 3-7."""
+    counts: Counter[int] = Counter()
+    for text in texts:
+        first, _, last = text.partition("-")
+        counts.update(range(int(first), int(last or first) + 1))
+    return {number: counts[number] for number in range(1, seams + 1) if counts[number] != 2}
 
 
 def words_outside(path: Path, pages: int) -> list[str]:
@@ -215,7 +219,7 @@ def words_outside(path: Path, pages: int) -> list[str]:
 
 def renders(path: Path) -> bool:
     """Whether the usual programs draw the file; True where they are not installed."""
-    svg = ["rsvg-convert", "-o", "/dev/null", str(path)]
+    svg = ["rsvg-convert", "--width", "300", str(path)]
     pdf = ["pdftocairo", "-png", "-r", "20", "-singlefile", str(path), "-"]
     command = svg if path.suffix == ".svg" else pdf
     if shutil.which(command[0]) is None:

@@ -96,9 +96,9 @@ def test_pieces_do_not_touch(flattened: Any, export: Callable, preset: str, page
 def test_every_seam_is_written_twice(flattened: Any, export: Callable, preset: str) -> None:
     svg = files.read_svg(export(flattened, "svg", preset=preset, mm_per_unit=50.0))
     texts = svg["engrave" if preset == "Laser" else "numbers"].texts
-    numbers = [text for text in texts if not text.startswith("P")]
+    numbers = [text for text in texts if text[0].isdigit()]
     seams = flattened.apply_filter("get_pattern_measures", mm_per_unit=50.0)["seams_number"]
-    assert len(numbers) == 2 * seams and files.wrong_counts(numbers) == {}
+    assert seams > 5 and files.wrong_counts(numbers, seams) == {}
 
 
 def test_sew_lines_are_as_long_as_the_seams(flattened: Any, export: Callable) -> None:
@@ -140,7 +140,7 @@ def test_pages_of_a_pdf(flattened: Any, export: Callable) -> None:
         size = [float(v) / files.POINTS_PER_MM for v in page.mediabox[2:]]
         assert size == pytest.approx([210, 297], abs=0.01)
     first, last = reader.pages[0].extract_text(), reader.pages[-1].extract_text()
-    assert "P01" in first and "Seams" in first
+    assert "P01" in first and "seam numbers" in first
     assert "print at 100 %" in last
     count = int(last.split("page ")[1].split(" of ")[1].split()[0])
     texts = [page.extract_text() for page in reader.pages]

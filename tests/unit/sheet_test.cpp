@@ -1,0 +1,130 @@
+// Folds, numbers and places of pieces on their sheets.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "devseg/errors.h"
+#include "sheet/carry_folds.h"
+#include "sheet/nesting.h"
+#include "sheet/page_size.h"
+#include "sheet/seam_groups.h"
+#include "unit/checks.h"
+
+namespace devseg {
+namespace {
+
+// A square whose outline was moved by a linear map: mean value coordinates repeat it inside.
+TEST(CarryFolds, FollowLinearMovesOfTheOutline) {
+    const std::vector<Vec2> square = {Vec2(0, 0), Vec2(10, 0), Vec2(10, 10), Vec2(0, 10)};
+    Eigen::Matrix2d map;
+    map << 1.1, 0.05, -0.02, 0.9;
+    Pattern pattern;
+    pattern.pieces.emplace_back();
+    PatternPiece& piece = pattern.pieces[0];
+    CornerUv uv;
+    for (std::size_t i = 0; i < square.size(); ++i) {
+        uv.push_back(square[i]);
+        piece.outer.points.push_back(map * square[i] + Vec2(3, 4));
+        piece.outer.half_edge.push_back(static_cast<Index>(i));
+    }
+    const Vec2 from(2, 3);
+    const Vec2 to(10, 6); // on the outline
+    piece.folds = {{from, to, 1.0}, {Vec2(12, 2), Vec2(14, 3), 1.0}};
+    carry_folds(uv, pattern);
+    ASSERT_EQ(piece.folds.size(), 1u) << "the fold outside stays out";
+    EXPECT_LT((piece.folds[0].from - map * from - Vec2(3, 4)).norm(), 1e-12);
+    EXPECT_LT((piece.folds[0].to - map * to - Vec2(3, 4)).norm(), 1e-12);
+}
+
+// Two pieces of five edges each, sewn along four of them; the second runs against the seams.
+Pattern sewn(const std::vector<double>& lengths) {
+    Pattern pattern;
+    pattern.pieces.resize(2);
+    for (PatternPiece& piece : pattern.pieces)
+        piece.outer.points.resize(5, Vec2::Zero());
+    for (Index i = 0; i < 4; ++i) {
+        Seam seam;
+        seam.number = i + 1;
+        seam.label = std::to_string(i + 1);
+        seam.sides[0] = {0, 0, (i + 3) % 5, 1, false, lengths[at(i)], {}};
+        seam.sides[1] = {1, 0, (6 - i) % 5, 1, true, lengths[at(i)], {}};
+        pattern.seams.push_back(seam);
+    }
+    return pattern;
+}
+
+TEST(GroupSeams, ShortOnesInARowShareALabel) {
+    const std::vector<Seam> groups = group_seams(sewn({5, 8, 3, 4}), 20.0);
+    ASSERT_EQ(groups.size(), 1u);
+    EXPECT_EQ(groups[0].label, "1-4");
+    EXPECT_EQ(groups[0].sides[0].first, 3);
+    EXPECT_EQ(groups[0].sides[0].count, 4);
+    EXPECT_EQ(groups[0].sides[1].first, 3);
+    EXPECT_EQ(groups[0].sides[1].count, 4);
+    EXPECT_EQ(groups[0].sides[1].length, 20.0);
+}
+
+TEST(GroupSeams, LongOnesAndOthersStayAlone) {
+    const std::vector<Seam> groups = group_seams(sewn({50, 60, 5, 70}), 20.0);
+    ASSERT_EQ(groups.size(), 3u);
+    EXPECT_EQ(groups[0].label, "1");
+    EXPECT_EQ(groups[1].label, "2-3");
+    EXPECT_EQ(groups[2].label, "4");
+    Pattern apart = sewn({5, 5, 5, 5});
+    apart.seams[2].sides[1].piece = 0; // joins something else
+    EXPECT_EQ(group_seams(apart, 20.0).size(), 3u);
+}
+
+SheetPiece rectangle(double width, double height) {
+    SheetPiece piece;
+    piece.cut = {{Vec2(0, 0), Vec2(width, 0), Vec2(width, height), Vec2(0, height)}};
+    return piece;
+}
+
+TEST(Nesting, FillsSheetsWithoutOverlap) {
+    const SheetPiece large = rectangle(90, 55);
+    const SheetPiece small = rectangle(20, 40);
+    const SheetPiece huge = rectangle(300, 20);
+    const std::vector<const SheetPiece*> pieces = {&small, &large, &small, &huge, &large, &large};
+    Progress progress;
+    const Nesting nesting = nest_pieces(pieces, {100.0, 120.0, 2.0, false}, progress);
+    EXPECT_EQ(nesting.sheet[3], -1) << "longer than the sheet";
+    EXPECT_EQ(nesting.sheet_count, 2);
+    std::vector<Eigen::AlignedBox2d> boxes(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (nesting.sheet[i] < 0)
+            continue;
+        SheetPiece placed = *pieces[i];
+        placed.move(nesting.placements[i]);
+        boxes[i] = placed.box();
+        EXPECT_GE(boxes[i].min().minCoeff(), -1e-6);
+        EXPECT_LE(boxes[i].max().x(), 100.0 + 1e-6);
+        EXPECT_LE(boxes[i].max().y(), 120.0 + 1e-6);
+        for (std::size_t j = 0; j < i; ++j)
+            if (nesting.sheet[j] == nesting.sheet[i]) {
+                EXPECT_GE(boxes[i].exteriorDistance(boxes[j]), 2.0 - 1e-6) << i << ' ' << j;
+            }
+    }
+}
+
+TEST(PageSize, KnowsNamesAndSizes) {
+    ExportOptions options;
+    EXPECT_FALSE(page_format(options));
+    for (const auto& [name, size] :
+         {std::pair("A4", Vec2(210, 297)), std::pair("letter", Vec2(215.9, 279.4)),
+          std::pair("600x400.5", Vec2(600, 400.5))}) {
+        options.page = name;
+        EXPECT_EQ(page_format(options)->size, size);
+    }
+    for (const char* wrong : {"a5", "600", "x", "-10x20", "600x400mm", "nanx100", "1e9x1e9"}) {
+        options.page = wrong;
+        EXPECT_EQ(checks::error_of<InvalidParameter>([&] {
+                      page_format(options);
+                  }).rfind("page: expected ", 0),
+                  0u)
+            << wrong;
+    }
+}
+
+} // namespace
+} // namespace devseg
