@@ -140,7 +140,7 @@ def test_pattern_of_a_mesh_without_texture_coordinates_says_why(
     server: hosts.PrivateMeshLab, ply: Callable, tmp_path: Path
 ) -> None:
     done = server.serve("-i", ply(meshes.cube()), "-o", tmp_path / "out.svg")
-    assert "devseg: error: expected a mesh with texture coordinates" in done.stdout
+    assert "devseg: error: expected wedge texture coordinates, found none" in done.stdout
     assert "out.svg has NOT been saved" in done.stdout
     assert not (tmp_path / "out.svg").exists()
     # The server itself ends with 0 when saving fails: docs/hosts.md says so.
