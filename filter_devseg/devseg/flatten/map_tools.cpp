@@ -87,6 +87,14 @@ double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     return 0.5 * twice;
 }
 
+double face_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv, std::size_t f) {
+    const Eigen::Matrix2d j = jacobian(problem, uv, f);
+    // Of the inverse map: Γ² + γ² = |J|² / det², Γ γ = 1 / det.
+    const double det = j.determinant();
+    const double sum = j.squaredNorm() / (det * det);
+    return std::sqrt(0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 / (det * det)))));
+}
+
 double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double sum = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {

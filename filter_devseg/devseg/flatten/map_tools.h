@@ -27,6 +27,10 @@ Index count_flips(const FlatteningProblem& problem, const std::vector<Vec2>& uv)
 /// Area of the map: the sum of the signed areas of its faces.
 double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
+/// Γ, the larger singular value of the map from the plane to the surface on face f; not for faces
+/// without area in the plane.
+double face_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv, std::size_t f);
+
 /// Mean of (Γ² + γ²) / 2 over the area, square root taken, with Γ and γ the singular values of the
 /// map from the plane to the surface, as it is (not scaled); infinite where a face is flipped.
 double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv);

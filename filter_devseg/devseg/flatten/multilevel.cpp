@@ -22,16 +22,6 @@ constexpr double least_room = 1e-2;       // area of a new face over that of its
 
 constexpr double full_turn = 2.0 * 3.14159265358979323846;
 
-Mesh local_mesh(const Mesh& mesh, const ChartSurface& surface) {
-    Mesh local;
-    for (const Index v : surface.vertex)
-        local.points.push_back(mesh.points[at(v)]);
-    local.faces = surface.corners;
-    local.twin = surface.twin;
-    local.unit_length = mesh.unit_length;
-    return local;
-}
-
 class Refinement {
 public:
     Refinement(const Mesh& mesh, CoarseSurface coarse, std::vector<Vec2> uv)
@@ -231,7 +221,7 @@ std::vector<Vec2> flatten_multilevel(
     const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
     const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
     const Progress& progress) {
-    const Mesh local = local_mesh(mesh, surface);
+    const Mesh local = mesh_of(mesh, surface);
     CoarseSurface coarse = coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
     const CoarseMesh small = extract_coarse_mesh(local, coarse);
     std::vector<Index> all(small.mesh.faces.size());

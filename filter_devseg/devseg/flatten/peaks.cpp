@@ -20,18 +20,10 @@ constexpr int sweeps = 40;
 constexpr double steepness[] = {20.0, 10.0, 5.0};
 constexpr double allowed_cost = 0.25; // growth of the energy's excess over that of an isometry
 
-// The larger singular value of the map from the plane to the surface.
-double stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv, std::size_t f) {
-    const Eigen::Matrix2d j = jacobian(problem, uv, f);
-    const double det = j.determinant();
-    const double sum = j.squaredNorm() / (det * det);
-    return std::sqrt(0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 / (det * det)))));
-}
-
 double largest_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double largest = 1.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        largest = std::max(largest, stretch(problem, uv, f));
+        largest = std::max(largest, face_stretch(problem, uv, f));
     return largest;
 }
 
@@ -94,7 +86,7 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
                    bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress) {
     std::vector<double> stretches(problem.faces.size());
     for (std::size_t f = 0; f < stretches.size(); ++f)
-        stretches[f] = stretch(problem, uv, f);
+        stretches[f] = face_stretch(problem, uv, f);
     const double limit = std::max(harmless, above_usual * usual_stretch(problem, stretches));
     auto vertices = vertices_near(problem, twin, stretches, limit);
     if (hold_boundary)

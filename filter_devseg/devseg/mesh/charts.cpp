@@ -130,4 +130,15 @@ std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& chart
     return surfaces;
 }
 
+Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
+    Mesh part;
+    for (const Index v : surface.vertex)
+        part.points.push_back(mesh.points[at(v)]);
+    part.faces = surface.corners;
+    part.twin = surface.twin;
+    part.unit_length = mesh.unit_length;
+    compute_face_geometry(part);
+    return part;
+}
+
 } // namespace devseg

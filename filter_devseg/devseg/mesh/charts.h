@@ -58,4 +58,7 @@ ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
 /// The same for each chart, in order of their labels.
 std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts);
 
+/// The surface as a mesh of its own, cut open along its seams; faces and vertices keep their order.
+Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface);
+
 } // namespace devseg

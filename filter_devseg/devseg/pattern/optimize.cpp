@@ -76,18 +76,6 @@ double energy_of(const Mesh& mesh, const FlatChart& chart) {
     return distortion(problem, x);
 }
 
-// The surface as a mesh of its own, cut open along its seams.
-Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
-    Mesh part;
-    for (const Index v : surface.vertex)
-        part.points.push_back(mesh.points[at(v)]);
-    part.faces = surface.corners;
-    part.twin = surface.twin;
-    part.unit_length = mesh.unit_length;
-    compute_face_geometry(part);
-    return part;
-}
-
 // A map of the surface without flips and overlaps, if the method finds one without cuts.
 bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
                    const std::function<bool()>& go_on) {

@@ -12,24 +12,6 @@ namespace {
 
 constexpr double fragment_share = 0.05; // of the chart: smaller parts are not worth a chart
 
-// The faces as a mesh of their own, in the given order.
-Mesh submesh(const Mesh& mesh, const std::vector<Index>& faces) {
-    Mesh part;
-    std::vector<Index> number(mesh.faces.size(), -1);
-    std::vector<Index> vertex(mesh.points.size(), -1);
-    for (std::size_t i = 0; i < faces.size(); ++i)
-        number[at(faces[i])] = static_cast<Index>(i);
-    const ChartSurface surface = extract_surface(
-        mesh, faces, enclose(mesh, faces, std::vector<std::uint8_t>(mesh.twin.size(), 0)));
-    for (const Index v : surface.vertex)
-        part.points.push_back(mesh.points[at(v)]);
-    part.faces = surface.corners;
-    part.twin = surface.twin;
-    part.unit_length = mesh.unit_length;
-    compute_face_geometry(part);
-    return part;
-}
-
 Index count_labels(const std::vector<Index>& label) {
     return 1 + *std::max_element(label.begin(), label.end());
 }
@@ -41,7 +23,8 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
     const std::vector<Index> faces = draft.faces[at(chart)];
     if (faces.size() < 2)
         return false;
-    const Mesh part = submesh(mesh, faces);
+    const std::vector<std::uint8_t> no_cuts(mesh.twin.size(), 0);
+    const Mesh part = mesh_of(mesh, extract_surface(mesh, faces, enclose(mesh, faces, no_cuts)));
     DChartsOptions two = options;
     two.charts_number = 2;
     const DChartsResult grown = segment_dcharts(part, two, progress);

@@ -72,13 +72,10 @@ std::vector<double> measure_stretch(const FlatteningProblem& problem, const std:
     map.l2_squared = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
         const Eigen::Matrix2d j = jacobian(problem, uv, f);
-        // Singular values of the inverse map: Γ² + γ² = |J|² / det², Γ γ = 1 / det.
         const double det = j.determinant();
-        const double sum = j.squaredNorm() / (det * det);
-        const double product = 1.0 / det;
-        const double root = std::sqrt(std::max(0.0, sum * sum - 4.0 * product * product));
-        stretch[f] = std::sqrt(0.5 * (sum + root));
-        map.l2_squared += 0.5 * sum * problem.area[f] / problem.total_area;
+        stretch[f] = face_stretch(problem, uv, f);
+        map.l2_squared +=
+            0.5 * j.squaredNorm() / (det * det) * problem.area[f] / problem.total_area;
         map.linf = std::max(map.linf, stretch[f]);
     }
     return stretch;
