@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "devseg/cut/disks.h"
 #include "devseg/flatten/flatten.h"
@@ -36,7 +37,7 @@ ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
 } // namespace
 
 WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Progress& progress)
-    : full_(full) {
+    : full_(full), creased_(creased) {
     const Index wanted =
         std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
     if (full.face_count() <= worth_coarsening * wanted)
@@ -49,31 +50,49 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
                                       double max_fitting_error, bool straighten,
                                       Progress& progress) const {
     FullCharts result;
-    if (!coarse_) {
-        result.chart = draft.chart;
-        result.seam = draft.seam;
-        result.darts = static_cast<Index>(draft.tips.size());
-    } else {
+    result.seam = draft.seam;
+    result.darts = static_cast<Index>(draft.tips.size());
+    if (coarse_) {
         std::vector<Index> label(full_.faces.size(), -1);
         for (std::size_t f = 0; f < coarse_->face.size(); ++f)
             label[at(coarse_->face[f])] = draft.chart[f];
         result.chart = refine_labels(full_.points, *surface_, std::move(label));
-        if (straighten) {
-            const double ratio =
-                static_cast<double>(full_.face_count()) / coarse_->mesh.face_count();
-            const int rings = 2 + static_cast<int>(2.0 * std::sqrt(ratio));
-            straighten_borders(full_, proxies_of_charts(coarse_->mesh, draft, patch),
-                               max_fitting_error, rings, result.chart, progress);
-        }
+    } else {
+        result.chart = draft.chart;
+    }
+    if (straighten && (coarse_ || !creased_))
+        straighten_twice(draft, patch, max_fitting_error, result.chart, progress);
+    if (coarse_ || straighten) {
         result.chart = absorb_fragments(full_, result.chart, fragment_share);
         result.seam.assign(full_.twin.size(), 0);
-        std::vector<Index> tips;
-        for (const Index v : draft.tips)
-            tips.push_back(coarse_->vertex[at(v)]);
-        result.darts = cut_darts_to(full_, result.chart, tips, result.seam);
+        result.darts = cut_darts_to(full_, result.chart, tips_of(draft), result.seam);
     }
     result.chart = make_chart_map(full_, result.chart, result.seam, false).chart;
     return result;
+}
+
+// First among the faces that fit both charts; then in a narrow strip whatever they fit, so that the
+// borders lose their steps: it is too narrow to change the shape of a chart by much.
+void WorkingSurface::straighten_twice(const Draft& draft, const std::vector<Index>& patch,
+                                      double max_fitting_error, std::vector<Index>& chart,
+                                      Progress& progress) const {
+    const ChartProxies proxies = proxies_of_charts(mesh(), draft, patch);
+    const double ratio = static_cast<double>(full_.face_count()) / mesh().face_count();
+    const int edge = static_cast<int>(std::sqrt(ratio)); // of the coarse surface, in faces
+    if (coarse_)
+        straighten_borders(full_, proxies, max_fitting_error, 2 + 2 * edge, chart, progress);
+    if (!creased_)
+        straighten_borders(full_, proxies, std::numeric_limits<double>::infinity(), 2 + edge, chart,
+                           progress);
+}
+
+std::vector<Index> WorkingSurface::tips_of(const Draft& draft) const {
+    if (!coarse_)
+        return draft.tips;
+    std::vector<Index> tips;
+    for (const Index v : draft.tips)
+        tips.push_back(coarse_->vertex[at(v)]);
+    return tips;
 }
 
 Index WorkingSurface::cut_more_darts(const DartOptions& options, const std::vector<Index>& chart,

@@ -44,7 +44,13 @@ public:
     std::vector<double> fitting_errors(const std::vector<Index>& chart) const;
 
 private:
+    void straighten_twice(const Draft& draft, const std::vector<Index>& patch,
+                          double max_fitting_error, std::vector<Index>& chart,
+                          Progress& progress) const;
+    std::vector<Index> tips_of(const Draft& draft) const;
+
     const Mesh& full_;
+    bool creased_;
     std::unique_ptr<CoarseSurface> surface_;
     std::unique_ptr<CoarseMesh> coarse_;
 };
