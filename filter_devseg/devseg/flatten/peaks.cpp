@@ -13,12 +13,27 @@ namespace {
 
 constexpr double harmless = 1.005;    // stretch of a face that is no peak anyway
 constexpr double usual_share = 0.995; // of the area: what is stretched more may be a peak
-constexpr double above_usual = 1.01;  // stretch of a peak over that of the usual faces
-constexpr int rings = 3;              // of faces around peaks, whose vertices move
-constexpr int sweeps = 40;
-// s: at 20, faces with a stretch of 1.4 weigh e² times as much; lower ones cost less.
-constexpr double steepness[] = {20.0, 10.0, 5.0};
 constexpr double allowed_cost = 0.25; // growth of the energy's excess over that of an isometry
+
+// What counts as a peak, and how hard it is pressed.
+struct Relief {
+    double limit = 0.0;    // stretch of faces above which they are peaks
+    int rings = 3;         // of faces around peaks, whose vertices move
+    int sweeps = 40;       // over these vertices
+    double steepness = 20; // s at first: faces with a stretch of 1.4 weigh e² times as much
+};
+
+constexpr double above_usual = 1.01; // stretch of a peak over that of the usual faces
+
+// Charts that are isometric but for single spots: there is room for the stretch around them, the
+// energy must be steeper for peaks to count at all, and solving takes longer.
+constexpr double low_peak = 1.1;
+constexpr double share_of_usual = 0.8; // excess of a peak over that of the usual faces
+constexpr double peak_exponent = 15.0; // s (ψ − 1) at the highest peak
+constexpr int wide_rings = 8;
+constexpr int many_sweeps = 100;
+constexpr double most_moves = 4e5; // of vertices: less than that in all sweeps
+constexpr int least_sweeps = 10;
 
 double largest_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double largest = 1.0;
@@ -43,21 +58,32 @@ double usual_stretch(const FlatteningProblem& problem, const std::vector<double>
     return stretches[order.back()];
 }
 
+Relief choose_relief(double peak, double usual) {
+    Relief relief;
+    if (peak > low_peak) {
+        relief.limit = std::max(harmless, above_usual * usual);
+        return relief;
+    }
+    const double density = 0.25 * (peak * peak + 1.0 / (peak * peak)) + 0.5; // ψ of a strip
+    return {1.0 + share_of_usual * (usual - 1.0), wide_rings, many_sweeps,
+            peak_exponent / (density - 1.0)};
+}
+
 // Vertices of the faces above the limit and of some rings around them, each with a half-edge that
 // leaves it.
 std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& problem,
                                                    const std::vector<Index>& twin,
                                                    const std::vector<double>& stretches,
-                                                   double limit) {
+                                                   const Relief& relief) {
     std::vector<std::uint8_t> seen(problem.faces.size(), 0);
     std::vector<Index> ring;
     for (std::size_t f = 0; f < stretches.size(); ++f)
-        if (stretches[f] > limit) {
+        if (stretches[f] > relief.limit) {
             seen[f] = 1;
             ring.push_back(static_cast<Index>(f));
         }
     std::vector<Index> region = ring;
-    for (int depth = 0; depth < rings; ++depth) {
+    for (int depth = 0; depth < relief.rings; ++depth) {
         std::vector<Index> next;
         for (const Index f : ring)
             for (Index h = 3 * f; h < 3 * f + 3; ++h)
@@ -87,8 +113,11 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
     std::vector<double> stretches(problem.faces.size());
     for (std::size_t f = 0; f < stretches.size(); ++f)
         stretches[f] = face_stretch(problem, uv, f);
-    const double limit = std::max(harmless, above_usual * usual_stretch(problem, stretches));
-    auto vertices = vertices_near(problem, twin, stretches, limit);
+    const double peak = *std::max_element(stretches.begin(), stretches.end());
+    if (peak <= harmless)
+        return;
+    Relief relief = choose_relief(peak, usual_stretch(problem, stretches));
+    auto vertices = vertices_near(problem, twin, stretches, relief);
     if (hold_boundary)
         vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
                                       [&](const auto& entry) {
@@ -97,12 +126,16 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
                        vertices.end());
     if (vertices.empty())
         return;
+    relief.sweeps =
+        std::min(relief.sweeps,
+                 std::max(least_sweeps,
+                          static_cast<int>(most_moves / static_cast<double>(vertices.size()))));
     const double before = symmetric_dirichlet_energy(problem, uv) - 1.0;
     VertexStar star;
-    for (const double s : steepness) {
+    for (const double softer : {1.0, 0.5, 0.25}) {
         std::vector<Vec2> moved = uv;
-        star.steepness = s;
-        for (int i = 0; i < sweeps; ++i) {
+        star.steepness = softer * relief.steepness;
+        for (int i = 0; i < relief.sweeps; ++i) {
             progress.check();
             for (const auto& [v, leaving] : vertices) {
                 gather_star({problem.faces, twin, problem.area, problem.cotangent}, moved, leaving,
@@ -111,7 +144,7 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
             }
         }
         if (symmetric_dirichlet_energy(problem, moved) - 1.0 <= (1.0 + allowed_cost) * before &&
-            largest_stretch(problem, moved) < largest_stretch(problem, uv)) {
+            largest_stretch(problem, moved) < peak) {
             uv = std::move(moved);
             return;
         }
