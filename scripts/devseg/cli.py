@@ -99,8 +99,16 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     """The options of `devseg run` beside its inputs and its folder."""
     parser.add_argument("--method", choices=METHODS, default="dcharts", help="default: dcharts")
     parser.add_argument(
-        "--charts", type=_integer(1), metavar="N", help="number of charts to start from"
+        "--charts",
+        type=_charts,
+        metavar="N",
+        help="number of charts to start from, or auto: the fewest within the bounds (dcharts)",
     )
+    for name, help_text in (
+        ("--max-l2-stretch", "of all charts together; implies --charts auto (dcharts)"),
+        ("--max-linf-stretch", "at the worst spot; implies --charts auto (dcharts)"),
+    ):
+        parser.add_argument(name, type=_stretch, metavar="S", help=help_text)
     parser.add_argument(
         "--max-fitting-error", type=_positive, metavar="E", help="how far from developable"
     )
@@ -145,14 +153,25 @@ def _integer(least: int) -> Callable[[str], int]:
     return integer
 
 
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (value > 0 and math.isfinite(value)):
-        raise argparse.ArgumentTypeError(f"expected a number above 0, found '{text}'")
-    return value
+def _charts(text: str) -> int:
+    return 0 if text == "auto" else _integer(1)(text)
+
+
+def _above(least: float) -> Callable[[str], float]:
+    def number(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (value > least and math.isfinite(value)):
+            raise argparse.ArgumentTypeError(f"expected a number above {least:g}, found '{text}'")
+        return value
+
+    return number
+
+
+_positive = _above(0)
+_stretch = _above(1)
 
 
 def _formats(text: str) -> tuple[str, ...]:
@@ -186,6 +205,12 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         if name not in method.options:
             parser.error(f"--{name.replace('_', '-')} does not apply to --method {method.name}")
         segmentation[method.options[name]] = value
+    if args.max_l2_stretch or args.max_linf_stretch:
+        if args.charts:
+            parser.error("bounds on the stretch find the number of charts: give --charts auto")
+        segmentation["charts_number"] = 0
+    elif args.charts == 0 and "max_l2_stretch" not in method.options:
+        parser.error(f"--charts auto does not apply to --method {method.name}")
     _check_names(args, parser)
     pattern = pattern_parameters(args)
     options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, pattern)

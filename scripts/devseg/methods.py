@@ -31,7 +31,13 @@ METHODS = {
         Method(
             "dcharts",
             "compute_segmentation_dcharts_per_face",
-            {"charts": "charts_number", "max_fitting_error": "max_fitting_error", **_COMMON},
+            {
+                "charts": "charts_number",
+                "max_l2_stretch": "max_l2_stretch",
+                "max_linf_stretch": "max_linf_stretch",
+                "max_fitting_error": "max_fitting_error",
+                **_COMMON,
+            },
         ),
         Method(
             "t-flooding",
@@ -61,4 +67,11 @@ FLATTENINGS = {
 }
 
 # The options of the command line that a method may take.
-METHOD_OPTIONS = ("charts", "max_fitting_error", "seed", "max_iterations")
+METHOD_OPTIONS = (
+    "charts",
+    "max_l2_stretch",
+    "max_linf_stretch",
+    "max_fitting_error",
+    "seed",
+    "max_iterations",
+)

@@ -51,6 +51,7 @@ class Session:
         self.path = path
         self.meshes = meshes
         self.parameters: dict[str, dict[str, Any]] = {}
+        self.warnings: list[str] = []
 
     def apply(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter and returns its results.
@@ -111,7 +112,7 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
             **measures,
             "parameters": {**session.parameters, "pattern": dict(options.pattern)},
             "versions": versions(),
-            "warnings": warnings,
+            "warnings": warnings + session.warnings,
             "seconds": progress.seconds,
             "outputs": outputs,
         }
@@ -122,7 +123,12 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
 def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Segments, flattens and packs the mesh; returns the measures."""
     with progress.stage("segment"):
-        session.apply(options.method.filter, **_segmentation(session, options))
+        found = session.apply(options.method.filter, **_segmentation(session, options))
+    if not found.get("bounds_kept", True):
+        session.warnings.append(
+            "no number of charts that was tried keeps the bounds on the stretch; "
+            "these charts come nearest"
+        )
     with progress.stage("flatten"):
         session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
     with progress.stage("measure"):

@@ -28,6 +28,10 @@ USAGE = [
     ["run", "a.obj", "-o", "out", "--charts", "-3"],
     ["run", "a.obj", "-o", "out", "--charts", "two"],
     ["run", "a.obj", "-o", "out", "--charts", "99999999999"],
+    ["run", "a.obj", "-o", "out", "--charts", "auto", "--method", "vsa"],
+    ["run", "a.obj", "-o", "out", "--charts", "4", "--max-l2-stretch", "1.01"],
+    ["run", "a.obj", "-o", "out", "--max-l2-stretch", "1"],
+    ["run", "a.obj", "-o", "out", "--max-linf-stretch", "1.2", "--method", "mcgim"],
     ["run", "a.obj", "-o", "out", "--max-fitting-error", "0"],
     ["run", "a.obj", "-o", "out", "--max-fitting-error", "nan"],
     ["run", "a.obj", "-o", "out", "--height-mm", "-1"],
@@ -154,6 +158,29 @@ def test_result_is_the_same_every_time(obj: Callable, tmp_path: Path) -> None:
 def run_devseg(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "devseg", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_bounds_on_the_stretch_find_the_number_of_charts(obj: Callable, tmp_path: Path) -> None:
+    path = obj(meshes.sphere())
+    stretches = []
+    numbers = []
+    for bound in (1.05, 1.0005):
+        done = run_devseg("run", path, "-o", tmp_path, "--json", "--max-l2-stretch", bound)
+        assert (done.returncode, done.stderr) == (0, "")
+        result = json.loads(done.stdout)
+        filter_name = "compute_segmentation_dcharts_per_face"
+        assert result["parameters"][filter_name]["charts_number"] == 0
+        stretches.append(result["parametrization"]["l2_stretch"])
+        numbers.append(result["parametrization"]["charts_number"])
+        assert 1 < stretches[-1] <= bound
+    assert numbers[0] < numbers[1]
+
+
+def test_a_bound_that_cannot_be_kept_is_reported(obj: Callable, tmp_path: Path) -> None:
+    path = obj(meshes.sphere())
+    done = run_devseg("run", path, "-o", tmp_path, "--max-linf-stretch", 1.000001)
+    assert done.returncode == 0
+    assert "keeps the bounds on the stretch" in done.stderr
 
 
 def test_json_is_all_there_is_on_stdout(obj: Callable, tmp_path: Path) -> None:
