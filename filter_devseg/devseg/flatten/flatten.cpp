@@ -1,31 +1,12 @@
-// References
-//   [Wang 2008] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
-//   Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
-//   doi:10.1109/TVCG.2007.1067
 #include "devseg/flatten/flatten.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
-#include <optional>
 #include <utility>
 
 #include "devseg/cut/disks.h"
-#include "devseg/errors.h"
-#include "devseg/flatten/abf.h"
-#include "devseg/flatten/arap.h"
-#include "devseg/flatten/lpfb.h"
-#include "devseg/flatten/lscm.h"
-#include "devseg/flatten/map_tools.h"
-#include "devseg/flatten/multilevel.h"
-#include "devseg/flatten/overlaps.h"
-#include "devseg/flatten/peaks.h"
-#include "devseg/flatten/push_apart.h"
-#include "devseg/flatten/slits.h"
-#include "devseg/flatten/symmetric_dirichlet.h"
-#include "devseg/flatten/tutte.h"
+#include "devseg/flatten/one_chart.h"
+#include "devseg/flatten/slivers.h"
 #include "devseg/metrics/overlap.h"
 #include "devseg/parallel.h"
 
@@ -33,243 +14,10 @@ namespace devseg {
 
 namespace {
 
-// Least distance of the two sides of a cut, as a share of the root of the model's area: far above
-// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
-// person or a cutter sees (0.015 mm on a sheet of 300 mm).
-constexpr double slit_gap = 5e-5;
-
-// A face that keeps less of its area has collapsed.
-constexpr double collapsed = 1e-5;
-
-// Coarse-to-fine maps of larger charts are taken as they are: their energy is within 1e-4 of the
-// minimum, and one factorization of the whole chart would cost more than all levels together.
-constexpr Index most_polished_faces = 120000;
-// Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
-constexpr double coarse_gap = 4e-3;
-
-constexpr double lpfb_area_change = 0.1;
-constexpr double lpfb_stretch = 2.0;
-// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
-constexpr double harmonic_is_enough = 1.02;
-
-using Pairs = std::vector<std::pair<Index, Index>>;
-
-// The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; ABF++;
-// Tutte, which rounding can flip on long closed tubes.
-std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& progress) {
-    const std::function<std::vector<Vec2>()> starts[] = {
-        [&] { return flatten_lscm(problem); },
-        [&] { return flatten_lpfb(problem, LpfbOptions{}, progress).uv; },
-        [&] { return flatten_abf(problem, AbfOptions{}, progress).uv; },
-        [&] { return flatten_tutte(problem); },
-    };
-    for (const auto& start : starts) {
-        try {
-            std::vector<Vec2> uv = start();
-            if (count_flips(problem, uv) == 0)
-                return uv;
-        } catch (const NumericalFailure&) { // the next one may have a solution
-        }
-    }
-    throw NumericalFailure("expected a map without flipped faces, found none for a chart of " +
-                           std::to_string(problem.faces.size()) + " faces");
-}
-
-std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
-                                  const FlatteningProblem& problem, bool& refined,
-                                  const Progress& progress) {
-    refined = false;
-    if (surface.face_count() < multilevel_threshold)
-        return valid_start(problem, progress);
-    // Parts that lie on each other are pushed apart where that is cheap.
-    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface& disk) {
-        std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
-                                                            SymmetricDirichletOptions{}, progress)
-                                   .uv;
-        const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
-        const Pairs pairs = overlapping_pairs(disk, uv, tolerance);
-        if (!pairs.empty() && surface.face_count() > most_polished_faces)
-            if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance, progress, coarse_gap))
-                uv = std::move(*apart);
-        return uv;
-    };
-    try {
-        std::vector<Vec2> uv = flatten_multilevel(mesh, surface, problem, solve, progress);
-        refined = count_flips(problem, uv) == 0;
-        if (refined)
-            return uv;
-    } catch (const NumericalFailure&) { // needles can leave no room for a vertex
-    }
-    return valid_start(problem, progress);
-}
-
-void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
-                               const Progress& progress) {
-    bool refined = false;
-    chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
-    if (!refined || chart.surface.face_count() <= most_polished_faces) {
-        SymmetricDirichletResult result =
-            minimise_symmetric_dirichlet(problem, chart.uv, SymmetricDirichletOptions{}, progress);
-        chart.uv = std::move(result.uv);
-        chart.converged = result.converged;
-    }
-    relieve_peaks(problem, chart.surface.twin, false, chart.uv, progress);
-    scale_to_area(problem, chart.uv);
-}
-
-// The LPFB map, with inner vertices moved towards an isometry where the harmonic ones leave
-// much to gain; infinite energy where it has flips.
-std::pair<double, std::vector<Vec2>> polish_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
-                                                 const Progress& progress) {
-    if (lpfb.flips > 0)
-        return {std::numeric_limits<double>::infinity(), {}};
-    double energy = symmetric_dirichlet_energy(problem, lpfb.uv);
-    if (energy > harmonic_is_enough) {
-        SymmetricDirichletOptions options;
-        options.fixed.assign(lpfb.uv.size(), 0);
-        for (const Index v : problem.boundary)
-            options.fixed[at(v)] = 1;
-        SymmetricDirichletResult result =
-            minimise_symmetric_dirichlet(problem, lpfb.uv, options, progress);
-        energy = result.energy;
-        lpfb.uv = std::move(result.uv);
-    }
-    return {energy, std::move(lpfb.uv)};
-}
-
-// [Wang 2008, section 5] takes a flattening that changes the area by at most 10 % and whose L2
-// stretch is at most 2.
-bool is_acceptable(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    return std::abs(map_area(problem, uv) / problem.total_area - 1.0) <= lpfb_area_change &&
-           l2_stretch(problem, uv) <= lpfb_stretch;
-}
-
-// Keeps the lengths of boundary edges. Where the angles on the surface give no acceptable map, or
-// one that lies on itself, those of the nearest isometric map are tried.
-bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
-                FlatChart& chart, const Progress& progress) {
-    auto own = polish_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
-    if (std::isfinite(own.first) && is_acceptable(problem, own.second) &&
-        overlapping_pairs(chart.surface, own.second, tolerance).empty()) {
-        chart.uv = std::move(own.second);
-        return true;
-    }
-    apply_symmetric_dirichlet(mesh, problem, chart, progress);
-    open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    const std::vector<double> angles = boundary_angles(problem, chart.uv);
-    auto near =
-        polish_lpfb(problem, flatten_lpfb(problem, angles, LpfbOptions{}, progress), progress);
-    auto& better = near.first <= own.first ? near : own;
-    if (!std::isfinite(better.first))
-        return false;
-    chart.uv = std::move(better.second);
-    return true;
-}
-
-// The method's own map; false where it has flips or cannot be found.
-bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMethod method,
-                  double tolerance, FlatChart& chart, const Progress& progress) {
-    try {
-        switch (method) {
-        case FlattenMethod::symmetric_dirichlet:
-            apply_symmetric_dirichlet(mesh, problem, chart, progress);
-            return true;
-        case FlattenMethod::lscm:
-            chart.uv = flatten_lscm(problem);
-            break;
-        case FlattenMethod::abf: {
-            AbfResult result = flatten_abf(problem, AbfOptions{}, progress);
-            chart.uv = std::move(result.uv);
-            chart.converged = result.converged;
-            break;
-        }
-        case FlattenMethod::arap: {
-            ArapResult result =
-                minimise_arap(problem, valid_start(problem, progress), ArapOptions{}, progress);
-            chart.uv = std::move(result.uv);
-            chart.converged = result.converged;
-            scale_to_area(problem, chart.uv);
-            break;
-        }
-        case FlattenMethod::lpfb:
-            return apply_lpfb(mesh, problem, tolerance, chart, progress);
-        }
-    } catch (const NumericalFailure&) {
-        if (method == FlattenMethod::symmetric_dirichlet)
-            throw; // there is nothing else to try
-        return false;
-    }
-    // Conformal maps of strongly curved charts can shrink faces until 32-bit coordinates flip them.
-    return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
-}
-
-std::vector<Index> on_mesh(const ChartSurface& surface, std::vector<Index> half_edges) {
-    for (Index& h : half_edges)
-        h = surface.mesh_half_edge(h);
-    return half_edges;
-}
-
-// The mesh half-edges of a short cut between the first face and the one that is most faces away.
-std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
-    std::vector<std::uint8_t> seen(surface.face.size(), 0);
-    std::vector<Index> reached{0};
-    seen[0] = 1;
-    for (std::size_t i = 0; i < reached.size(); ++i)
-        for (Index h = 3 * reached[i]; h < 3 * reached[i] + 3; ++h) {
-            const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && seen[at(twin / 3)] == 0) {
-                seen[at(twin / 3)] = 1;
-                reached.push_back(twin / 3);
-            }
-        }
-    // A third of the faces on each side takes part, so that the cut is near the middle.
-    Pairs pairs{{reached.front(), reached.back()}};
-    for (std::size_t i = 0; i < reached.size() / 3; ++i)
-        pairs.emplace_back(reached[i], reached[reached.size() - 1 - i]);
-    return on_mesh(surface, separating_path(mesh, surface, pairs));
-}
-
-// Returns the mesh half-edges to cut where parts of the chart could not be kept apart.
-std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
-                               FlatChart& chart, const Progress& progress) {
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    try {
-        if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
-            chart.mended = true;
-            apply_symmetric_dirichlet(mesh, problem, chart, progress);
-        }
-    } catch (const NumericalFailure&) {
-        if (chart.surface.face_count() < 2)
-            throw;
-        return halve(mesh, chart.surface); // the halves are easier
-    }
-    open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
-    const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
-    if (pairs.empty())
-        return {};
-    // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
-    // would not be theirs any more.
-    const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
-                          chart.surface.face_count() <= most_polished_faces;
-    if (auto apart = may_push
-                         ? push_apart(problem, chart.surface, chart.uv, pairs, tolerance, progress)
-                         : std::nullopt) {
-        chart.uv = std::move(*apart);
-        relieve_peaks(problem, chart.surface.twin, true, chart.uv, progress);
-        open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-        chart.pushed = true;
-        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
-        return {};
-    }
-    return on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
-}
-
 // Flattens the charts with the given numbers; returns the half-edges to cut, per chart.
 std::vector<std::vector<Index>> flatten_some(const Mesh& mesh, FlattenMethod method,
-                                             std::vector<std::size_t> which,
+                                             double tolerance, std::vector<std::size_t> which,
                                              std::vector<FlatChart>& flat, Progress& progress) {
-    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
     // The largest first, so that no core is left with a large chart at the end.
     std::stable_sort(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
         return flat[a].surface.face.size() > flat[b].surface.face.size();
@@ -309,6 +57,7 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vect
             open.push_back(flat.size());
             flat.emplace_back();
             flat.back().surface = std::move(surface);
+            flat.back().cut_off = true;
         }
     }
     result.flat = std::move(flat);
@@ -328,9 +77,11 @@ FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMe
         result.flat.back().surface = std::move(surface);
     }
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
+    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
     while (!open.empty())
-        open = cut_apart(mesh, flatten_some(mesh, method, open, result.flat, progress), result,
-                         progress);
+        open = cut_apart(mesh, flatten_some(mesh, method, tolerance, open, result.flat, progress),
+                         result, progress);
+    hand_over_slivers(mesh, method, tolerance, result, progress);
     return result;
 }
 

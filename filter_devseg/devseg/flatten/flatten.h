@@ -18,19 +18,21 @@ struct FlatChart {
     std::vector<Vec2> uv; // #v, internal units of the mesh
     bool mended = false;  // the chosen method flipped faces: the injective one was used instead
     bool pushed = false;  // parts lay on top of each other and were pushed apart
+    bool cut_off = false; // a part of a given chart that lay on top of another part
     bool converged = true;
     double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
 };
 
 struct FlattenResult {
-    ChartMap charts; // the given charts, cut further where a part lay on top of another
+    ChartMap charts; // the given charts, cut where a part lay on top of another
     std::vector<FlatChart> flat;
     int cuts = 0; // that were needed
 };
 
 /// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
 /// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
-/// else cut apart along a short path. The result does not depend on the number of threads. Throws
+/// else cut apart along a short path; what is then too small to be a chart goes to a neighbour
+/// whose map has room for it. The result does not depend on the number of threads. Throws
 /// NumericalFailure, naming the chart's size, where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
                              Progress& progress);

@@ -1,0 +1,16 @@
+// One chart in the plane.
+#pragma once
+
+#include <vector>
+
+#include "devseg/flatten/flatten.h"
+
+namespace devseg {
+
+/// Flattens chart.surface, a disk, and fills in the rest of `chart`. Returns the half-edges of the
+/// mesh to cut where parts lie on each other, by more than `tolerance`, and could not be pushed
+/// apart; nothing where the map is one-to-one.
+std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
+                               FlatChart& chart, const Progress& progress);
+
+} // namespace devseg
