@@ -10,6 +10,7 @@
 #include "devseg/flatten/flatten.h"
 #include "devseg/metrics/segmentation.h"
 #include "devseg/parallel.h"
+#include "devseg/refine/carry_over.h"
 #include "devseg/refine/darts.h"
 #include "devseg/refine/merging.h"
 #include "devseg/refine/splitting.h"
@@ -118,6 +119,23 @@ TEST(DevelopableCharts, StraighteningShortensBorders) {
     EXPECT_LT(straight, 0.9 * seams());
 }
 
+// The narrow strip on a large surface, whose borders come from a coarse one.
+TEST(DevelopableCharts, BordersLoseTheStepsOfTheCoarseSurface) {
+    const Mesh mesh = checks::gated(shapes::with_noise(shapes::sphere(6), 0.002, 5));
+    Progress progress;
+    const WorkingSurface working(mesh, false, 6, progress);
+    ASSERT_LT(working.mesh().face_count(), mesh.face_count() / 4);
+    const DChartsResult grown = segment_dcharts(working.mesh(), charts(6), progress);
+    const Draft draft = make_untried_draft(working.mesh(), grown.chart);
+    const auto seams = [&](Straightening straightening) {
+        const FullCharts full =
+            working.carry_over(draft, grown.chart, 0.02, straightening, progress);
+        return seam_length(mesh, make_chart_map(mesh, full.chart, {}, false));
+    };
+    EXPECT_LT(seams(Straightening::fitting), seams(Straightening::none));
+    EXPECT_LT(seams(Straightening::smooth), 0.98 * seams(Straightening::fitting));
+}
+
 TEST(DevelopableCharts, DartsLowerTheWorstSpot) {
     const Mesh mesh = checks::gated(shapes::finger(48, 40, 0.5, 3.0));
     Progress progress;
@@ -174,6 +192,26 @@ TEST(DevelopableCharts, AutomaticNumberKeepsTheBoundOnTheFinalMap) {
         const Index count = 1 + *std::max_element(r.chart.begin(), r.chart.end());
         EXPECT_GE(count, before); // a stricter bound never needs fewer charts here
         before = count;
+    }
+}
+
+TEST(DevelopableCharts, TheWorstSpotKeepsItsBound) {
+    const Mesh mesh = checks::gated(noisy_torus());
+    for (const double bound : {1.3, 1.15}) {
+        DevelopableChartsOptions options = charts(0);
+        options.max_l2_stretch = 1.05;
+        options.max_linf_stretch = bound;
+        const DevelopableCharts r = design(mesh, options);
+        ASSERT_TRUE(r.bounds_kept);
+        expect_partition(mesh, r);
+        double worst = 1.0;
+        for (const FlatChart& flat : flatten(mesh, r).flat) {
+            const FlatteningProblem problem = make_flattening_problem(mesh, flat.surface);
+            for (std::size_t f = 0; f < problem.faces.size(); ++f)
+                worst = std::max(worst, 1.0 / checks::stretches(problem, flat.uv, f)[1]);
+        }
+        EXPECT_LE(worst, bound);
+        EXPECT_NEAR(worst, r.linf_stretch, 1e-6);
     }
 }
 

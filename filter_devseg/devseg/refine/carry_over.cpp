@@ -6,6 +6,7 @@
 
 #include "devseg/cut/disks.h"
 #include "devseg/flatten/flatten.h"
+#include "devseg/refine/splitting.h"
 #include "devseg/segment/borders.h"
 #include "devseg/segment/fragments.h"
 
@@ -16,7 +17,8 @@ namespace {
 constexpr Index coarse_faces = 6000;          // enough to decide where borders run
 constexpr Index creased_coarse_faces = 24000; // where they must run along creases
 constexpr Index faces_per_chart = 150;        // of the coarse surface, at least
-constexpr double worth_coarsening = 2.0;      // faces over those of the coarse surface
+constexpr int most_split_rounds = 24;
+constexpr double worth_coarsening = 2.0; // faces over those of the coarse surface
 
 // What faces fit in each chart: the proxies of all patches that it was joined from.
 ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
@@ -47,7 +49,7 @@ WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Pro
 }
 
 FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Index>& patch,
-                                      double max_fitting_error, bool straighten,
+                                      double max_fitting_error, Straightening straightening,
                                       Progress& progress) const {
     FullCharts result;
     result.seam = draft.seam;
@@ -60,9 +62,8 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
     } else {
         result.chart = draft.chart;
     }
-    if (straighten && (coarse_ || !creased_))
-        straighten_twice(draft, patch, max_fitting_error, result.chart, progress);
-    if (coarse_ || straighten) {
+    straighten(draft, patch, max_fitting_error, straightening, result.chart, progress);
+    if (coarse_ || straightening != Straightening::none) {
         result.chart = absorb_fragments(full_, result.chart, fragment_share);
         result.seam.assign(full_.twin.size(), 0);
         result.darts = cut_darts_to(full_, result.chart, tips_of(draft), result.seam);
@@ -71,18 +72,22 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
     return result;
 }
 
-// First among the faces that fit both charts; then in a narrow strip whatever they fit, so that the
-// borders lose their steps: it is too narrow to change the shape of a chart by much.
-void WorkingSurface::straighten_twice(const Draft& draft, const std::vector<Index>& patch,
-                                      double max_fitting_error, std::vector<Index>& chart,
-                                      Progress& progress) const {
+// A strip of about one edge of the coarse surface is too narrow to change the shape of a chart by
+// much.
+void WorkingSurface::straighten(const Draft& draft, const std::vector<Index>& patch,
+                                double max_fitting_error, Straightening straightening,
+                                std::vector<Index>& chart, Progress& progress) const {
+    const bool fitting = straightening != Straightening::none && coarse_;
+    const bool smooth = straightening == Straightening::smooth && !creased_;
+    if (!fitting && !smooth)
+        return;
     const ChartProxies proxies = proxies_of_charts(mesh(), draft, patch);
     const double ratio = static_cast<double>(full_.face_count()) / mesh().face_count();
     const int edge = static_cast<int>(std::sqrt(ratio)); // of the coarse surface, in faces
-    if (coarse_)
+    if (fitting)
         straighten_borders(full_, proxies, max_fitting_error, 2 + 2 * edge, chart, progress);
-    if (!creased_)
-        straighten_borders(full_, proxies, std::numeric_limits<double>::infinity(), 2 + edge, chart,
+    if (smooth)
+        straighten_borders(full_, proxies, std::numeric_limits<double>::infinity(), 1 + edge, chart,
                            progress);
 }
 
@@ -103,22 +108,48 @@ Index WorkingSurface::cut_more_darts(const DartOptions& options, const std::vect
     return count;
 }
 
-StretchBounds WorkingSurface::measure(const std::vector<Index>& chart,
-                                      const std::vector<std::uint8_t>& seam,
-                                      Progress& progress) const {
+FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
+                                     const std::vector<std::uint8_t>& seam,
+                                     Progress& progress) const {
     progress.begin_phase("measuring the final map", 0.2);
     const ChartMap charts =
         cut_charts_to_disks(full_, make_chart_map(full_, chart, seam, false), progress).charts;
-    StretchBounds reached{1.0, 1.0};
+    FinalStretch reached;
+    reached.all = {1.0, 1.0};
+    reached.linf.assign(at(1 + *std::max_element(chart.begin(), chart.end())), 1.0);
     double excess = 0.0;
     for (const FlatChart& flat :
          flatten_charts(full_, charts, FlattenMethod::symmetric_dirichlet, progress).flat) {
         TrialMap map;
         measure_stretch(make_flattening_problem(full_, flat.surface), flat.uv, map);
         excess += map.excess();
-        reached.linf = std::max(reached.linf, map.linf);
+        reached.all.linf = std::max(reached.all.linf, map.linf);
+        double& linf = reached.linf[at(chart[at(flat.surface.face.front())])];
+        linf = std::max(linf, map.linf);
     }
-    reached.l2 = std::sqrt(1.0 + std::max(0.0, excess) / full_.total_area);
+    reached.all.l2 = std::sqrt(1.0 + std::max(0.0, excess) / full_.total_area);
+    return reached;
+}
+
+FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& options,
+                                         std::vector<Index>& chart, std::vector<std::uint8_t>& seam,
+                                         Progress& progress) const {
+    FinalStretch reached = measure(chart, seam, progress);
+    // Every round makes charts smaller; these many take a whole surface apart into faces.
+    for (int round = 0; round < most_split_rounds && reached.all.linf > linf; ++round) {
+        Draft draft = make_untried_draft(full_, chart);
+        draft.seam = seam;
+        bool changed = false;
+        for (std::size_t c = 0; c < reached.linf.size(); ++c)
+            if (reached.linf[c] > linf)
+                changed |=
+                    split_chart(full_, options, linf, static_cast<Index>(c), draft, progress);
+        if (!changed)
+            break;
+        seam = draft.seam;
+        chart = make_chart_map(full_, draft.chart, seam, false).chart;
+        reached = measure(chart, seam, progress);
+    }
     return reached;
 }
 

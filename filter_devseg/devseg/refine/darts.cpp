@@ -107,7 +107,9 @@ private:
         const double gain =
             (map_.excess() - dart.map.excess()) / mesh_.total_area / (dart.length / root);
         const double above = map_.linf - options_.chart.linf;
-        const double lower = map_.linf - dart.map.linf;
+        // Of several spots above the bound, a dart takes one.
+        const double lower =
+            map_.peaks_above(options_.chart.linf) - dart.map.peaks_above(options_.chart.linf);
         if (above > 0.0 && lower > worst_spot_gain * above)
             return std::max(gain, 0.0) + options_.worth * lower / above;
         return gain >= options_.worth ? gain : 0.0;

@@ -36,9 +36,10 @@ constexpr int automatic_seeds = 10; // where the number of charts is to be found
 constexpr int most_splits = 200;
 constexpr double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
 constexpr int most_attempts = 5;
-constexpr double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
-constexpr double chart_excess = 4.0; // of one chart over that of the whole
-constexpr double loose_linf = 8.0;   // worst spots count little where they have no bound
+constexpr int most_linf_attempts = 2; // then charts are split until the worst spot is within it
+constexpr double first_share = 0.9;   // of the allowed stretch that the coarse surface may use
+constexpr double chart_excess = 4.0;  // of one chart over that of the whole
+constexpr double loose_linf = 8.0;    // worst spots count little where they have no bound
 
 // Stretch that joined charts may have, from η: at η = 0.01, L2 1.005 and L∞ 1.4.
 StretchBounds bounds_from(double merge_threshold) {
@@ -119,13 +120,13 @@ private:
 
     DevelopableCharts run_with_estimate() {
         if (!options_.merge_charts && !options_.add_darts)
-            return finish(make_untried_draft(working_.mesh(), patch_));
+            return finish(make_untried_draft(working_.mesh(), patch_), Straightening::smooth);
         Aim aim;
         aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
         progress_.begin_phase("trying charts", 0.05);
         Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
         improve(aim, draft);
-        return finish(draft);
+        return finish(draft, Straightening::smooth);
     }
 
     void improve(const Aim& aim, Draft& draft) {
@@ -174,7 +175,8 @@ private:
         const Draft start =
             make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, progress_);
         DevelopableCharts best;
-        for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        const int attempts = has_linf ? most_linf_attempts : most_attempts;
+        for (int attempt = 0; attempt < attempts; ++attempt) {
             Aim aim;
             aim.chart = {std::sqrt(1.0 + chart_excess * allowed), linf};
             aim.max_excess = share * allowed * working_.mesh().total_area;
@@ -182,34 +184,65 @@ private:
             Draft draft = start;
             split_worst(aim, draft);
             improve(aim, draft);
-            DevelopableCharts found = finish(draft);
-            StretchBounds reached = working_.measure(found.chart, found.seam, progress_);
-            if (has_linf && options_.add_darts && reached.linf > options_.max_linf_stretch) {
-                DartOptions darts;
-                darts.chart = {aim.chart.l2, options_.max_linf_stretch};
-                found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
-                reached = working_.measure(found.chart, found.seam, progress_);
+            StretchBounds reached;
+            for (const auto straightening : {Straightening::smooth, Straightening::fitting}) {
+                DevelopableCharts found = finish_within_bounds(aim, draft, straightening);
+                reached = {found.l2_stretch, found.linf_stretch};
+                if (best.chart.empty() || distance(found) < distance(best))
+                    best = std::move(found);
+                if (best.bounds_kept)
+                    return best;
             }
-            found.l2_stretch = reached.l2;
-            found.linf_stretch = reached.linf;
-            found.bounds_kept = reached.l2 <= options_.max_l2_stretch &&
-                                (!has_linf || reached.linf <= options_.max_linf_stretch);
-            if (attempt == 0 || found.l2_stretch < best.l2_stretch || found.bounds_kept)
-                best = std::move(found);
-            if (best.bounds_kept)
-                return best;
             share *= std::min(0.9, allowed / (reached.l2 * reached.l2 - 1.0));
             if (has_linf)
                 linf = 1.0 + (linf - 1.0) * std::min(0.9, (options_.max_linf_stretch - 1.0) /
                                                               (reached.linf - 1.0));
         }
+        if (has_linf && best.l2_stretch <= options_.max_l2_stretch) {
+            const FinalStretch reached = working_.split_above(options_.max_linf_stretch, growing_,
+                                                              best.chart, best.seam, progress_);
+            note_stretch(reached.all, best);
+            best.fitting_error = working_.fitting_errors(best.chart);
+        }
         return best;
     }
 
-    DevelopableCharts finish(const Draft& draft) {
+    // From isometry, in bounds: at most 1 where they are kept.
+    double distance(const DevelopableCharts& charts) const {
+        const auto excess = [](double stretch) { return stretch * stretch - 1.0; };
+        const double l2 = excess(charts.l2_stretch) / excess(options_.max_l2_stretch);
+        return options_.max_linf_stretch == 0.0
+                   ? l2
+                   : std::max(l2, excess(charts.linf_stretch) / excess(options_.max_linf_stretch));
+    }
+
+    // With more darts where the worst spot needs them, and measured.
+    DevelopableCharts finish_within_bounds(const Aim& aim, const Draft& draft,
+                                           Straightening straightening) {
+        DevelopableCharts found = finish(draft, straightening);
+        note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+        if (options_.max_linf_stretch > 0.0 && options_.add_darts && !found.bounds_kept &&
+            found.l2_stretch <= options_.max_l2_stretch) {
+            DartOptions darts;
+            darts.chart = {aim.chart.l2, options_.max_linf_stretch};
+            found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
+            note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+        }
+        return found;
+    }
+
+    void note_stretch(const StretchBounds& reached, DevelopableCharts& charts) const {
+        charts.l2_stretch = reached.l2;
+        charts.linf_stretch = reached.linf;
+        charts.bounds_kept = distance(charts) <= 1.0;
+    }
+
+    DevelopableCharts finish(const Draft& draft, Straightening straightening) {
         progress_.begin_phase("finishing borders", 0.1);
+        if (!options_.straighten_boundaries)
+            straightening = Straightening::none;
         FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
-                                              options_.straighten_boundaries, progress_);
+                                              straightening, progress_);
         DevelopableCharts result = result_;
         result.chart = std::move(full.chart);
         result.seam = std::move(full.seam);

@@ -65,6 +65,13 @@ std::vector<Index> local_maxima(const ChartSurface& surface, const std::vector<d
 
 } // namespace
 
+double TrialMap::peaks_above(double bound) const {
+    double sum = 0.0;
+    for (const double peak : peaks)
+        sum += std::max(0.0, peak - bound);
+    return sum;
+}
+
 std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
                                     TrialMap& map) {
     std::vector<double> stretch(problem.faces.size());
@@ -122,8 +129,10 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
         }
     const std::vector<double> stretch = measure_stretch(problem, uv, map);
     map.worst_faces = local_maxima(surface, stretch);
-    for (Index& f : map.worst_faces)
+    for (Index& f : map.worst_faces) {
+        map.peaks.push_back(stretch[at(f)]);
         f = surface.face[at(f)];
+    }
     return map;
 }
 

@@ -19,9 +19,12 @@ struct TrialMap {
     double linf = 1.0;       // max Γ
     double cut_length = 0.0; // of the cuts that made it a disk, internal units
     std::vector<Index> worst_faces; // of the mesh: local maxima of the stretch, the worst first
+    std::vector<double> peaks;      // Γ there
 
     /// Σ A (l2² − 1): what the charts of a segmentation add up to.
     double excess() const { return area * (l2_squared - 1.0); }
+    /// Σ (Γ − bound) over the peaks above the bound.
+    double peaks_above(double bound) const;
 };
 
 struct TrialEffort {
