@@ -241,6 +241,8 @@ private:
         progress_.begin_phase("finishing borders", 0.1);
         if (!options_.straighten_boundaries)
             straightening = Straightening::none;
+        else if (!options_.merge_charts) // the bound is F_max then, and not a stretch
+            straightening = Straightening::fitting;
         FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
                                               straightening, progress_);
         DevelopableCharts result = result_;
