@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devseg/errors.h"
+#include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
 #include "devseg/pattern/label_point.h"
 #include "devseg/pattern/layout.h"

@@ -19,7 +19,7 @@ struct PatternOptions {
     // A vertex of an outline is left out where that moves neither side of the seam by more; pieces
     // smaller than 100 mm have less, in proportion to their size. 0 keeps all vertices.
     double simplify_mm = 0.1;
-    double corner_angle = 35.0;     // degrees: an outline that turns by more has a corner
+    double corner_angle = 40.0;     // degrees: an outline that turns by more has a corner
     double curve_mm = 0.1;          // largest distance of the curves from the outline
     bool match_seams = true;        // make both sides of each seam equally long
     double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none

@@ -21,15 +21,6 @@ constexpr double full_size = 100.0;
 // gains, within this share of their size.
 constexpr double cut_share = 0.05;
 
-// Bends that are smaller than half an edge of the mesh are its staircase, those smaller than this
-// share of the outline's size belong to no corner.
-constexpr double staircase = 0.5;
-constexpr double no_corner = 0.01;
-// A corner turns by this share of its angle within so many of these sizes on both sides of it; a
-// curve turns by less.
-constexpr double corner_share = 0.6;
-constexpr double corner_reach = 2.0;
-
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
     const Vec2 along = b - a;
     const double length = along.squaredNorm();
@@ -116,80 +107,10 @@ private:
     std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
 };
 
-std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
-                                         const Chain& chain) {
-    std::vector<std::vector<Vec2>> sides(at(chain.side_count));
-    for (std::size_t s = 0; s < sides.size(); ++s)
-        for (Index k = 0; k <= chain.count(); ++k)
-            sides[s].push_back(side_point(pieces, chain.sides[s], k));
-    return sides;
-}
-
-// Size of the smaller outline that the chain lies on, mm.
-double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
-    double area = std::numeric_limits<double>::infinity();
-    for (std::size_t s = 0; s < at(chain.side_count); ++s) {
-        const SeamSide& side = chain.sides[s];
-        area = std::min(area, std::abs(pieces[at(side.piece)].path(side.path).area));
-    }
-    return std::sqrt(area);
-}
-
 double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
     const Vec2 p = b - a;
     const Vec2 q = c - b;
     return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
-}
-
-// The point `reach` along the polyline from point i, or its end; backwards for step −1. Closed ones
-// go on behind their end.
-Vec2 walk(const std::vector<Vec2>& points, std::size_t i, double reach, int step) {
-    const Index last = static_cast<Index>(points.size()) - 1;
-    const bool closed = points.front() == points.back();
-    Index k = static_cast<Index>(i);
-    Vec2 here = points[i];
-    for (Index steps = 0; steps < last; ++steps) {
-        Index next = k + step;
-        if (next < 0 || next > last) {
-            if (!closed)
-                break;
-            next = next < 0 ? last - 1 : 1;
-        }
-        const double length = (points[at(next)] - here).norm();
-        if (length >= reach)
-            return here + reach / length * (points[at(next)] - here);
-        reach -= length;
-        here = points[at(next)];
-        k = next;
-    }
-    return here;
-}
-
-// Points of the chain where a side has a corner, its ends not among them (0 on closed chains).
-std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Chain& chain,
-                              double corner_angle) {
-    const std::vector<std::vector<Vec2>> sides = points_of(pieces, chain);
-    double length = 0.0;
-    for (std::size_t k = 1; k < sides.front().size(); ++k)
-        length += (sides.front()[k] - sides.front()[k - 1]).norm();
-    const double tolerance = std::max(staircase * length / static_cast<double>(chain.count()),
-                                      no_corner * size_of(pieces, chain));
-    const std::vector<Index> coarse = collapse_vertices(sides, tolerance);
-    const double reach = corner_reach * tolerance;
-    std::vector<Index> corners;
-    const std::size_t last = coarse.size() - 1;
-    for (std::size_t i = chain.is_closed ? 0 : 1; i < last; ++i)
-        for (const std::vector<Vec2>& points : sides) {
-            const std::size_t k = at(coarse[i]);
-            if (turn(points[at(coarse[i > 0 ? i - 1 : last - 1])], points[k],
-                     points[at(coarse[i + 1])]) > corner_angle &&
-                turn(walk(points, k, reach, -1), points[k], walk(points, k, reach, 1)) >
-                    corner_share * corner_angle) {
-                corners.push_back(coarse[i]);
-                break;
-            }
-        }
-    return corners;
 }
 
 // Edges of all outlines of a piece, from the left to the right.
@@ -218,32 +139,28 @@ std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
 
 } // namespace
 
+std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
+                                         const Chain& chain) {
+    std::vector<std::vector<Vec2>> sides(at(chain.side_count));
+    for (std::size_t s = 0; s < sides.size(); ++s)
+        for (Index k = 0; k <= chain.count(); ++k)
+            sides[s].push_back(side_point(pieces, chain.sides[s], k));
+    return sides;
+}
+
+// Size of the smaller outline that the chain lies on, mm.
+double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
+    double area = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+        const SeamSide& side = chain.sides[s];
+        area = std::min(area, std::abs(pieces[at(side.piece)].path(side.path).area));
+    }
+    return std::sqrt(area);
+}
+
 std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides,
                                      double tolerance) {
     return Collapse(sides, tolerance).run();
-}
-
-std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
-                                  const std::vector<Chain>& chains, double corner_angle) {
-    std::vector<Chain> result;
-    for (const Chain& chain : chains) {
-        std::vector<Index> ends;
-        if (!chain.is_cut)
-            ends = corners_of(pieces, chain, corner_angle);
-        if (ends.empty()) {
-            result.push_back(chain);
-            continue;
-        }
-        if (chain.is_closed) {
-            ends.push_back(ends.front() + chain.count());
-        } else {
-            ends.insert(ends.begin(), 0);
-            ends.push_back(chain.count());
-        }
-        for (std::size_t i = 1; i < ends.size(); ++i)
-            result.push_back(part_of(pieces, chain, ends[i - 1], ends[i]));
-    }
-    return result;
 }
 
 void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,

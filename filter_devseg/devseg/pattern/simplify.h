@@ -1,4 +1,4 @@
-// Simple outlines: corners are found, and vertices between them left out on both sides at once.
+// Simple outlines: vertices between the ends of chains are left out on both sides at once.
 //
 // References
 //   [JKS05] D. Julius, V. Kraevoy, A. Sheffer: D-Charts: Quasi-Developable Mesh Segmentation.
@@ -18,10 +18,13 @@ namespace devseg {
 /// cost of neighbours that went before. A closed polyline (first point = last point) keeps three.
 std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides, double tolerance);
 
-/// The chains, cut at their corners: where the outline on either side, without bends smaller than
-/// the mesh's edges can show, turns by more than `corner_angle` (radians).
-std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
-                                  const std::vector<Chain>& chains, double corner_angle);
+/// The points of a chain, from its start: one polyline for each of its sides. Closed chains repeat
+/// their first point.
+std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
+                                         const Chain& chain);
+
+/// The square root of the area of the smaller outline that the chain lies on, mm.
+double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain);
 
 /// Marks the ends of chains at which an outline turns by more than `corner_angle` (radians).
 void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
