@@ -82,7 +82,7 @@ void write_lines(DxfText& file, const char* layer, const std::vector<std::vector
 }
 
 void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
-                 const std::vector<Seam>& numbered, const ExportOptions& options) {
+                 const ExportOptions& options) {
     const PatternPiece& source = pattern.pieces[at(piece.piece)];
     file.group(0, "BLOCK");
     file.group(8, "1");
@@ -101,7 +101,7 @@ void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
     if (piece.grain_line[0] != piece.grain_line[1])
         file.line("7", piece.grain_line[0], piece.grain_line[1]);
     std::vector<std::string> seams;
-    for (const Seam& seam : numbered)
+    for (const Seam& seam : pattern.seams)
         for (const int side : {0, 1})
             if (seam.sides[at(side)].piece == piece.piece)
                 seams.push_back("SEAM: " + seam.label + " TO " +
@@ -129,7 +129,7 @@ std::string apparel_dxf_bytes(const Pattern& pattern, const PatternLayout& layou
     file.begin_section("BLOCKS");
     for (SheetPiece piece : layout.pieces) {
         piece.move(shifts[at(piece.sheet)]);
-        write_block(file, pattern, piece, layout.numbered, options);
+        write_block(file, pattern, piece, options);
     }
     file.end_section();
     file.begin_section("ENTITIES");

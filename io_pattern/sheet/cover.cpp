@@ -48,10 +48,10 @@ std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
     return text;
 }
 
-// The numbers of the seams to each neighbour: "P02: 1-4, 9; P03: 5".
-std::string seam_list(const Pattern& pattern, const std::vector<Seam>& numbered, Index piece) {
+// The numbers of the seams to each neighbour: "P02: 1, 9; P03: 5".
+std::string seam_list(const Pattern& pattern, Index piece) {
     std::vector<std::pair<std::string, std::string>> numbers_to;
-    for (const Seam& seam : numbered) {
+    for (const Seam& seam : pattern.seams) {
         const Index a = seam.sides[0].piece;
         const Index b = seam.sides[1].piece;
         if (a != piece && b != piece)
@@ -82,9 +82,30 @@ std::vector<Row> table_rows(const Pattern& pattern, const PatternLayout& layout,
         const Vec2 size = drawn.box().sizes();
         rows.push_back({{piece.name, number_text(size.x(), 0) + " x " + number_text(size.y(), 0),
                          page_list(static_cast<Index>(i), pages), cut_text(piece, pattern)},
-                        seam_list(pattern, layout.numbered, drawn.piece)});
+                        seam_list(pattern, drawn.piece)});
     }
     return rows;
+}
+
+// What the pieces themselves do not say, for lack of room.
+std::vector<std::string> missing_texts(const Pattern& pattern, const LeftOut& left_out) {
+    std::vector<std::string> lines;
+    std::string seams;
+    for (const Index s : left_out.seams) {
+        const Seam& seam = pattern.seams[at(s)];
+        seams += (seams.empty() ? "" : "; ") + seam.label + " (" +
+                 pattern.pieces[at(seam.sides[0].piece)].name + " - " +
+                 pattern.pieces[at(seam.sides[1].piece)].name + ", " +
+                 number_text(seam.sides[0].length, 1) + " mm)";
+    }
+    if (!seams.empty())
+        lines.push_back("Too short for their numbers on the pieces: seams " + seams);
+    std::string pieces;
+    for (const Index p : left_out.pieces)
+        pieces += (pieces.empty() ? "" : ", ") + pattern.pieces[at(p)].name;
+    if (!pieces.empty())
+        lines.push_back("Too small for their names: " + pieces);
+    return lines;
 }
 
 std::vector<std::string> wrapped(const std::string& text, double width) {
@@ -203,6 +224,13 @@ std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
                    number_text(pattern.mm_per_unit, 4) + " mm. Print at 100 %, without scaling.");
     add_pictures(mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
+    for (const std::string& text : missing_texts(pattern, layout.left_out)) {
+        book.advance(0.5 * line_pitch);
+        for (const std::string& line : wrapped(text, book.width())) {
+            book.advance(line_pitch);
+            book.write(0.0, text_size, line);
+        }
+    }
     return book.take();
 }
 

@@ -5,7 +5,6 @@
 
 #include "devseg/errors.h"
 #include "sheet/nesting.h"
-#include "sheet/seam_groups.h"
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
 
@@ -179,10 +178,22 @@ void note_tabs(const GlueTabs& tabs, PatternLayout& layout) {
                                "side");
 }
 
-} // namespace
+void note_left_out(const Pattern& pattern, PatternLayout& layout) {
+    const LeftOut& left_out = layout.left_out;
+    if (!left_out.seams.empty())
+        layout.notes.push_back(
+            std::to_string(left_out.seams.size()) + " of " + std::to_string(pattern.seams.size()) +
+            " seams are too short for a number that can be read: the table of a PDF names them");
+    if (!left_out.pieces.empty())
+        layout.notes.push_back(std::to_string(left_out.pieces.size()) + " of " +
+                               std::to_string(pattern.pieces.size()) +
+                               " pieces are too small for a name that can be read: the table of a "
+                               "PDF names them");
+}
 
-PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& options,
-                              Progress& progress) {
+// All pieces in their places, without texts.
+PatternLayout place_pieces(const Pattern& pattern, const ExportOptions& options,
+                           Progress& progress) {
     PatternLayout layout;
     layout.page = page_format(options);
     GlueTabs tabs;
@@ -191,12 +202,11 @@ PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& optio
     if (options.glue_tabs)
         tabs = make_tabs(pattern, options.tab_depth_mm, progress);
     note_tabs(tabs, layout);
-    layout.numbered = group_seams(pattern, least_numbered_seam);
     progress.begin_phase("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
-            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], layout.numbered, options));
+            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
         if (options.mirror)
             layout.pieces.back().mirror();
     }
@@ -214,6 +224,16 @@ PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& optio
     // Whole millimetres keep y exact when writers turn the sheet over.
     const Vec2 size(std::ceil(box.sizes().x()), std::ceil(box.sizes().y()));
     layout.sheets.push_back({size + Vec2::Constant(2.0 * sheet_margin), 1, 1});
+    return layout;
+}
+
+} // namespace
+
+PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& options,
+                              Progress& progress) {
+    PatternLayout layout = place_pieces(pattern, options, progress);
+    layout.left_out = add_texts(pattern, options, layout.pieces);
+    note_left_out(pattern, layout);
     return layout;
 }
 

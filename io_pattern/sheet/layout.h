@@ -7,6 +7,7 @@
 #include "devseg/progress.h"
 #include "sheet/page_size.h"
 #include "sheet/sheet_piece.h"
+#include "sheet/texts.h"
 
 namespace devseg {
 
@@ -20,7 +21,7 @@ struct PatternSheet {
 struct PatternLayout {
     std::vector<SheetPiece> pieces; // in the order of the pattern, on their sheets
     std::vector<PatternSheet> sheets;
-    std::vector<Seam> numbered; // the seams whose numbers are written
+    LeftOut left_out; // texts for which there was no room
     std::optional<PageFormat> page;
     std::vector<std::string> notes; // for the user, one sentence each
 };

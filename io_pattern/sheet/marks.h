@@ -1,12 +1,23 @@
-// What is written and drawn into a piece: its name, seam numbers, notches and the grain line.
+// What is drawn into a piece beside its outlines: notches and the grain line.
 #pragma once
 
 #include "sheet/sheet_piece.h"
 
 namespace devseg {
 
-/// Adds the marks that the options want; the cut and sew lines must be there.
-void add_marks(const Pattern& pattern, const std::vector<Seam>& numbered,
-               const ExportOptions& options, SheetPiece& piece);
+/// A place on an outline.
+struct OutlinePlace {
+    Vec2 position = Vec2::Zero();
+    Vec2 direction = Vec2::UnitX(); // along the outline, the piece on its left
+};
+
+/// The place at this distance from the seam's start on one side of it.
+OutlinePlace place_on(const PiecePath& path, const SeamSide& side, double distance);
+
+/// Adds the notches of the piece, where the pattern has it; the cut and sew lines must be there.
+void add_notches(const Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
+
+/// Adds the arrow along the threads, where it is long enough to be of use.
+void add_grain(const PatternPiece& piece, SheetPiece& result);
 
 } // namespace devseg

@@ -171,6 +171,7 @@ Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
         add_lines(piece.valleys, false, piece.name + "-valley", valley);
         add_lines(piece.grain, false, piece.name + "-grain", grain);
         add_notches(piece, notch);
+        add_lines(piece.leaders, false, piece.name + "-leader", laser ? engrave : numbers);
         for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
                                            std::pair(&piece.numbers, laser ? &engrave : &numbers)})
             layer->texts.insert(layer->texts.end(), texts->begin(), texts->end());

@@ -1,15 +1,12 @@
 #include "sheet/sheet_piece.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sheet/marks.h"
 
 namespace devseg {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // The sides of a cut that lie on each other up to this are one line: a knife would follow both.
 constexpr double one_line = 0.1; // mm
@@ -90,8 +87,8 @@ void add_folds(const PatternPiece& piece, SheetPiece& result) {
 
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
-    for (auto* lines :
-         {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys, &piece.grain})
+    for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
+                        &piece.grain, &piece.leaders})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
@@ -106,11 +103,6 @@ void change_points(SheetPiece& piece, Change change) {
             text.position = change(text.position);
 }
 
-double upright(double angle) {
-    const double turned = std::remainder(angle, 2.0 * pi);
-    return turned > 0.5 * pi ? turned - pi : turned <= -0.5 * pi ? turned + pi : turned;
-}
-
 } // namespace
 
 Eigen::AlignedBox2d SheetPiece::box() const {
@@ -123,16 +115,11 @@ Eigen::AlignedBox2d SheetPiece::box() const {
 
 void SheetPiece::move(const Placement& placement) {
     change_points(*this, placement);
-    const double angle = std::atan2(placement.sine, placement.cosine);
-    for (DrawingText& number : numbers)
-        number.angle = upright(number.angle + angle);
-    // Lines of one name stay one below the other.
-    const Vec2 middle = names.empty() ? Vec2::Zero() : names[names.size() / 2].position;
-    for (DrawingText& line : names) {
-        const Vec2 offset = line.position - middle;
-        line.position = middle + Vec2(placement.cosine * offset.x() + placement.sine * offset.y(),
-                                      placement.cosine * offset.y() - placement.sine * offset.x());
-    }
+    Placement& all = frame.placement;
+    all.offset = placement(all.offset);
+    const double cosine = placement.cosine * all.cosine - placement.sine * all.sine;
+    all.sine = placement.sine * all.cosine + placement.cosine * all.sine;
+    all.cosine = cosine;
 }
 
 void SheetPiece::mirror() {
@@ -140,12 +127,11 @@ void SheetPiece::mirror() {
     for (auto* rings : {&cut, &sew})
         for (std::vector<Vec2>& ring : *rings)
             std::reverse(ring.begin(), ring.end());
-    for (DrawingText& number : numbers)
-        number.angle = upright(-number.angle);
+    frame.mirrored = true;
 }
 
 SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<GlueTab>& tabs,
-                         const std::vector<Seam>& numbered, const ExportOptions& options) {
+                         const ExportOptions& options) {
     const PatternPiece& piece = pattern.pieces[at(index)];
     SheetPiece result;
     result.piece = index;
@@ -163,7 +149,9 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
     }
     if (options.fold_lines)
         add_folds(piece, result);
-    add_marks(pattern, numbered, options, result);
+    add_notches(pattern, options, result);
+    if (options.grain_line)
+        add_grain(piece, result);
     return result;
 }
 

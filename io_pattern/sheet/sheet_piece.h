@@ -19,6 +19,15 @@ struct SheetNotch {
     Vec2 inner = Vec2::Zero(); // towards the inside
 };
 
+/// From the pattern's pieces to where they are drawn.
+struct SheetFrame {
+    bool mirrored = false; // at the axis x = 0, first of all
+    Placement placement;
+
+    Vec2 operator()(const Vec2& p) const { return placement(mirrored ? Vec2(-p.x(), p.y()) : p); }
+    Vec2 direction(const Vec2& v) const { return (*this)(v) - (*this)(Vec2::Zero()); }
+};
+
 struct SheetPiece {
     Index piece = -1; // position in Pattern::pieces
     std::string name;
@@ -30,21 +39,22 @@ struct SheetPiece {
     std::vector<SheetNotch> notches;
     std::vector<std::vector<Vec2>> grain; // the arrow's lines
     std::vector<DrawingText> names;
-    std::vector<DrawingText> numbers; // of seams
+    std::vector<DrawingText> numbers;       // of seams
+    std::vector<std::vector<Vec2>> leaders; // lines from seams to numbers that lie apart
     std::array<Vec2, 2> grain_line{Vec2::Zero(), Vec2::Zero()};
     Index sheet = 0; // on which it lies
+    SheetFrame frame;
 
     bool has_allowance() const { return !sew.empty(); }
     Eigen::AlignedBox2d box() const;
-    /// Moves everything; texts stay upright.
+    /// Moves everything. Texts do not turn: they are added in the piece's place (marks.h).
     void move(const Placement& placement);
-    /// Turns everything over at the axis x = 0; texts stay readable.
+    /// Turns everything over at the axis x = 0, before any move.
     void mirror();
 };
 
-/// The piece as the options want it, where the pattern has it. `tabs` may be empty; `numbered` are
-/// the seams whose numbers are written (seam_groups.h).
+/// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.
 SheetPiece compose_piece(const Pattern& pattern, Index piece, const std::vector<GlueTab>& tabs,
-                         const std::vector<Seam>& numbered, const ExportOptions& options);
+                         const ExportOptions& options);
 
 } // namespace devseg

@@ -7,7 +7,6 @@
 #include "sheet/carry_folds.h"
 #include "sheet/nesting.h"
 #include "sheet/page_size.h"
-#include "sheet/seam_groups.h"
 #include "unit/checks.h"
 
 namespace devseg {
@@ -34,45 +33,6 @@ TEST(CarryFolds, FollowLinearMovesOfTheOutline) {
     ASSERT_EQ(piece.folds.size(), 1u) << "the fold outside stays out";
     EXPECT_LT((piece.folds[0].from - map * from - Vec2(3, 4)).norm(), 1e-12);
     EXPECT_LT((piece.folds[0].to - map * to - Vec2(3, 4)).norm(), 1e-12);
-}
-
-// Two pieces of five edges each, sewn along four of them; the second runs against the seams.
-Pattern sewn(const std::vector<double>& lengths) {
-    Pattern pattern;
-    pattern.pieces.resize(2);
-    for (PatternPiece& piece : pattern.pieces)
-        piece.outer.points.resize(5, Vec2::Zero());
-    for (Index i = 0; i < 4; ++i) {
-        Seam seam;
-        seam.number = i + 1;
-        seam.label = std::to_string(i + 1);
-        seam.sides[0] = {0, 0, (i + 3) % 5, 1, false, lengths[at(i)], {}};
-        seam.sides[1] = {1, 0, (6 - i) % 5, 1, true, lengths[at(i)], {}};
-        pattern.seams.push_back(seam);
-    }
-    return pattern;
-}
-
-TEST(GroupSeams, ShortOnesInARowShareALabel) {
-    const std::vector<Seam> groups = group_seams(sewn({5, 8, 3, 4}), 20.0);
-    ASSERT_EQ(groups.size(), 1u);
-    EXPECT_EQ(groups[0].label, "1-4");
-    EXPECT_EQ(groups[0].sides[0].first, 3);
-    EXPECT_EQ(groups[0].sides[0].count, 4);
-    EXPECT_EQ(groups[0].sides[1].first, 3);
-    EXPECT_EQ(groups[0].sides[1].count, 4);
-    EXPECT_EQ(groups[0].sides[1].length, 20.0);
-}
-
-TEST(GroupSeams, LongOnesAndOthersStayAlone) {
-    const std::vector<Seam> groups = group_seams(sewn({50, 60, 5, 70}), 20.0);
-    ASSERT_EQ(groups.size(), 3u);
-    EXPECT_EQ(groups[0].label, "1");
-    EXPECT_EQ(groups[1].label, "2-3");
-    EXPECT_EQ(groups[2].label, "4");
-    Pattern apart = sewn({5, 5, 5, 5});
-    apart.seams[2].sides[1].piece = 0; // joins something else
-    EXPECT_EQ(group_seams(apart, 20.0).size(), 3u);
 }
 
 SheetPiece rectangle(double width, double height) {
