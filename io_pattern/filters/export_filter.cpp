@@ -35,6 +35,12 @@ Declare<O> with_scale(Declare<O> filter) {
                 "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
         .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
               "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
+        .choice(&O::curves, "curves", "Curves", {"Polylines", "Beziers"},
+                "How outlines are written. Polylines: by their points; Beziers: as smooth cubic "
+                "curves of the same lengths (splines in DXF for cutters, fine polylines in DXF for "
+                "apparel CAD).")
+        .real(&O::curve_mm, "curve_mm", "Tolerance of curves (mm)", 1e-3, 1e3,
+              "Largest distance of the Bezier curves from the outlines in millimetres.")
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
               "moves it by less than this, in millimetres. 0 keeps all vertices.");
@@ -42,9 +48,13 @@ Declare<O> with_scale(Declare<O> filter) {
 
 Declare<O> with_seams(Declare<O> filter) {
     return filter
-        .real(&O::seam_allowance_mm, "seam_allowance_mm", "Seam allowance (mm)", 0.0, 1e4,
-              "Width of the allowance around each piece in millimetres. 0 = none (7 mm with the "
-              "preset Sewing).")
+        .real(
+            &O::seam_allowance_mm, "seam_allowance_mm", "Seam allowance (mm)", 0.0, 1e4,
+            "Width of the allowance along the seams of each piece in millimetres. 0 = none (7 mm with the "
+            "preset Sewing).")
+        .real(&O::hem_allowance_mm, "hem_allowance_mm", "Hem allowance (mm)", -1.0, 1e4,
+              "Width of the allowance along open borders of the model in millimetres. 0 = none, "
+              "-1 = as along seams.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "

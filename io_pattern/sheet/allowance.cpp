@@ -35,47 +35,73 @@ Vec2 outward(const Vec2& from, const Vec2& to) {
     return Vec2(d.y(), -d.x()) / d.norm();
 }
 
-Ring distinct(const Ring& points) {
-    Ring ring;
-    for (const Vec2& p : points)
-        if (ring.empty() || p != ring.back())
-            ring.push_back(p);
-    while (ring.size() > 1 && ring.back() == ring.front())
+// A point of an outline, and the width along the edge that starts there.
+struct WidePoint {
+    Vec2 point;
+    double width;
+};
+
+std::vector<WidePoint> distinct(const PiecePath& path, const AllowanceWidths& widths) {
+    std::vector<WidePoint> ring;
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+        const bool is_hem = i < path.edges.size() && path.edges[i].seam < 0;
+        const WidePoint next{path.points[i], is_hem ? widths.hems : widths.seams};
+        if (!ring.empty() && next.point == ring.back().point)
+            ring.back() = next;
+        else
+            ring.push_back(next);
+    }
+    while (ring.size() > 1 && ring.back().point == ring.front().point)
         ring.pop_back();
     return ring;
 }
 
-void add_convex_corner(const Vec2& p, const Vec2& n, const Vec2& m, double width, CornerStyle style,
-                       Ring& curve) {
+// Between the sides with the normals n and m and their widths.
+void add_convex_corner(const Vec2& p, const Vec2& n, double in, const Vec2& m, double out,
+                       CornerStyle style, Ring& curve) {
     const double cosine = n.dot(m);
-    const bool pointed = cosine >= smooth_cosine || style == CornerStyle::miter;
-    if (pointed && 2.0 / (1.0 + cosine) <= miter_limit * miter_limit) {
-        curve.push_back(p + width * (n + m) / (1.0 + cosine));
+    const double sine = n.x() * m.y() - n.y() * m.x();
+    const bool smooth = cosine >= smooth_cosine;
+    if (in == out && (smooth || style == CornerStyle::miter) &&
+        2.0 / (1.0 + cosine) <= miter_limit * miter_limit) {
+        curve.push_back(p + in * (n + m) / (1.0 + cosine));
         return;
     }
-    curve.push_back(p + width * n);
-    if (style == CornerStyle::round) {
+    if (in != out && !smooth && style == CornerStyle::miter) {
+        const Vec2 tip = Vec2(in * m.y() - out * n.y(), out * n.x() - in * m.x()) / sine;
+        if (tip.norm() <= miter_limit * std::max(in, out)) {
+            curve.push_back(p + tip);
+            return;
+        }
+    }
+    curve.push_back(p + in * n);
+    if (style == CornerStyle::round && !(smooth && in != out)) {
+        const double width = std::max(in, out);
         const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
         const double step = 2.0 * std::acos(1.0 - std::min(0.5, round_tolerance / width));
         const int count = static_cast<int>(std::ceil(angle / step));
-        for (int i = 1; i < count; ++i)
-            curve.push_back(p + width * (Eigen::Rotation2Dd(angle * i / count) * n));
+        for (int i = 1; i < count; ++i) {
+            const double share = static_cast<double>(i) / count;
+            curve.push_back(p +
+                            (in + share * (out - in)) * (Eigen::Rotation2Dd(angle * share) * n));
+        }
     }
-    curve.push_back(p + width * m);
+    curve.push_back(p + out * m);
 }
 
 // Runs beside the ring; at concave corners it turns back to the corner, so that what lies beyond
 // both sides is wound around the wrong way and drops out.
-Ring raw_curve(const Ring& ring, double width, CornerStyle style) {
+Ring raw_curve(const std::vector<WidePoint>& ring, CornerStyle style) {
     Ring curve;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vec2& p = ring[i];
-        const Vec2 n = outward(ring[(i + ring.size() - 1) % ring.size()], p);
-        const Vec2 m = outward(p, ring[(i + 1) % ring.size()]);
+        const WidePoint& before = ring[(i + ring.size() - 1) % ring.size()];
+        const auto& [p, width] = ring[i];
+        const Vec2 n = outward(before.point, p);
+        const Vec2 m = outward(p, ring[(i + 1) % ring.size()].point);
         if (n.x() * m.y() - n.y() * m.x() >= 0.0) {
-            add_convex_corner(p, n, m, width, style, curve);
+            add_convex_corner(p, n, before.width, m, width, style, curve);
         } else {
-            curve.push_back(p + width * n);
+            curve.push_back(p + before.width * n);
             curve.push_back(p);
             curve.push_back(p + width * m);
         }
@@ -85,16 +111,18 @@ Ring raw_curve(const Ring& ring, double width, CornerStyle style) {
 
 } // namespace
 
-std::vector<Ring> add_allowance(const PatternPiece& piece, double width, CornerStyle corners) {
+std::vector<Ring> add_allowance(const PatternPiece& piece, const AllowanceWidths& widths,
+                                CornerStyle corners) {
+    const double width = widths.largest();
     const Vec2 centre = piece.box.center();
     const double grid = (piece.box.sizes().maxCoeff() + 2.0 * miter_limit * width) / grid_size;
     ClipperLib::Clipper clipper;
     for (Index i = 0; i < piece.path_count(); ++i) {
-        const Ring ring = distinct(piece.path(i).points);
+        const std::vector<WidePoint> ring = distinct(piece.path(i), widths);
         ClipperLib::Path path;
         if (ring.size() < 3)
             continue;
-        for (const Vec2& p : raw_curve(ring, width, corners)) {
+        for (const Vec2& p : raw_curve(ring, corners)) {
             const Vec2 q = (p - centre) / grid;
             path.emplace_back(std::llround(q.x()), std::llround(q.y()));
         }

@@ -11,9 +11,22 @@ namespace devseg {
 /// straight; or rounded. Concave corners are always trimmed to where the two sides meet.
 enum class CornerStyle { miter, bevel, round };
 
+/// Widths in mm along seams and along hems, the open borders of the model.
+struct AllowanceWidths {
+    AllowanceWidths(double everywhere) : seams(everywhere), hems(everywhere) {}
+    AllowanceWidths(double along_seams, double along_hems) : seams(along_seams), hems(along_hems) {}
+
+    double largest() const { return seams > hems ? seams : hems; }
+
+    double seams;
+    double hems;
+};
+
 /// The cut lines of the piece, outer one first: closed, counterclockwise around the piece and
 /// clockwise around its holes. Darts narrower than twice the width are covered, and so are holes.
-std::vector<std::vector<Vec2>> add_allowance(const PatternPiece& piece, double width,
-                                             CornerStyle corners);
+/// Where the width changes, pointed corners are where both lines meet; on a smooth outline the cut
+/// line steps from one width to the other. Edges that say nothing (PiecePath::edges) are seams.
+std::vector<std::vector<Vec2>> add_allowance(const PatternPiece& piece,
+                                             const AllowanceWidths& widths, CornerStyle corners);
 
 } // namespace devseg

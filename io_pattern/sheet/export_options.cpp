@@ -24,6 +24,8 @@ void check(const char* name, double value, double least, const char* expected) {
 ExportOptions resolved(const ExportOptions& given) {
     ExportOptions options = given;
     check("seam_allowance_mm", options.seam_allowance_mm, 0.0, "a width of 0 mm or more");
+    check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
+          "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     switch (options.preset) {
@@ -43,9 +45,9 @@ ExportOptions resolved(const ExportOptions& given) {
         options.edge_numbers = true;
         break;
     }
-    if (options.glue_tabs && options.seam_allowance_mm > 0.0)
+    if (options.glue_tabs && options.allowance().largest() > 0.0)
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
-                               "both; set seam_allowance_mm to 0 or choose another preset");
+                               "both; set the allowances to 0 or choose another preset");
     return options;
 }
 

@@ -10,6 +10,8 @@ namespace devseg {
 
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
+/// How outlines are written: by the points they have, or as cubic Bézier curves (curve_mm).
+enum class CurveKind { polylines, beziers };
 enum class DxfKind { automatic, cutter, apparel };
 
 struct ExportOptions : PatternOptions {
@@ -18,6 +20,7 @@ struct ExportOptions : PatternOptions {
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;
     double seam_allowance_mm = 0.0;
+    double hem_allowance_mm = -1.0; // along open borders; below 0: as along seams
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
@@ -29,7 +32,12 @@ struct ExportOptions : PatternOptions {
     double page_margin_mm = 10.0;
     bool tiling = true; // pieces larger than a page go on several
     bool cover = true;  // PDF: picture of the model, list of the pieces, overview
+    CurveKind curves = CurveKind::polylines;
     DxfKind dxf_kind = DxfKind::automatic;
+
+    AllowanceWidths allowance() const {
+        return {seam_allowance_mm, hem_allowance_mm < 0.0 ? seam_allowance_mm : hem_allowance_mm};
+    }
 };
 
 /// The options with all that the preset stands for. Throws InvalidParameter for values outside of

@@ -215,7 +215,7 @@ PatternLayout place_pieces(const Pattern& pattern, const ExportOptions& options,
         nest_on_pages(layout, options, progress);
         return layout;
     }
-    if (options.glue_tabs || options.seam_allowance_mm > 0.0 || pieces_touch(layout.pieces))
+    if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
         nest_freely(layout, options.grain_line, progress);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
     const Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};

@@ -125,6 +125,21 @@ void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const s
         layer.paths.push_back(std::move(path));
 }
 
+// The same for closed lines that may be curves.
+void add_rings(const std::vector<std::vector<Vec2>>& rings,
+               const std::vector<std::vector<OutlineCurve>>& curves, const std::string& id,
+               DrawingLayer& layer) {
+    DrawingPath path{id, {}};
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        path.parts.push_back({rings[i], true});
+        if (i < curves.size())
+            for (const OutlineCurve& curve : curves[i])
+                path.parts.back().curves.push_back({curve.control, curve.is_line});
+    }
+    if (!path.parts.empty())
+        layer.paths.push_back(std::move(path));
+}
+
 void add_notches(const SheetPiece& piece, DrawingLayer& layer) {
     std::vector<std::vector<Vec2>> lines;
     for (const SheetNotch& notch : piece.notches)
@@ -164,9 +179,9 @@ Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
     DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
     for (SheetPiece piece : layout.pieces) {
         piece.move({1.0, 0.0, plan.sheets[at(piece.sheet)]});
-        add_lines(piece.cut, true, piece.name + "-cut", cut);
+        add_rings(piece.cut, piece.cut_curves, piece.name + "-cut", cut);
         add_lines(piece.slits, false, piece.name + "-slit", piece.has_allowance() ? sew : cut);
-        add_lines(piece.sew, true, piece.name + "-sew", sew);
+        add_rings(piece.sew, piece.sew_curves, piece.name + "-sew", sew);
         add_lines(piece.mountains, false, piece.name + "-mountain", mountain);
         add_lines(piece.valleys, false, piece.name + "-valley", valley);
         add_lines(piece.grain, false, piece.name + "-grain", grain);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devseg/pattern/curves.h"
 #include "sheet/marks.h"
 
 namespace devseg {
@@ -10,6 +11,12 @@ namespace {
 
 // The sides of a cut that lie on each other up to this are one line: a knife would follow both.
 constexpr double one_line = 0.1; // mm
+
+// Points along curves lie so close that nobody sees the difference.
+constexpr double sagitta = 0.002; // mm
+
+// Of cut lines beside the sew line: what turns by more is a corner.
+constexpr double corner_turn = 0.35; // radians, 20 degrees
 
 // Points of an outline, some of them replaced by others.
 struct Outline {
@@ -28,6 +35,43 @@ struct Outline {
                 result.push_back(points[i]);
             result.insert(result.end(), inserted[i].begin(), inserted[i].end());
         }
+        return result;
+    }
+    // The same with the curves of the path, as far as nothing of them was replaced.
+    std::vector<OutlineCurve> curves(const PiecePath& path) const {
+        std::vector<OutlineCurve> result;
+        std::vector<Vec2> start;
+        const auto line_to = [&](const Vec2& p) {
+            if (start.empty()) {
+                start = {p, p};
+            } else if (p != start[1]) {
+                const Vec2 third = (p - start[1]) / 3.0;
+                result.emplace_back();
+                result.back().control = {start[1], start[1] + third, p - third, p};
+                start[1] = p;
+            }
+        };
+        for (const OutlineCurve& curve : path.curves) {
+            bool whole = skipped[at_index(curve.first)] == 0 &&
+                         skipped[at_index(curve.first + curve.count)] == 0;
+            for (Index i = curve.first; i < curve.first + curve.count; ++i)
+                whole = whole && inserted[at_index(i)].empty() &&
+                        (i == curve.first || skipped[at_index(i)] == 0);
+            if (whole) {
+                line_to(curve.control[0]);
+                result.push_back(curve);
+                start[1] = curve.control[3];
+                continue;
+            }
+            for (Index i = curve.first; i < curve.first + curve.count; ++i) {
+                if (skipped[at_index(i)] == 0)
+                    line_to(points[at_index(i)]);
+                for (const Vec2& p : inserted[at_index(i)])
+                    line_to(p);
+            }
+        }
+        if (!start.empty())
+            line_to(start[0]);
         return result;
     }
 };
@@ -85,6 +129,32 @@ void add_folds(const PatternPiece& piece, SheetPiece& result) {
         (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
 }
 
+// Lines that follow the curves.
+std::vector<std::vector<Vec2>> rings_of(const std::vector<std::vector<OutlineCurve>>& curves) {
+    std::vector<std::vector<Vec2>> rings;
+    for (const std::vector<OutlineCurve>& ring : curves)
+        rings.push_back(flatten_curves(ring, sagitta));
+    return rings;
+}
+
+// Cut and sew lines as curves.
+void add_curves(const PatternPiece& piece, const std::vector<Outline>& outlines,
+                const ExportOptions& options, SheetPiece& result) {
+    std::vector<std::vector<OutlineCurve>> own;
+    for (std::size_t i = 0; i < outlines.size(); ++i)
+        own.push_back(outlines[i].curves(piece.path(static_cast<Index>(i))));
+    if (!result.has_allowance()) {
+        result.cut = rings_of(own);
+        result.cut_curves = std::move(own);
+        return;
+    }
+    result.sew = rings_of(own);
+    result.sew_curves = std::move(own);
+    for (const std::vector<Vec2>& ring : result.cut)
+        result.cut_curves.push_back(fit_ring(ring, corner_turn, options.curve_mm));
+    result.cut = rings_of(result.cut_curves);
+}
+
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
     for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
@@ -92,6 +162,11 @@ void change_points(SheetPiece& piece, Change change) {
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
+    for (auto* rings : {&piece.cut_curves, &piece.sew_curves})
+        for (std::vector<OutlineCurve>& ring : *rings)
+            for (OutlineCurve& curve : ring)
+                for (Vec2& p : curve.control)
+                    p = change(p);
     for (SheetNotch& notch : piece.notches) {
         notch.outer = change(notch.outer);
         notch.inner = change(notch.inner);
@@ -127,6 +202,12 @@ void SheetPiece::mirror() {
     for (auto* rings : {&cut, &sew})
         for (std::vector<Vec2>& ring : *rings)
             std::reverse(ring.begin(), ring.end());
+    for (auto* rings : {&cut_curves, &sew_curves})
+        for (std::vector<OutlineCurve>& ring : *rings) {
+            std::reverse(ring.begin(), ring.end());
+            for (OutlineCurve& curve : ring)
+                std::reverse(curve.control.begin(), curve.control.end());
+        }
     frame.mirrored = true;
 }
 
@@ -143,10 +224,13 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
     add_tabs(tabs, outlines, result);
     for (const Outline& outline : outlines)
         result.cut.push_back(outline.ring());
-    if (options.seam_allowance_mm > 0.0) {
+    const AllowanceWidths allowance = options.allowance();
+    if (allowance.largest() > 0.0) {
         result.sew = std::move(result.cut);
-        result.cut = add_allowance(piece, options.seam_allowance_mm, options.corner_style);
+        result.cut = add_allowance(piece, allowance, options.corner_style);
     }
+    if (options.curves == CurveKind::beziers)
+        add_curves(piece, outlines, options, result);
     if (options.fold_lines)
         add_folds(piece, result);
     add_notches(pattern, options, result);

@@ -31,8 +31,11 @@ struct SheetFrame {
 struct SheetPiece {
     Index piece = -1; // position in Pattern::pieces
     std::string name;
-    std::vector<std::vector<Vec2>> cut;       // closed; the outer one first
-    std::vector<std::vector<Vec2>> sew;       // closed; empty where the cut lines are the sew lines
+    std::vector<std::vector<Vec2>> cut; // closed; the outer one first
+    std::vector<std::vector<Vec2>> sew; // closed; empty where the cut lines are the sew lines
+    // #cut and #sew with Bézier curves, which the closed lines follow within micrometres; or empty.
+    std::vector<std::vector<OutlineCurve>> cut_curves;
+    std::vector<std::vector<OutlineCurve>> sew_curves;
     std::vector<std::vector<Vec2>> slits;     // open lines whose two sides lie on each other
     std::vector<std::vector<Vec2>> mountains; // open lines
     std::vector<std::vector<Vec2>> valleys;

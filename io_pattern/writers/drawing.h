@@ -5,6 +5,7 @@
 // of the texture coordinates; writers of formats with y down turn it over.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,9 +14,16 @@
 
 namespace devseg {
 
+/// A cubic Bézier curve, or a straight line that is written as one.
+struct DrawingCurve {
+    std::array<Vec2, 4> control{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+    bool is_line = true;
+};
+
 struct DrawingPolyline {
     std::vector<Vec2> points; // a closed one does not repeat its first point
     bool closed = true;
+    std::vector<DrawingCurve> curves = {}; // from end to end, instead of the points, or none
 };
 
 /// One object for the reader of the file: an outline and its holes, or a single line.

@@ -2,6 +2,9 @@
 //   Autodesk: AutoCAD release 12 customization manual, drawing interchange files. 1992.
 #include "writers/dxf_text.h"
 
+#include <cctype>
+#include <limits>
+
 #include "writers/number_text.h"
 #include "writers/text_metrics.h"
 
@@ -12,7 +15,46 @@ namespace {
 // Text heights are those of capital letters, not of the font.
 constexpr double capital_height = 0.72;
 
+// The seven colours that all programs show alike, by their number.
+struct IndexedColour {
+    int number;
+    std::array<int, 3> rgb;
+};
+constexpr std::array<IndexedColour, 7> indexed_colours = {{{1, {255, 0, 0}},
+                                                           {2, {255, 255, 0}},
+                                                           {3, {0, 255, 0}},
+                                                           {4, {0, 255, 255}},
+                                                           {5, {0, 0, 255}},
+                                                           {6, {255, 0, 255}},
+                                                           {7, {0, 0, 0}}}};
+
 } // namespace
+
+int dxf_colour(const std::string& code) {
+    int best = 0;
+    int least = std::numeric_limits<int>::max();
+    for (const IndexedColour& colour : indexed_colours) {
+        int distance = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int channel = std::stoi(code.substr(1 + 2 * k, 2), nullptr, 16);
+            distance += (channel - colour.rgb[k]) * (channel - colour.rgb[k]);
+        }
+        if (distance < least) {
+            least = distance;
+            best = colour.number;
+        }
+    }
+    return best;
+}
+
+std::string dxf_layer_name(const DrawingLayer& layer) {
+    std::string name;
+    for (const char c : ascii(layer.label))
+        name += std::isalnum(static_cast<unsigned char>(c)) != 0
+                    ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
+                    : '_';
+    return name;
+}
 
 void DxfText::group(int code, const std::string& value) {
     std::string digits = std::to_string(code);
@@ -71,6 +113,10 @@ void DxfText::line(const std::string& layer, const Vec2& from, const Vec2& to) {
 void DxfText::text(const std::string& layer, const DrawingText& text) {
     group(0, "TEXT");
     group(8, layer);
+    text_content(text);
+}
+
+void DxfText::text_content(const DrawingText& text) {
     point(text_start(text));
     number(40, capital_height * text.size);
     group(1, ascii(text.text));

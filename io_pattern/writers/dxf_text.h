@@ -1,4 +1,4 @@
-// The lines of a DXF file of release 12: a group code and its value, again and again.
+// The lines of a DXF file: a group code and its value, again and again.
 #pragma once
 
 #include <string>
@@ -6,6 +6,13 @@
 #include "writers/drawing.h"
 
 namespace devseg {
+
+/// The number of the one of the seven colours that all programs show alike that is nearest to
+/// "#rrggbb".
+int dxf_colour(const std::string& code);
+
+/// The layer's label as release 12 takes it: capital letters, digits and underscores.
+std::string dxf_layer_name(const DrawingLayer& layer);
 
 class DxfText {
 public:
@@ -20,9 +27,17 @@ public:
     void begin_section(const std::string& name);
     void end_section() { group(0, "ENDSEC"); }
 
+    // Entities of release 12.
     void polyline(const std::string& layer, const DrawingPolyline& line);
     void line(const std::string& layer, const Vec2& from, const Vec2& to);
     void text(const std::string& layer, const DrawingText& text);
+
+    /// The groups of a text behind its layer, up to the point that centres it.
+    void text_content(const DrawingText& text);
+
+    void append(const std::string& groups) { bytes_ += groups; }
+    const std::string& text_so_far() const { return bytes_; }
+    DxfText empty_copy() const { return DxfText(decimals_); }
 
     /// The whole file, ended.
     std::string file() const { return bytes_ + "  0\r\nEOF\r\n"; }

@@ -1,56 +1,14 @@
 #include "writers/dxf_writer.h"
 
-#include <array>
-#include <cctype>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "writers/dxf_splines.h"
 #include "writers/dxf_text.h"
-#include "writers/text_metrics.h"
 
 namespace devseg {
 
 namespace {
-
-// The seven colours that all programs show alike, by their number.
-struct IndexedColour {
-    int number;
-    std::array<int, 3> rgb;
-};
-constexpr std::array<IndexedColour, 7> indexed_colours = {{{1, {255, 0, 0}},
-                                                           {2, {255, 255, 0}},
-                                                           {3, {0, 255, 0}},
-                                                           {4, {0, 255, 255}},
-                                                           {5, {0, 0, 255}},
-                                                           {6, {255, 0, 255}},
-                                                           {7, {0, 0, 0}}}};
-
-int nearest_colour(const std::string& code) {
-    int best = 0;
-    int least = std::numeric_limits<int>::max();
-    for (const IndexedColour& colour : indexed_colours) {
-        int distance = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int channel = std::stoi(code.substr(1 + 2 * k, 2), nullptr, 16);
-            distance += (channel - colour.rgb[k]) * (channel - colour.rgb[k]);
-        }
-        if (distance < least) {
-            least = distance;
-            best = colour.number;
-        }
-    }
-    return best;
-}
-
-// Layer names of release 12: capital letters, digits and underscores.
-std::string layer_name(const DrawingLayer& layer) {
-    std::string name;
-    for (const char c : ascii(layer.label))
-        name += std::isalnum(static_cast<unsigned char>(c)) != 0
-                    ? static_cast<char>(std::toupper(static_cast<unsigned char>(c)))
-                    : '_';
-    return name;
-}
 
 void write_line_type(DxfText& file, const std::string& name, const std::string& look,
                      const std::vector<double>& strokes) {
@@ -81,9 +39,9 @@ void write_tables(DxfText& file, const std::vector<const DrawingLayer*>& layers)
     file.count(70, static_cast<int>(layers.size()));
     for (const DrawingLayer* layer : layers) {
         file.group(0, "LAYER");
-        file.group(2, layer_name(*layer));
+        file.group(2, dxf_layer_name(*layer));
         file.group(70, "0");
-        file.count(62, nearest_colour(layer->colour));
+        file.count(62, dxf_colour(layer->colour));
         file.group(6, layer->dash.empty() ? "CONTINUOUS" : "DASHED");
     }
     file.group(0, "ENDTAB");
@@ -97,6 +55,14 @@ std::string dxf_bytes(const Drawing& drawing) {
     for (const DrawingLayer& layer : drawing.layers)
         if (!layer.paths.empty() || !layer.texts.empty())
             layers.push_back(&layer);
+    const auto has_curves = [](const DrawingLayer* layer) {
+        return std::any_of(layer->paths.begin(), layer->paths.end(), [](const DrawingPath& path) {
+            return std::any_of(path.parts.begin(), path.parts.end(),
+                               [](const DrawingPolyline& part) { return !part.curves.empty(); });
+        });
+    };
+    if (std::any_of(layers.begin(), layers.end(), has_curves))
+        return dxf_bytes_with_splines(drawing, layers);
     DxfText file(drawing.decimals);
     file.begin_section("HEADER");
     file.group(9, "$ACADVER");
@@ -111,9 +77,9 @@ std::string dxf_bytes(const Drawing& drawing) {
     for (const DrawingLayer* layer : layers) {
         for (const DrawingPath& path : layer->paths)
             for (const DrawingPolyline& part : path.parts)
-                file.polyline(layer_name(*layer), part);
+                file.polyline(dxf_layer_name(*layer), part);
         for (const DrawingText& text : layer->texts)
-            file.text(layer_name(*layer), text);
+            file.text(dxf_layer_name(*layer), text);
     }
     file.end_section();
     return file.file();

@@ -132,6 +132,17 @@ private:
 
     void append(const DrawingPath& path, std::string& data) const {
         for (const DrawingPolyline& line : path.parts) {
+            if (!line.curves.empty())
+                data += point(line.curves.front().control[0]) + " m ";
+            for (const DrawingCurve& curve : line.curves) {
+                const auto& c = curve.control;
+                data += curve.is_line ? point(c[3]) + " l "
+                                      : point(c[1]) + ' ' + point(c[2]) + ' ' + point(c[3]) + " c ";
+            }
+            if (!line.curves.empty()) {
+                data += line.closed ? "h " : "";
+                continue;
+            }
             const char* step = " m ";
             for (const std::string& text :
                  point_texts(line, [&](const Vec2& p) { return point(p); })) {

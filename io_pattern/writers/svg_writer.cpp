@@ -113,7 +113,26 @@ private:
         xml_.writeEndElement();
     }
 
+    QString point(const Vec2& p) const {
+        return number(p.x()) + ',' + number(drawing_.height - p.y());
+    }
+
+    void append(const std::vector<DrawingCurve>& curves, QString& d) const {
+        d += (d.isEmpty() ? "M " : " M ") + point(curves.front().control[0]);
+        for (const DrawingCurve& curve : curves) {
+            const auto& c = curve.control;
+            d += curve.is_line ? " L " + point(c[3])
+                               : " C " + point(c[1]) + ' ' + point(c[2]) + ' ' + point(c[3]);
+        }
+    }
+
     void append(const DrawingPolyline& line, QString& d) const {
+        if (!line.curves.empty()) {
+            append(line.curves, d);
+            if (line.closed)
+                d += " Z";
+            return;
+        }
         const char* step = d.isEmpty() ? "M " : " M ";
         for (const std::string& point : point_texts(line, [&](const Vec2& p) {
                  return number_text(p.x(), drawing_.decimals) + ',' +

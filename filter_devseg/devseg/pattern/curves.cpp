@@ -21,6 +21,12 @@ constexpr int rounds = 4;
 // A curve's handles are at most so long, as a share of the stretch: longer ones make loops.
 constexpr double longest_handle = 1.5;
 
+// A curve is as long as what it stands for, up to this share: seams must not change. Lines that
+// leave out a little raggedness may be shorter by more.
+constexpr double length_share = 1e-6;
+constexpr double line_share = 1e-4;
+constexpr int length_steps = 12;
+
 using Control = std::array<Vec2, 4>;
 
 Vec2 evaluate(const Control& c, double t) {
@@ -35,6 +41,50 @@ Vec2 derivative(const Control& c, double t) {
 
 Vec2 second_derivative(const Control& c, double t) {
     return 6.0 * ((1.0 - t) * (c[2] - 2.0 * c[1] + c[0]) + t * (c[3] - 2.0 * c[2] + c[1]));
+}
+
+// Gauss-Legendre rule with five points, on eight parts of the curve.
+double length_of(const Control& c) {
+    constexpr int parts = 8;
+    constexpr double nodes[] = {0.0, 0.5384693101056831, 0.9061798459386640};
+    constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    double length = 0.0;
+    for (int part = 0; part < parts; ++part)
+        for (int i = -2; i <= 2; ++i) {
+            const double node = i < 0 ? -nodes[-i] : nodes[i];
+            const double t = (part + 0.5 + 0.5 * node) / parts;
+            length += weights[std::abs(i)] * derivative(c, t).norm() / (2.0 * parts);
+        }
+    return length;
+}
+
+// Makes both handles longer or shorter by one factor until the curve has the length (secant steps).
+bool match_length(double length, Control& curve) {
+    const Control start = curve;
+    const auto scaled = [&](double factor) {
+        Control c = start;
+        c[1] = c[0] + factor * (start[1] - start[0]);
+        c[2] = c[3] + factor * (start[2] - start[3]);
+        return c;
+    };
+    double factor = 1.0;
+    double other = 1.05;
+    double error = length_of(curve) - length;
+    double other_error = length_of(scaled(other)) - length;
+    for (int step = 0; step < length_steps; ++step) {
+        if (std::abs(error) <= length_share * length) {
+            curve = scaled(factor);
+            return true;
+        }
+        if (error == other_error)
+            break;
+        const double next = factor - error * (other - factor) / (other_error - error);
+        other = factor;
+        other_error = error;
+        factor = std::clamp(next, 0.3, 2.0);
+        error = length_of(scaled(factor)) - length;
+    }
+    return false;
 }
 
 // Points along a part of a polyline, with parameters in proportion to the arc.
@@ -122,6 +172,11 @@ bool is_straight(const std::vector<Vec2>& points, std::size_t first, std::size_t
                  double tolerance) {
     const Vec2 along = points[last] - points[first];
     const double length = along.norm();
+    double path = 0.0;
+    for (std::size_t i = first; i < last; ++i)
+        path += (points[i + 1] - points[i]).norm();
+    if (path - length > line_share * path)
+        return false;
     for (std::size_t i = first + 1; i < last; ++i) {
         const Vec2 p = points[i] - points[first];
         const double forward = p.dot(along) / length;
@@ -169,7 +224,7 @@ void fit_part(const std::vector<Vec2>& points, std::size_t first, std::size_t la
         improve_parameters(curve, samples);
         curve = fit(samples, start, end);
     }
-    if (error_of(curve, samples) <= tolerance) {
+    if (match_length(samples.length, curve) && error_of(curve, samples) <= tolerance) {
         curves.push_back(
             {curve, false, static_cast<Index>(first), static_cast<Index>(last - first)});
         return;
@@ -190,7 +245,52 @@ void fit_part(const std::vector<Vec2>& points, std::size_t first, std::size_t la
     fit_part(points, joint, last, tolerance, curves);
 }
 
+double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
+    const Vec2 p = b - a;
+    const Vec2 q = c - b;
+    return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
+}
+
 } // namespace
+
+std::vector<OutlineCurve> fit_ring(const std::vector<Vec2>& ring, double corner_angle,
+                                   double tolerance) {
+    const std::size_t size = ring.size();
+    std::vector<std::size_t> corners;
+    for (std::size_t i = 0; i < size; ++i)
+        if (turn(ring[(i + size - 1) % size], ring[i], ring[(i + 1) % size]) > corner_angle)
+            corners.push_back(i);
+    if (corners.empty())
+        corners.push_back(0);
+    std::vector<OutlineCurve> curves;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const std::size_t first = corners[k];
+        const std::size_t last = k + 1 < corners.size() ? corners[k + 1] : corners[0] + size;
+        std::vector<Vec2> points;
+        for (std::size_t i = first; i <= last; ++i)
+            points.push_back(ring[i % size]);
+        for (OutlineCurve& curve : fit_polyline(points, tolerance)) {
+            curve.first = (curve.first + static_cast<Index>(first)) % static_cast<Index>(size);
+            curves.push_back(curve);
+        }
+    }
+    return curves;
+}
+
+std::vector<Vec2> flatten_curves(const std::vector<OutlineCurve>& curves, double sagitta) {
+    std::vector<Vec2> points;
+    for (const OutlineCurve& curve : curves) {
+        const Control& c = curve.control;
+        // A parabola whose second derivative is d leaves its chord by d / 8.
+        const double bend =
+            6.0 * std::max((c[0] - 2.0 * c[1] + c[2]).norm(), (c[1] - 2.0 * c[2] + c[3]).norm());
+        const int count =
+            curve.is_line ? 1 : static_cast<int>(std::ceil(std::sqrt(bend / (8.0 * sagitta))));
+        for (int i = 0; i < count; ++i)
+            points.push_back(evaluate(c, static_cast<double>(i) / count));
+    }
+    return points;
+}
 
 std::vector<OutlineCurve> fit_polyline(const std::vector<Vec2>& points, double tolerance) {
     std::vector<OutlineCurve> curves;
