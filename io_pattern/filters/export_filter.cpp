@@ -111,6 +111,8 @@ FilterOutput run_export(const FilterInput& input, const ExportOptions& options,
     output.notes = report.notes;
     output.values = {{"pieces_number", report.pieces},
                      {"seams_number", report.seams},
+                     {"unnumbered_seams_number", report.unnumbered_seams},
+                     {"unnamed_pieces_number", report.unnamed_pieces},
                      {"sheets_number", report.sheets},
                      {"pages_number", report.pages}};
     return output;
@@ -129,6 +131,10 @@ const FilterDeclaration& export_filter() {
             .needs_uv()
             .result("pieces_number", "pieces in the file")
             .result("seams_number", "seams, darts among them")
+            .result("unnumbered_seams_number", "seams without room for the number that they "
+                                               "should have on the pieces")
+            .result("unnamed_pieces_number", "pieces without room for the name that they should "
+                                             "have")
             .result("sheets_number", "sheets that the pieces lie on")
             .result("pages_number", "pages of a PDF, cover included; 0 for other formats")
             .runs(run_export);

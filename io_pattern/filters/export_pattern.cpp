@@ -6,7 +6,6 @@
 
 #include "devseg/errors.h"
 #include "sheet/apparel_dxf.h"
-#include "sheet/carry_folds.h"
 #include "sheet/cover.h"
 #include "sheet/pattern_drawing.h"
 #include "writers/dxf_writer.h"
@@ -87,9 +86,7 @@ ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOp
     const Format format = format_of(given.output_file);
     const ExportOptions options = resolved(given);
     page_format(options); // says what is wrong with it before the work begins
-    Pattern pattern = make_pattern(mesh, uv, options, progress);
-    if (options.fold_lines)
-        carry_folds(uv, pattern);
+    const Pattern pattern = make_pattern(mesh, uv, options, progress);
     PatternLayout layout = lay_out_pattern(pattern, options, progress);
     progress.begin_phase("writing", 0.1);
     progress.update(0.0);
@@ -110,6 +107,8 @@ ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOp
     save_file(options.output_file, bytes);
     report.pieces = static_cast<Index>(pattern.pieces.size());
     report.seams = static_cast<Index>(pattern.seams.size());
+    report.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
+    report.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
     report.sheets = static_cast<Index>(layout.sheets.size());
     report.notes = pattern.notes;
     report.notes.insert(report.notes.end(), layout.notes.begin(), layout.notes.end());

@@ -67,12 +67,22 @@ void write_texts(DxfText& file, const char* layer, Vec2 place,
     }
 }
 
+// Pieces of one shape are counted on the first of them, as they are and mirrored; the others keep
+// their outlines, notches and seams, and count nothing.
+std::string quantity(const PatternPiece& piece) {
+    if (piece.model < 0)
+        return "1,0";
+    return std::to_string(piece.quantity) + ',' + std::to_string(piece.mirrored_quantity);
+}
+
 std::string annotation(const PatternPiece& piece, const Pattern& pattern) {
-    if (piece.model >= 0 && piece.mirrored)
-        return "MIRROR OF " + pattern.pieces[at(piece.model)].name;
     if (piece.model >= 0 && piece.quantity == 0)
-        return "SAME AS " + pattern.pieces[at(piece.model)].name;
-    return "CUT 1";
+        return (piece.mirrored ? "MIRROR OF " : "SAME AS ") + pattern.pieces[at(piece.model)].name +
+               ", COUNTED THERE";
+    std::string text = "CUT " + std::to_string(std::max(Index{1}, piece.quantity));
+    if (piece.mirrored_quantity > 0)
+        text += " + " + std::to_string(piece.mirrored_quantity) + " MIRRORED";
+    return text;
 }
 
 void write_lines(DxfText& file, const char* layer, const std::vector<std::vector<Vec2>>& lines,
@@ -109,7 +119,7 @@ void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
     const Vec2 place = piece.names.empty() ? piece.box().center() : piece.names.front().position;
     write_texts(file, "15", place, seams);
     write_texts(file, "1", place + Vec2(0.0, 6.0 * line_pitch),
-                {"Piece Name: " + piece.name, "Size: M", "Quantity: 1,0",
+                {"Piece Name: " + piece.name, "Size: M", "Quantity: " + quantity(source),
                  "Annotation: " + annotation(source, pattern), "Category: PATTERN",
                  "Fabric: MAIN"});
     file.group(0, "ENDBLK");

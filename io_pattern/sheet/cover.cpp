@@ -99,12 +99,12 @@ std::vector<std::string> missing_texts(const Pattern& pattern, const LeftOut& le
                  number_text(seam.sides[0].length, 1) + " mm)";
     }
     if (!seams.empty())
-        lines.push_back("Too short for their numbers on the pieces: seams " + seams);
+        lines.push_back("No room for their numbers on the pieces: seams " + seams);
     std::string pieces;
     for (const Index p : left_out.pieces)
         pieces += (pieces.empty() ? "" : ", ") + pattern.pieces[at(p)].name;
     if (!pieces.empty())
-        lines.push_back("Too small for their names: " + pieces);
+        lines.push_back("No room for their names: pieces " + pieces);
     return lines;
 }
 

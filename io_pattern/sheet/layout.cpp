@@ -183,11 +183,11 @@ void note_left_out(const Pattern& pattern, PatternLayout& layout) {
     if (!left_out.seams.empty())
         layout.notes.push_back(
             std::to_string(left_out.seams.size()) + " of " + std::to_string(pattern.seams.size()) +
-            " seams are too short for a number that can be read: the table of a PDF names them");
+            " seams have no room for a number that can be read: the table of a PDF names them");
     if (!left_out.pieces.empty())
         layout.notes.push_back(std::to_string(left_out.pieces.size()) + " of " +
                                std::to_string(pattern.pieces.size()) +
-                               " pieces are too small for a name that can be read: the table of a "
+                               " pieces have no room for a name that can be read: the table of a "
                                "PDF names them");
 }
 

@@ -4,6 +4,7 @@
 
 #include "devseg/pattern/curves.h"
 #include "sheet/marks.h"
+#include "sheet/segment_grid.h"
 
 namespace devseg {
 
@@ -125,8 +126,12 @@ void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
 }
 
 void add_folds(const PatternPiece& piece, SheetPiece& result) {
+    std::vector<std::vector<Vec2>> outlines;
+    for (Index i = 0; i < piece.path_count(); ++i)
+        outlines.push_back(piece.path(i).points);
     for (const PieceFold& fold : piece.folds)
-        (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
+        if (is_inside(outlines, 0.5 * (fold.from + fold.to))) // others: where outlines are simpler
+            (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
 }
 
 // Lines that follow the curves.

@@ -25,7 +25,8 @@ constexpr double line_pitch = 1.3;   // of the font size
 constexpr int name_places = 14;
 
 // Places of a number along its side, as shares of the length, the middle first.
-constexpr double number_places[] = {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88};
+constexpr double number_places[] = {0.5,  0.4,  0.6,  0.3,  0.7,  0.2,  0.8,  0.12, 0.88, 0.45,
+                                    0.55, 0.35, 0.65, 0.25, 0.75, 0.16, 0.84, 0.08, 0.92};
 constexpr double number_gap = 0.35; // of the font size, between the line and the text
 
 // Lines to numbers: where they start, their angles with the normal, and how long they are.
@@ -52,56 +53,61 @@ std::vector<Vec2> ring_of(const Box& box) {
     return {box.begin(), box.end()};
 }
 
-// Where texts may go: inside the piece, clear of lines and of other texts.
+// Where texts may go: inside the piece, clear of outlines, of other texts, and of the lines inside.
 class Room {
 public:
-    // `strict`: clear of the lines inside the piece as well.
-    Room(const SheetPiece& piece, bool strict)
+    explicit Room(const SheetPiece& piece)
         : piece_(piece), inside_(piece.has_allowance() ? piece.sew : piece.cut),
-          grid_(piece.box(), name_sizes[0]) {
+          solid_(piece.box(), name_sizes[0]), lines_(piece.box(), name_sizes[0]) {
         for (const auto* rings : {&piece.cut, &piece.sew})
             for (const std::vector<Vec2>& ring : *rings)
-                grid_.add_ring(ring, 0);
-        if (!strict)
-            return;
-        for (const auto* lines : {&piece.slits, &piece.mountains, &piece.valleys, &piece.grain})
+                solid_.add_ring(ring, 0);
+        for (const std::vector<Vec2>& slit : piece.slits)
+            add_line(slit, solid_);
+        for (const auto* lines : {&piece.mountains, &piece.valleys, &piece.grain})
             for (const std::vector<Vec2>& line : *lines)
-                add_line(line);
+                add_line(line, lines_);
         for (const SheetNotch& notch : piece.notches)
-            grid_.add(notch.outer, notch.inner, 0);
+            lines_.add(notch.outer, notch.inner, 0);
     }
 
     void take(const DrawingText& text) {
         const Box box = text_box(text);
-        grid_.add_ring(ring_of(box), 0);
-        grid_.add(box[0], box[2], 0); // what lies inside touches a diagonal
-        grid_.add(box[1], box[3], 0);
+        solid_.add_ring(ring_of(box), 0);
+        solid_.add(box[0], box[2], 0); // what lies inside touches a diagonal
+        solid_.add(box[1], box[3], 0);
     }
-    void take(const std::vector<Vec2>& leader) { add_line(leader); }
+    void take(const std::vector<Vec2>& leader) { add_line(leader, solid_); }
 
-    bool is_free(const DrawingText& text) const {
-        return is_inside(inside_, text.position) && touches_nothing(text);
+    /// `over_lines`: lines inside the piece may be crossed.
+    bool is_free(const DrawingText& text, bool over_lines) const {
+        return is_inside(inside_, text.position) && touches_nothing(text, over_lines);
     }
     /// On the allowance or a tab as well.
-    bool is_free_outside(const DrawingText& text) const {
-        return is_inside(piece_.cut, text.position) && touches_nothing(text);
+    bool is_free_outside(const DrawingText& text, bool over_lines) const {
+        return is_inside(piece_.cut, text.position) && touches_nothing(text, over_lines);
     }
-    bool is_free(const Vec2& from, const Vec2& to) const { return !grid_.touches(from, to, 1); }
+    /// For a line that leads to a text.
+    bool is_free(const Vec2& from, const Vec2& to) const { return !solid_.touches(from, to, 1); }
 
 private:
-    void add_line(const std::vector<Vec2>& line) {
+    static void add_line(const std::vector<Vec2>& line, SegmentGrid& grid) {
         for (std::size_t i = 1; i < line.size(); ++i)
-            grid_.add(line[i - 1], line[i], 0);
+            grid.add(line[i - 1], line[i], 0);
     }
-    bool touches_nothing(const DrawingText& text) const {
+    static bool touches(const Box& box, const SegmentGrid& grid) {
+        return grid.ring_touches(ring_of(box), 1) || grid.touches(box[0], box[2], 1) ||
+               grid.touches(box[1], box[3], 1);
+    }
+    bool touches_nothing(const DrawingText& text, bool over_lines) const {
         const Box box = text_box(text);
-        return !grid_.ring_touches(ring_of(box), 1) && !grid_.touches(box[0], box[2], 1) &&
-               !grid_.touches(box[1], box[3], 1);
+        return !touches(box, solid_) && (over_lines || !touches(box, lines_));
     }
 
     const SheetPiece& piece_;
     const std::vector<std::vector<Vec2>>& inside_;
-    SegmentGrid grid_;
+    SegmentGrid solid_;
+    SegmentGrid lines_;
 };
 
 std::string quantity_text(const PatternPiece& piece, const Pattern& pattern) {
@@ -125,11 +131,12 @@ std::vector<Vec2> places_for_name(const Vec2& middle, const Eigen::AlignedBox2d&
     return places;
 }
 
-bool write_name(const std::vector<Vec2>& places, const Room& room, SheetPiece& result) {
+bool write_name(const std::vector<Vec2>& places, const Room& room, bool over_lines,
+                SheetPiece& result) {
     for (const double size : name_sizes)
         for (const Vec2& place : places) {
             const DrawingText text{place, size, result.name};
-            if (!room.is_free(text))
+            if (!room.is_free(text, over_lines))
                 continue;
             result.names.push_back(text);
             return true;
@@ -141,14 +148,14 @@ bool write_name(const std::vector<Vec2>& places, const Room& room, SheetPiece& r
 bool add_name(const PatternPiece& piece, const Pattern& pattern, SheetPiece& result, Room& room) {
     const std::vector<Vec2> places =
         places_for_name(result.frame(piece.label_position), result.box());
-    if (!write_name(places, room, result) && !write_name(places, Room(result, false), result))
+    if (!write_name(places, room, false, result) && !write_name(places, room, true, result))
         return false;
     const DrawingText name = result.names.back();
     room.take(name);
     const std::string detail = quantity_text(piece, pattern);
     const DrawingText line{name.position - Vec2(0.0, line_pitch * 0.75 * name.size),
                            std::max(detail_share * name.size, name_sizes[5]), detail};
-    if (!detail.empty() && room.is_free(line)) {
+    if (!detail.empty() && room.is_free(line, false)) {
         room.take(line);
         result.names.push_back(line);
     }
@@ -169,7 +176,10 @@ public:
     }
 
     // Whether there is a place; `text` and `leader` are what to draw then.
-    bool find() { return find_beside(1.0) || find_beside(-1.0) || find_apart(); }
+    bool find() {
+        return find_beside(1.0, false) || find_beside(-1.0, false) || find_apart(false) ||
+               find_beside(1.0, true) || find_beside(-1.0, true) || find_apart(true);
+    }
 
     const DrawingText& text() const { return text_; }
     const std::vector<Vec2>& leader() const { return leader_; }
@@ -189,7 +199,7 @@ private:
     }
 
     // Along the seam, inside the piece (side 1) or on its allowance or tab (−1).
-    bool find_beside(double side) {
+    bool find_beside(double side, bool over_lines) {
         for (const double size : number_sizes)
             for (const double share : number_places) {
                 const Place p = place(share);
@@ -197,14 +207,15 @@ private:
                 text_.position =
                     p.position + side * (0.5 * capital_share + number_gap) * size * p.inward;
                 text_.angle = upright(std::atan2(p.along.y(), p.along.x()));
-                if (side > 0.0 ? room_.is_free(text_) : room_.is_free_outside(text_))
+                if (side > 0.0 ? room_.is_free(text_, over_lines)
+                               : room_.is_free_outside(text_, over_lines))
                     return true;
             }
         return false;
     }
 
     // Farther inside, at the end of a line.
-    bool find_apart() {
+    bool find_apart(bool over_lines) {
         text_.angle = 0.0;
         text_.size = number_sizes[2];
         const double half = 0.5 * text_width(text_.text, text_.size) + clearance * text_.size;
@@ -221,7 +232,7 @@ private:
                     text_.position = end + depth * along;
                     const Vec2 start = p.position + leader_start * along;
                     const Vec2 last = end - leader_start * along;
-                    if (!room_.is_free(text_) || !room_.is_free(start, last))
+                    if (!room_.is_free(text_, over_lines) || !room_.is_free(start, last))
                         continue;
                     leader_ = {start, last};
                     return true;
@@ -252,7 +263,7 @@ LeftOut add_texts(const Pattern& pattern, const ExportOptions& options,
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
         const PatternPiece& source = pattern.pieces[at(piece.piece)];
-        Room room(piece, true);
+        Room room(piece);
         if (options.labels && !add_name(source, pattern, piece, room))
             left_out.pieces.push_back(piece.piece);
         for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)

@@ -16,8 +16,8 @@ struct LeftOut {
 
 /// Writes names and seam numbers, as the options want them, into pieces that lie in their places.
 /// Texts are upright, 2.5 mm high at least, and touch neither lines nor each other; where there is
-/// no room, a name may cross folds and notches. A number stands beside its seam, inside the piece
-/// or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
+/// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
+/// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
 /// number on both sides or on none.
 LeftOut add_texts(const Pattern& pattern, const ExportOptions& options,
                   std::vector<SheetPiece>& pieces);

@@ -21,7 +21,7 @@ HEIGHT = 250.0
 PRESETS = ("Plain", "Sewing", "Papercraft", "Laser")
 
 
-def check(ms: object, folder: Path, name: str, preset: str, seams: list[float]) -> str:
+def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], hems: float) -> str:
     """Writes all formats, with and without pages, and measures what is in them."""
     found = {}
     seconds = 0.0
@@ -67,7 +67,8 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float]) 
             wrong |= files.wrong_counts([t for t in texts if t[0].isdigit()], len(seams))
     net = found["none", "svg"].get("sew", found["none", "svg"]["cut"])
     around = sum(p.length * (1 if p.closed else 2) for p in net.parts)
-    against = around - 2 * sum(seams) if preset in ("Plain", "Sewing") else 0.0
+    whole = preset in ("Plain", "Sewing")
+    against = around - 2 * sum(seams) - hems if whole else 0.0
     return (
         f"{name:<22} {preset:<11} {len(files.polygons(found['none', 'svg']['cut'])):>4} pieces "
         f"{sheets[1]:>3} sheets {seconds:5.2f} s  overlap {overlap:.4f} itself {itself:.4f} mm2 "
@@ -89,8 +90,8 @@ def main() -> None:
             ms.apply_filter("compute_texcoord_parametrization_charts_per_wedge")
         measures = ms.apply_filter("get_pattern_measures", height_mm=HEIGHT)
         for preset in PRESETS:
-            seams = measures["seam_length_mm"]
-            print(check(ms, folder, Path(argument).stem, preset, seams), flush=True)
+            seams, hems = measures["seam_length_mm"], measures["hem_length_mm"]
+            print(check(ms, folder, Path(argument).stem, preset, seams, hems), flush=True)
 
 
 if __name__ == "__main__":

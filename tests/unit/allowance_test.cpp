@@ -96,5 +96,34 @@ TEST(Allowance, NarrowDartsAreCovered) {
         EXPECT_FALSE(p.y() > 0.0 && p.y() < 38.0 && p.x() > 0.0 && p.x() < 40.0);
 }
 
+// The lower side of the square is a hem, twice as wide as the seams.
+TEST(Allowance, HemsHaveAWidthOfTheirOwn) {
+    PatternPiece piece = piece_of(square);
+    piece.outer.edges.assign(4, {0, 0});
+    piece.outer.edges[0].seam = -1;
+    const Ring cut = add_allowance(piece, {5.0, 10.0}, CornerStyle::miter)[0];
+    EXPECT_NEAR(area(cut), (40.0 + 2 * 5.0) * (40.0 + 5.0 + 10.0), 1e-3);
+    EXPECT_NEAR(distance(cut, Vec2(20, 0)), 10.0, 1e-5);
+    EXPECT_NEAR(distance(cut, Vec2(20, 40)), 5.0, 1e-5);
+    // No hem, and nothing but the hem: both end where the sides of the square meet their lines.
+    EXPECT_NEAR(area(add_allowance(piece, {5.0, 0.0}, CornerStyle::miter)[0]), 50.0 * 45.0, 1e-3);
+    EXPECT_NEAR(area(add_allowance(piece, {0.0, 10.0}, CornerStyle::miter)[0]), 40.0 * 50.0, 1e-3);
+    for (const CornerStyle style : {CornerStyle::bevel, CornerStyle::round}) {
+        const double all = area(add_allowance(piece, {5.0, 10.0}, style)[0]);
+        EXPECT_LT(all, 50.0 * 55.0);
+        EXPECT_GT(all, 50.0 * 55.0 - 2 * 50.0 - 2 * 25.0);
+    }
+}
+
+// Where a hem goes on straight as a seam, the cut line steps.
+TEST(Allowance, StepsOnStraightOutlines) {
+    PatternPiece piece =
+        piece_of({Vec2(0, 0), Vec2(20, 0), Vec2(40, 0), Vec2(40, 40), Vec2(0, 40)});
+    piece.outer.edges.assign(5, {0, 0});
+    piece.outer.edges[0].seam = -1;
+    const Ring cut = add_allowance(piece, {5.0, 12.0}, CornerStyle::miter)[0];
+    EXPECT_NEAR(area(cut), 50.0 * 50.0 + 25.0 * 7.0, 1e-3);
+}
+
 } // namespace
 } // namespace devseg

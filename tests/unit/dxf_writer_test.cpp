@@ -81,5 +81,29 @@ TEST(DxfWriter, SameBytesInEveryLocale) {
     std::setlocale(LC_ALL, before.c_str());
 }
 
+TEST(DxfWriter, CurvesAreSplinesOfRelease2000) {
+    Drawing drawing = small_drawing();
+    DrawingPolyline& ring = drawing.layers[0].paths[0].parts[0];
+    const Vec2 a(10, 10);
+    const Vec2 b(30, 10);
+    ring.curves = {{{a, Vec2(15, 0), Vec2(25, 0), b}, false}, {{b, b, a, a}, true}};
+    const Groups groups = parse(dxf_bytes(drawing));
+    const auto has = [&](int code, const char* value) {
+        return std::find(groups.begin(), groups.end(), std::pair(code, std::string(value))) !=
+               groups.end();
+    };
+    EXPECT_TRUE(has(1, "AC1015"));
+    EXPECT_TRUE(has(0, "SPLINE"));
+    EXPECT_TRUE(has(0, "LWPOLYLINE")) << "the sew line";
+    EXPECT_TRUE(has(72, "11")) << "knots of two curves of degree 3";
+    EXPECT_TRUE(has(73, "7"));
+    // No handle is used twice, and the next one is free.
+    std::vector<std::string> handles = values(groups, 5);
+    const std::string seed = handles.front();
+    std::sort(handles.begin(), handles.end());
+    EXPECT_EQ(std::adjacent_find(handles.begin(), handles.end()), handles.end());
+    EXPECT_EQ(std::count(handles.begin(), handles.end(), seed), 1);
+}
+
 } // namespace
 } // namespace devseg

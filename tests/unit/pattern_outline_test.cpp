@@ -158,5 +158,36 @@ TEST(Curves, CoverTheOutlineInOrder) {
         }
 }
 
+double length_of(const Points& points, bool closed) {
+    double length = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        length += (points[i + 1] - points[i]).norm();
+    return closed ? length + (points.front() - points.back()).norm() : length;
+}
+
+TEST(Curves, AreAsLongAsTheirEdges) {
+    Points points = arc(60.0, 0.2, 4.0, 25); // chords, shorter than the arc by 0.4 mm
+    Points curve = flatten_curves(fit_polyline(points, 0.4), 1e-5);
+    curve.push_back(points.back());
+    EXPECT_NEAR(length_of(curve, false), length_of(points, false), 1e-3);
+    EXPECT_LT(fit_polyline(points, 0.4).size(), 10U);
+}
+
+TEST(Curves, ARingHasItsCorners) {
+    Points ring = arc(50.0, 0.0, shapes::pi, 60); // half a disk
+    const std::vector<OutlineCurve> curves = fit_ring(ring, 0.35, 0.1);
+    const Points flat = flatten_curves(curves, 1e-4);
+    EXPECT_NEAR(length_of(flat, true), length_of(ring, true), 0.01);
+    EXPECT_EQ(std::count_if(curves.begin(), curves.end(),
+                            [](const OutlineCurve& c) { return c.is_line; }),
+              1);
+    Index covered = 0;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        covered += curves[i].count;
+        EXPECT_EQ(curves[i].control[3], curves[(i + 1) % curves.size()].control[0]);
+    }
+    EXPECT_EQ(covered, 61);
+}
+
 } // namespace
 } // namespace devseg

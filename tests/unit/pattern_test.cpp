@@ -7,6 +7,8 @@
 
 #include "devseg/pattern/layout.h"
 #include "devseg/pattern/match.h"
+#include "devseg/pattern/matched_map.h"
+#include "devseg/pattern/notches.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
 #include "unit/checks.h"
@@ -177,6 +179,26 @@ TEST(Notches, LieAtTheSameShareOnBothSidesAndFitOneWayOnly) {
     EXPECT_TRUE(samples::two_pieces().pattern(options).seams[0].sides[0].notches.empty());
 }
 
+// A jog in the middle of the seam, where the only notch would be.
+TEST(Notches, KeepAwayFromSharpBends) {
+    Pattern pattern;
+    pattern.pieces.resize(2);
+    const std::vector<Vec2> bent{{0, 0}, {40, 0}, {40, 3}, {80, 3}};
+    for (const std::size_t p : {std::size_t{0}, std::size_t{1}})
+        pattern.pieces[p].outer.points = bent;
+    Seam seam;
+    seam.number = 1;
+    for (const Index p : {0, 1})
+        seam.sides[at(p)] = {p, 0, 0, 3, false, 83.0, {}};
+    pattern.seams = {seam};
+    for (const double spacing : {20.0, 60.0}) {
+        set_notches(pattern, spacing);
+        for (const SeamSide& side : pattern.seams[0].sides)
+            for (const double notch : side.notches)
+                EXPECT_TRUE(notch < 38.0 || notch > 45.0) << spacing << ' ' << notch;
+    }
+}
+
 TEST(Notches, PointOnSideIsOnTheOutlineAndLooksOut) {
     const Pattern pattern = samples::two_pieces().pattern();
     const Seam& seam = pattern.seams[0];
@@ -287,6 +309,56 @@ TEST(Shapes, StackedPiecesGetPlacesOfTheirOwn) {
     }
     ASSERT_FALSE(pattern.notes.empty());
     EXPECT_TRUE(checks::contains(pattern.notes.front(), "2 of 3 pieces lay on others"));
+}
+
+// A square whose outline was moved by a linear map: mean value coordinates repeat it inside.
+TEST(MatchedMap, FollowsLinearMovesOfTheOutline) {
+    const Mesh mesh = gate_mesh(shapes::grid(6, 6, 10.0, 10.0)).mesh;
+    CornerUv uv;
+    for (const Triangle& t : mesh.faces)
+        for (const Index v : t)
+            uv.push_back(mesh.points[at(v)].head<2>());
+    Eigen::Matrix2d map;
+    map << 1.1, 0.05, -0.02, 0.9;
+    PatternPiece piece;
+    std::vector<Index> faces;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        faces.push_back(f);
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+            if (mesh.twin[at(h)] < 0)
+                piece.outer.half_edge.push_back(h);
+    }
+    // Around the square.
+    std::vector<Index>& ring = piece.outer.half_edge;
+    for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+        for (std::size_t k = i + 1; k < ring.size(); ++k)
+            if (mesh.origin(ring[k]) == mesh.origin(Mesh::next(ring[i])))
+                std::swap(ring[i + 1], ring[k]);
+    for (const Index h : ring)
+        piece.outer.points.push_back(map * uv[at(h)] + Vec2(3, 4));
+    for (const Vec2& p : piece.outer.points)
+        piece.box.extend(p);
+    const std::vector<Vec2> moved = place_corners(mesh, uv, faces, piece);
+    for (std::size_t i = 0; i < uv.size(); ++i)
+        EXPECT_LT((moved[i] - map * uv[i] - Vec2(3, 4)).norm(), 1e-9);
+}
+
+TEST(MatchedMap, IsThatOfTheSheetInsideMatchedPieces) {
+    Cloth cloth;
+    cloth.add(shapes::grid(8, 8, 80.0, 80.0), [](const Vec3& p, const Vec3& middle) {
+        return Vec2(p.x() + (middle.x() > 40.0 ? 5.0 : 0.0),
+                    (middle.x() > 40.0 ? 1.05 : 1.0) * p.y());
+    });
+    const Pattern pattern = cloth.pattern();
+    const Mesh mesh = cloth.mesh();
+    for (const PatternPiece& piece : pattern.pieces) {
+        Eigen::AlignedBox2d box;
+        for (std::size_t i = 0; i < pattern.corner_place.size(); ++i)
+            if (&pattern.pieces[at(pattern.face_piece[i / 3])] == &piece)
+                box.extend(pattern.corner_place[i]);
+        EXPECT_LT((box.min() - piece.box.min()).norm(), 1e-6);
+        EXPECT_LT((box.max() - piece.box.max()).norm(), 1e-6);
+    }
 }
 
 TEST(Shapes, StrainIsThatOfTheLinesInTheMaterial) {

@@ -4,36 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "devseg/errors.h"
-#include "sheet/carry_folds.h"
 #include "sheet/nesting.h"
 #include "sheet/page_size.h"
 #include "unit/checks.h"
 
 namespace devseg {
 namespace {
-
-// A square whose outline was moved by a linear map: mean value coordinates repeat it inside.
-TEST(CarryFolds, FollowLinearMovesOfTheOutline) {
-    const std::vector<Vec2> square = {Vec2(0, 0), Vec2(10, 0), Vec2(10, 10), Vec2(0, 10)};
-    Eigen::Matrix2d map;
-    map << 1.1, 0.05, -0.02, 0.9;
-    Pattern pattern;
-    pattern.pieces.emplace_back();
-    PatternPiece& piece = pattern.pieces[0];
-    CornerUv uv;
-    for (std::size_t i = 0; i < square.size(); ++i) {
-        uv.push_back(square[i]);
-        piece.outer.points.push_back(map * square[i] + Vec2(3, 4));
-        piece.outer.half_edge.push_back(static_cast<Index>(i));
-    }
-    const Vec2 from(2, 3);
-    const Vec2 to(10, 6); // on the outline
-    piece.folds = {{from, to, 1.0}, {Vec2(12, 2), Vec2(14, 3), 1.0}};
-    carry_folds(uv, pattern);
-    ASSERT_EQ(piece.folds.size(), 1u) << "the fold outside stays out";
-    EXPECT_LT((piece.folds[0].from - map * from - Vec2(3, 4)).norm(), 1e-12);
-    EXPECT_LT((piece.folds[0].to - map * to - Vec2(3, 4)).norm(), 1e-12);
-}
 
 SheetPiece rectangle(double width, double height) {
     SheetPiece piece;

@@ -98,7 +98,6 @@ LayerMesh lay_out_faces(const FilterInput& input, const Pattern& pattern,
         const Index p = pattern.face_piece[at(surface.face.front())];
         if (p < 0)
             continue; // charts too small to be cut out
-        const PaperMap& place = pattern.pieces[at(p)].place;
         const Index first = static_cast<Index>(layer.geometry.points.size());
         layer.geometry.points.resize(at(first) + surface.vertex.size());
         for (Index f = 0; f < surface.face_count(); ++f) {
@@ -106,10 +105,10 @@ LayerMesh lay_out_faces(const FilterInput& input, const Pattern& pattern,
             Triangle corners{};
             for (Index k = 0; k < 3; ++k) {
                 corners[at(k)] = first + surface.corners[at(f)][at(k)];
-                const Vec2 position = place(uv[at(3 * source + k)]);
+                const Vec2& position = pattern.corner_place[at(3 * source + k)];
                 layer.geometry.points[at(corners[at(k)])] = Vec3(position.x(), position.y(), 0.0);
             }
-            if (place.scale.x() < 0.0)
+            if (pattern.pieces[at(p)].place.scale.x() < 0.0)
                 std::swap(corners[1], corners[2]); // turned over: faces upwards again
             layer.geometry.faces.push_back(corners);
             const FaceStrain& own = strain[at(source)];
@@ -130,11 +129,10 @@ FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, P
     const Pattern pattern = make_pattern(input.mesh, *input.uv, options, progress);
     FilterOutput output;
     output.notes = pattern.notes;
-    output.layer = lay_out_faces(
-        input, pattern,
-        measure_strain(input.mesh, *input.uv,
-                       layout_scale(input.mesh, charts_from_uv(input.mesh, *input.uv), *input.uv)),
-        options.strain_range);
+    const double scale = 1.0 / (pattern.mm_per_unit * input.mesh.unit_length);
+    output.layer =
+        lay_out_faces(input, pattern, measure_strain(input.mesh, pattern.corner_place, scale),
+                      options.strain_range);
     output.values = {{"pieces_number", static_cast<int>(pattern.pieces.size())},
                      {"width_mm", pattern.width},
                      {"height_mm", pattern.height}};
@@ -210,6 +208,7 @@ ResultValues measure_seams(const Pattern& pattern) {
     return {{"seams_number", static_cast<int>(seams.size())},
             {"darts_number", static_cast<int>(darts)},
             {"notches_number", static_cast<int>(total(notches))},
+            {"hem_length_mm", pattern.hem_length},
             {"mismatched_seams_number", static_cast<int>(apart)},
             {"max_seam_mismatch_mm", largest(mismatches)},
             {"max_seam_mismatch_percent",
@@ -344,6 +343,7 @@ FilterDeclaration measures() {
         .result("seams_number", "seams, darts among them")
         .result("darts_number", "seams of a piece with itself that end at a tip")
         .result("notches_number", "pairs of notches")
+        .result("hem_length_mm", "length of all outlines that are sewn to nothing in mm")
         .result("mismatched_seams_number", "seams whose sides differ by more than 0.2 % or 0.5 mm")
         .result("max_seam_mismatch_mm", "largest difference of a seam's sides in mm")
         .result("max_seam_mismatch_percent", "the same in percent of the seam's length")

@@ -33,7 +33,8 @@ struct PiecePath {
 };
 
 /// From the texture coordinates to the sheet, for one piece: `scale` is negative where the chart
-/// was turned over. Outlines follow it up to their simplification.
+/// was turned over. Outlines follow it up to their simplification, unless they were changed to
+/// match seams: Pattern::corner_place has the faces as they lie inside the outlines.
 struct PaperMap {
     Vec2 origin = Vec2::Zero(); // in the texture coordinates
     Vec2 scale = Vec2::Ones();  // mm for one unit, along x and y
@@ -100,7 +101,10 @@ struct Pattern {
     double width = 0.0;             // mm
     double height = 0.0;            // mm
     double mm_per_unit = 1.0;       // as used, from height_mm where that was given
+    double hem_length = 0.0;        // mm, of all edges of pieces that are sewn to nothing
     std::vector<Index> face_piece;  // #F: piece that each face of the mesh lies in, −1 = none
+    std::vector<Vec2> corner_place; // 3 #F: where the corners of each face lie on the sheet, mm;
+                                    // 0 for faces in no piece
     std::vector<std::string> notes; // what the user should know, one sentence each
 };
 

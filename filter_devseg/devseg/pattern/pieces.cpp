@@ -12,6 +12,7 @@
 #include "devseg/pattern/label_point.h"
 #include "devseg/pattern/layout.h"
 #include "devseg/pattern/match.h"
+#include "devseg/pattern/matched_map.h"
 #include "devseg/pattern/notches.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
@@ -345,22 +346,34 @@ std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
 
 // Everything that is read off the finished outlines.
 void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
-                     const ChartAreas& areas, const PatternOptions& options, double mm,
-                     Pattern& pattern, Progress& progress) {
-    const std::vector<FaceStrain> strain = measure_strain(mesh, uv, areas.scale);
+                     const PatternOptions& options, double mm, Pattern& pattern,
+                     Progress& progress) {
     const ChartFaces groups = group_faces(charts);
+    const auto faces_of = [&](const PatternPiece& piece) {
+        const std::size_t c = at(piece.chart);
+        return std::vector<Index>(groups.faces.begin() + groups.begin[c],
+                                  groups.faces.begin() + groups.begin[c + 1]);
+    };
+    const double count = static_cast<double>(pattern.pieces.size());
     pattern.face_piece.assign(mesh.faces.size(), -1);
+    pattern.corner_place.assign(3 * mesh.faces.size(), Vec2::Zero());
+    for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
+        const std::vector<Index> faces = faces_of(pattern.pieces[i]);
+        const std::vector<Vec2> corners = place_corners(mesh, uv, faces, pattern.pieces[i]);
+        for (std::size_t k = 0; k < faces.size(); ++k) {
+            pattern.face_piece[at(faces[k])] = static_cast<Index>(i);
+            for (std::size_t corner = 0; corner < 3; ++corner)
+                pattern.corner_place[at(3 * faces[k]) + corner] = corners[3 * k + corner];
+        }
+        progress.update(0.5 * static_cast<double>(i) / count);
+    }
+    const std::vector<FaceStrain> strain = measure_strain(mesh, pattern.corner_place, 1.0 / mm);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         PatternPiece& piece = pattern.pieces[i];
-        const std::size_t c = at(piece.chart);
-        const std::vector<Index> faces(groups.faces.begin() + groups.begin[c],
-                                       groups.faces.begin() + groups.begin[c + 1]);
-        for (const Index f : faces)
-            pattern.face_piece[at(f)] = static_cast<Index>(i);
         set_sizes(piece, options.grain);
-        measure_inside(mesh, uv, faces, charts.seam, strain, options.fold_angle * degree, mm,
-                       piece);
-        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+        measure_inside(mesh, pattern.corner_place, faces_of(piece), charts.seam, strain,
+                       options.fold_angle * degree, mm, piece);
+        progress.update(0.5 + 0.5 * static_cast<double>(i) / count);
     }
     find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
 }
@@ -401,7 +414,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     set_notches(pattern, options.notch_spacing_mm);
     mark_corners(pattern.pieces, chains, options.corner_angle * degree);
     fit_curves(pattern.pieces, chains, options.curve_mm);
-    describe_pieces(mesh, uv, split.charts, areas, options, mm, pattern, progress);
+    describe_pieces(mesh, uv, split.charts, options, mm, pattern, progress);
     note_folds(pattern, areas);
     note_scale_errors(pattern);
     note_mismatches(pattern);

@@ -307,6 +307,15 @@ void set_seams(Pattern& pattern, const std::vector<Chain>& chains) {
 }
 
 void measure_sides(Pattern& pattern) {
+    pattern.hem_length = 0.0;
+    for (const PatternPiece& piece : pattern.pieces)
+        for (Index l = 0; l < piece.path_count(); ++l) {
+            const PiecePath& path = piece.path(l);
+            for (std::size_t i = 0; i < path.points.size(); ++i)
+                if (path.edges[i].seam < 0)
+                    pattern.hem_length +=
+                        (path.points[(i + 1) % path.points.size()] - path.points[i]).norm();
+        }
     for (Seam& seam : pattern.seams)
         for (SeamSide& side : seam.sides) {
             side.length = 0.0;

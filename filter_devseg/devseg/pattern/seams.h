@@ -53,7 +53,7 @@ void drop_empty_edges(std::vector<PatternPiece>& pieces, std::vector<Chain>& cha
 /// them, and writes to each edge what lies along it.
 void set_seams(Pattern& pattern, const std::vector<Chain>& chains);
 
-/// Sets the lengths of all sides.
+/// Sets the lengths of all sides, and of the hems.
 void measure_sides(Pattern& pattern);
 
 /// A place on a side of a seam.

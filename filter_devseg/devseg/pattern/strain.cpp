@@ -40,20 +40,22 @@ FaceStrain strain_of(const Eigen::Matrix2d& rest, const Eigen::Matrix2d& paper) 
 
 } // namespace
 
-std::vector<FaceStrain> measure_strain(const Mesh& mesh, const CornerUv& uv, double scale) {
+std::vector<FaceStrain> measure_strain(const Mesh& mesh, const std::vector<Vec2>& corners,
+                                       double scale) {
     std::vector<FaceStrain> strain;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         Eigen::Matrix2d paper;
-        paper.col(0) = scale * (uv[at(3 * f + 1)] - uv[at(3 * f)]);
-        paper.col(1) = scale * (uv[at(3 * f + 2)] - uv[at(3 * f)]);
+        paper.col(0) = scale * (corners[at(3 * f + 1)] - corners[at(3 * f)]);
+        paper.col(1) = scale * (corners[at(3 * f + 2)] - corners[at(3 * f)]);
         strain.push_back(strain_of(rest_edges(mesh, mesh.faces[at(f)]), paper));
     }
     return strain;
 }
 
-void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Index>& faces,
-                    const std::vector<std::uint8_t>& seam, const std::vector<FaceStrain>& strain,
-                    double fold_angle, double mm, PatternPiece& piece) {
+void measure_inside(const Mesh& mesh, const std::vector<Vec2>& corners,
+                    const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
+                    const std::vector<FaceStrain>& strain, double fold_angle, double mm,
+                    PatternPiece& piece) {
     double area = 0.0;
     double sum = 0.0;
     double worst = -1.0;
@@ -67,7 +69,7 @@ void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Inde
             worst = own.largest();
             piece.strain.worst_face = f;
             piece.strain.worst_place =
-                piece.place((uv[at(3 * f)] + uv[at(3 * f + 1)] + uv[at(3 * f + 2)]) / 3.0);
+                (corners[at(3 * f)] + corners[at(3 * f + 1)] + corners[at(3 * f + 2)]) / 3.0;
         }
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
             const Index twin = mesh.twin[at(h)];
@@ -80,7 +82,7 @@ void measure_inside(const Mesh& mesh, const CornerUv& uv, const std::vector<Inde
                 continue;
             const Vec3 across = mesh.points[at(mesh.origin(Mesh::previous(twin)))] -
                                 mesh.points[at(mesh.origin(h))];
-            piece.folds.push_back({piece.place(uv[at(h)]), piece.place(uv[at(Mesh::next(h))]),
+            piece.folds.push_back({corners[at(h)], corners[at(Mesh::next(h))],
                                    normal.dot(across) < 0.0 ? angle : -angle});
         }
     }

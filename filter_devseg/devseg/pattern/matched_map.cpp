@@ -1,18 +1,19 @@
 // References
 //   K. Hormann, M. S. Floater: Mean value coordinates for arbitrary planar polygons. ACM
 //   Transactions on Graphics 25(4), 2006: section 5, the weights without angles.
-#include "sheet/carry_folds.h"
+#include "devseg/pattern/matched_map.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "sheet/segment_grid.h"
+#include <utility>
 
 namespace devseg {
 
 namespace {
 
 using Ring = std::vector<Vec2>;
+
+// Moves below this share of the piece's size are rounding.
+constexpr double no_move = 1e-9;
 
 // An outline before it was moved, and how far each of its points was.
 struct MovedRing {
@@ -23,10 +24,7 @@ struct MovedRing {
 MovedRing moved_ring(const PiecePath& path, const PaperMap& place, const CornerUv& uv) {
     MovedRing ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const Index h = i < path.half_edge.size() ? path.half_edge[i] : -1;
-        if (h < 0)
-            continue; // a point that is none of the mesh
-        ring.points.push_back(place(uv[at(h)]));
+        ring.points.push_back(place(uv[at(path.half_edge[i])]));
         ring.moves.push_back(path.points[i] - ring.points.back());
     }
     return ring;
@@ -64,24 +62,34 @@ Vec2 interpolated(const std::vector<MovedRing>& rings, const Vec2& p) {
 
 } // namespace
 
-void carry_folds(const CornerUv& uv, Pattern& pattern) {
-    for (PatternPiece& piece : pattern.pieces) {
-        std::vector<MovedRing> moved;
-        std::vector<Ring> outlines;
-        for (Index i = 0; i < piece.path_count(); ++i) {
-            moved.push_back(moved_ring(piece.path(i), piece.place, uv));
-            outlines.push_back(piece.path(i).points);
-        }
-        for (PieceFold& fold : piece.folds) {
-            fold.from += interpolated(moved, fold.from);
-            fold.to += interpolated(moved, fold.to);
-        }
-        const auto is_outside = [&](const PieceFold& fold) {
-            return !is_inside(outlines, 0.5 * (fold.from + fold.to));
-        };
-        piece.folds.erase(std::remove_if(piece.folds.begin(), piece.folds.end(), is_outside),
-                          piece.folds.end());
+std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
+                                const std::vector<Index>& faces, const PatternPiece& piece) {
+    std::vector<MovedRing> moved;
+    bool any = false;
+    for (Index i = 0; i < piece.path_count(); ++i) {
+        moved.push_back(moved_ring(piece.path(i), piece.place, uv));
+        for (const Vec2& move : moved.back().moves)
+            any = any || move.norm() > no_move * piece.box.sizes().norm();
     }
+    // Corners at one vertex are mostly one place: the last one is remembered.
+    std::vector<std::pair<Vec2, Vec2>> known; // before and after
+    std::vector<Index> entry(any ? mesh.points.size() : 0, -1);
+    std::vector<Vec2> corners;
+    for (const Index f : faces)
+        for (Index k = 0; k < 3; ++k) {
+            const Vec2 p = piece.place(uv[at(3 * f + k)]);
+            if (!any) {
+                corners.push_back(p);
+                continue;
+            }
+            Index& last = entry[at(mesh.faces[at(f)][at(k)])];
+            if (last < 0 || known[at(last)].first != p) {
+                last = static_cast<Index>(known.size());
+                known.emplace_back(p, p + interpolated(moved, p));
+            }
+            corners.push_back(known[at(last)].second);
+        }
+    return corners;
 }
 
 } // namespace devseg
