@@ -13,6 +13,9 @@ PATTERN_FORMATS = ("svg", "pdf", "dxf")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
+CURVES = {"polylines": "Polylines", "beziers": "Beziers"}
+CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
+
 
 def length(least: float = 0.0) -> Callable[[str], float]:
     """A parser of finite numbers of at least `least`."""
@@ -40,13 +43,37 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--page-margin-mm", type=length(), metavar="M", help="default: 10")
     group.add_argument(
-        "--seam-allowance-mm", type=length(), metavar="A", help="around each piece; default: 0"
+        "--seam-allowance-mm", type=length(), metavar="A", help="along seams; default: 0"
+    )
+    group.add_argument(
+        "--hem-allowance-mm",
+        type=length(),
+        metavar="A",
+        help="along open borders; default: as seams",
     )
     group.add_argument(
         "--notch-spacing-mm", type=length(), metavar="D", help="between notches; default: 0, none"
     )
     group.add_argument(
         "--fold-angle", type=length(), metavar="DEG", help="least angle of a fold; default: 22.5"
+    )
+    group.add_argument(
+        "--max-piece-mm", type=length(), metavar="L", help="split larger pieces; default: 0, none"
+    )
+    group.add_argument(
+        "--simplify-mm", type=length(), metavar="T", help="of outlines; default: 0.1"
+    )
+    group.add_argument(
+        "--curves", choices=CURVES, help="how outlines are written; default: polylines"
+    )
+    group.add_argument(
+        "--curve-mm", type=length(1e-3), metavar="T", help="tolerance of curves; default: 0.1"
+    )
+    group.add_argument(
+        "--corner-style", choices=CORNERS, help="corners of the allowance; default: miter"
+    )
+    group.add_argument(
+        "--tab-depth-mm", type=length(0.5), metavar="D", help="of glue tabs; default: 5"
     )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     for name, text in (
@@ -61,6 +88,9 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--no-tiling", action="store_false", dest="tiling", default=None, help="refuse large pieces"
     )
     group.add_argument(
+        "--no-labels", action="store_false", dest="labels", default=None, help="no piece names"
+    )
+    group.add_argument(
         "--no-cover", action="store_false", dest="cover", default=None, help="PDF: patterns only"
     )
 
@@ -69,6 +99,11 @@ _PARAMETERS = (
     "page",
     "page_margin_mm",
     "seam_allowance_mm",
+    "hem_allowance_mm",
+    "max_piece_mm",
+    "simplify_mm",
+    "curve_mm",
+    "tab_depth_mm",
     "notch_spacing_mm",
     "fold_angle",
     "glue_tabs",
@@ -78,17 +113,19 @@ _PARAMETERS = (
     "mirror",
     "tiling",
     "cover",
+    "labels",
 )
+
+_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "curves": CURVES, "corner_style": CORNERS}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
     """The parameters of the export filter that were given; the scale always is."""
     given = {name: getattr(args, name) for name in _PARAMETERS}
     parameters = {name: value for name, value in given.items() if value is not None}
-    if args.preset:
-        parameters["preset"] = PRESETS[args.preset]
-    if args.dxf_kind:
-        parameters["dxf_kind"] = DXF_KINDS[args.dxf_kind]
+    for name, values in _CHOICES.items():
+        if (value := getattr(args, name)) is not None:
+            parameters[name] = values[value]
     if args.height_mm:
         parameters["height_mm"] = args.height_mm
     else:

@@ -42,11 +42,13 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], 
             found[page, extension] = reader[extension](path)
             if extension != "dxf":
                 assert files.renders(path), path
+        unnumbered[page] = result["unnumbered_seams_number"]
         sheets.append(result["sheets_number"])
         pages = 1 if page == "a4" else 999
         assert files.words_outside(folder / f"{name}_{preset}_{page}.pdf", pages) == []
     overlap = itself = twice = difference = 0.0
     wrong: dict[int, int] = {}
+    unnumbered = {}
     for page in ("none", "a4"):
         svg = found[page, "svg"]
         cut = svg["cut"]
@@ -64,7 +66,9 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], 
             difference = max(difference, *np.abs(np.subtract(lengths, other)))
         if preset != "Plain":
             texts = svg["engrave" if preset == "Laser" else "numbers"].texts
-            wrong |= files.wrong_counts([t for t in texts if t[0].isdigit()], len(seams))
+            wrong |= files.wrong_counts(
+                [t for t in texts if t[0].isdigit()], len(seams), unnumbered[page]
+            )
     net = found["none", "svg"].get("sew", found["none", "svg"]["cut"])
     around = sum(p.length * (1 if p.closed else 2) for p in net.parts)
     whole = preset in ("Plain", "Sewing")
@@ -72,7 +76,8 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], 
     return (
         f"{name:<22} {preset:<11} {len(files.polygons(found['none', 'svg']['cut'])):>4} pieces "
         f"{sheets[1]:>3} sheets {seconds:5.2f} s  overlap {overlap:.4f} itself {itself:.4f} mm2 "
-        f"twice {twice:.2f} formats {difference:.4f} seams {against:.2f} mm wrong {len(wrong)}"
+        f"twice {twice:.2f} formats {difference:.4f} seams {against:.2f} mm wrong {len(wrong)} "
+        f"of {len(seams)}, without room {unnumbered['none']}"
     )
 
 

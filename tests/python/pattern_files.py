@@ -189,13 +189,12 @@ def length_cut_twice(layer: Layer, grid: float = 0.01) -> float:
     return float(total - unary_union(MultiLineString(lines)).length)
 
 
-def wrong_counts(texts: list[str], seams: int) -> dict[int, int]:
-    """Seam numbers that are not written exactly twice: alone, or in a range such as 3-7."""
-    counts: Counter[int] = Counter()
-    for text in texts:
-        first, _, last = text.partition("-")
-        counts.update(range(int(first), int(last or first) + 1))
-    return {number: counts[number] for number in range(1, seams + 1) if counts[number] != 2}
+def wrong_counts(texts: list[str], seams: int, unnumbered: int = 0) -> dict[int, int]:
+    """Seam numbers that are not written exactly twice, or not at all on so many seams."""
+    counts = Counter(int(text) for text in texts)
+    wrong = {n: counts[n] for n in range(1, seams + 1) if counts[n] != 2}
+    missing = [n for n, count in wrong.items() if count == 0]
+    return {n: c for n, c in wrong.items() if c} if len(missing) == unnumbered else wrong
 
 
 def words_outside(path: Path, pages: int) -> list[str]:

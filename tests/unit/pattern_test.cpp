@@ -150,7 +150,22 @@ TEST(Seams, SidesOfUnequalLengthAreMatched) {
     EXPECT_TRUE(checks::contains(before.notes.back(), "LPFB"));
     const Pattern after = cloth.pattern();
     EXPECT_NEAR(after.seams[0].mismatch(), 0.0, 1e-6);
-    EXPECT_NEAR(after.seams[0].sides[0].length, 80.0, 0.01); // as long as on the model
+    // Neither side is as long as on the model: both meet in the middle.
+    const double middle = 0.5 * (before.seams[0].sides[0].length + before.seams[0].sides[1].length);
+    EXPECT_NEAR(after.seams[0].sides[0].length, middle, 1e-6);
+}
+
+TEST(Seams, ASideThatIsTrueKeepsItsLength) {
+    Cloth cloth;
+    // A long piece that is true decides the scale; the short one at its end is stretched.
+    cloth.add(shapes::grid(40, 8, 4000.0, 80.0), [](const Vec3& p, const Vec3& middle) {
+        const bool stretched = middle.x() > 3900.0;
+        return Vec2(p.x() + (stretched ? 5.0 : 0.0), (stretched ? 1.05 : 1.0) * p.y());
+    });
+    const Pattern pattern = cloth.pattern();
+    ASSERT_EQ(pattern.seams.size(), 1U);
+    EXPECT_NEAR(pattern.seams[0].mismatch(), 0.0, 1e-6);
+    EXPECT_NEAR(pattern.seams[0].sides[0].length, 80.0, 0.01);
 }
 
 TEST(Notches, LieAtTheSameShareOnBothSidesAndFitOneWayOnly) {

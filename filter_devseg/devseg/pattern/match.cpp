@@ -70,21 +70,29 @@ void set_target(const std::vector<PatternPiece>& pieces, const SeamSide& side, I
 // to their mean, or not at all.
 enum class Freedom : std::uint8_t { free, own_seams, fixed };
 
-// The length for edge k of a chain, with sides of the given freedom.
+// The length for edge k of a chain, with sides of the given freedom: that of the side that must
+// keep it, that on the model where a side has it along the whole seam, or the mean of both.
 double target_length(const std::vector<PatternPiece>& pieces, const Chain& chain, Index k,
-                     const std::vector<Freedom>& freedom) {
+                     const std::vector<Freedom>& freedom, bool is_true) {
     double sum = 0.0;
     int held = 0; // sides that keep their lengths
-    for (const SeamSide& side : chain.sides)
+    double both = 0.0;
+    for (const SeamSide& side : chain.sides) {
+        const double length = edge_length(pieces, side, k);
+        both += length;
         if (freedom[at(side.piece)] != Freedom::free) {
-            sum += edge_length(pieces, side, k);
+            sum += length;
             ++held;
         }
-    return held > 0 ? sum / held : chain.true_length[at(k)];
+    }
+    if (held > 0)
+        return sum / held;
+    return is_true ? chain.true_length[at(k)] : 0.5 * both;
 }
 
+// `always_true`: as on the model even where neither side is.
 Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
-                     const std::vector<Freedom>& freedom) {
+                     const std::vector<Freedom>& freedom, bool always_true) {
     Targets targets(pieces.size());
     for (std::size_t p = 0; p < pieces.size(); ++p)
         targets[p].resize(at(pieces[p].path_count()));
@@ -99,10 +107,15 @@ Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<
             return freedom[at(side.piece)] == Freedom::free ||
                    (freedom[at(side.piece)] == Freedom::own_seams && a.piece == b.piece);
         };
+        const double on_model =
+            std::accumulate(chain.true_length.begin(), chain.true_length.end(), 0.0);
+        const bool is_true = always_true || sides_agree(side_length(pieces, a), on_model) ||
+                             sides_agree(side_length(pieces, b), on_model);
         for (Index k = 0; k < chain.count(); ++k)
             for (const SeamSide& side : chain.sides)
                 if (may_move(side))
-                    set_target(pieces, side, k, target_length(pieces, chain, k, freedom), targets);
+                    set_target(pieces, side, k, target_length(pieces, chain, k, freedom, is_true),
+                               targets);
     }
     return targets;
 }
@@ -293,17 +306,12 @@ bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& ta
     return false;
 }
 
-} // namespace
-
-bool sides_agree(double length_a, double length_b) {
-    return !differ(length_a, length_b, 1.0);
-}
-
-Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
-                  const Progress& progress) {
+// Matches as many seams as can be, and returns the number of pieces that were changed.
+Index match_with(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                 bool always_true, const Progress& progress) {
     std::vector<Freedom> freedom(pieces.size(), Freedom::free);
     for (int round = 0;; ++round) {
-        const Targets targets = find_targets(pieces, chains, freedom);
+        const Targets targets = find_targets(pieces, chains, freedom, always_true);
         std::vector<PatternPiece> changed = pieces;
         Index count = 0;
         std::size_t failed = pieces.size(); // the largest piece that must stay as it is
@@ -324,6 +332,38 @@ Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
         }
         freedom[failed] = freedom[failed] == Freedom::free ? Freedom::own_seams : Freedom::fixed;
     }
+}
+
+std::size_t count_mismatches(const std::vector<PatternPiece>& pieces,
+                             const std::vector<Chain>& chains) {
+    return static_cast<std::size_t>(
+        std::count_if(chains.begin(), chains.end(), [&](const Chain& chain) {
+            return chain.side_count == 2 && !sides_agree(side_length(pieces, chain.sides[0]),
+                                                         side_length(pieces, chain.sides[1]));
+        }));
+}
+
+} // namespace
+
+bool sides_agree(double length_a, double length_b) {
+    return !differ(length_a, length_b, 1.0);
+}
+
+Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  const Progress& progress) {
+    std::vector<PatternPiece> matched = pieces;
+    const Index changed = match_with(matched, chains, false, progress);
+    const std::size_t left = count_mismatches(matched, chains);
+    if (left > 0) {
+        std::vector<PatternPiece> other = pieces;
+        const Index other_changed = match_with(other, chains, true, progress);
+        if (count_mismatches(other, chains) < left) {
+            pieces = std::move(other);
+            return other_changed;
+        }
+    }
+    pieces = std::move(matched);
+    return changed;
 }
 
 } // namespace devseg
