@@ -26,6 +26,7 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], 
     found = {}
     seconds = 0.0
     sheets = []
+    unnumbered = {}
     for page in ("none", "a4"):
         for extension in ("svg", "pdf", "dxf"):
             path = folder / f"{name}_{preset}_{page}.{extension}"
@@ -48,7 +49,6 @@ def check(ms: object, folder: Path, name: str, preset: str, seams: list[float], 
         assert files.words_outside(folder / f"{name}_{preset}_{page}.pdf", pages) == []
     overlap = itself = twice = difference = 0.0
     wrong: dict[int, int] = {}
-    unnumbered = {}
     for page in ("none", "a4"):
         svg = found[page, "svg"]
         cut = svg["cut"]

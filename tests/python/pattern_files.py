@@ -19,7 +19,7 @@ from lxml import etree
 from shapely import STRtree, set_precision
 from shapely.geometry import LineString, MultiLineString, Polygon
 from shapely.ops import unary_union
-from svgelements import SVG, Close, Line, Move
+from svgelements import SVG, Close, CubicBezier, Line, Move
 from svgelements import Path as SvgPath
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
@@ -86,11 +86,23 @@ def _svg_parts(element: SvgPath) -> Iterable[Part]:
         elif isinstance(segment, Close):
             yield Part(name, np.array(points), True)
             points = []
+        elif isinstance(segment, CubicBezier):
+            controls = (segment.start, segment.control1, segment.control2, segment.end)
+            points += _along_cubic([(p.x, p.y) for p in controls])
         else:
             assert isinstance(segment, Line)
             points.append((segment.end.x, segment.end.y))
     if points:
         yield Part(name, np.array(points), False)
+
+
+def _along_cubic(controls: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Points along a cubic Bezier curve behind its start, close enough to measure lengths."""
+    t = np.linspace(0, 1, 129)[1:, None]
+    a, b, c, d = np.array(controls)
+    s = 1 - t
+    points = s**3 * a + 3 * s**2 * t * b + 3 * s * t**2 * c + t**3 * d
+    return [(float(x), float(y)) for x, y in points]
 
 
 _TOKEN = re.compile(rb"\((?:\\.|[^\\()])*\)|/[^\s/\[\]()<>]+|[^\s/\[\]()<>]+|[\[\]]")
@@ -122,6 +134,9 @@ def read_pdf(path: Path) -> dict[str, Layer]:
             if token == b"m":
                 finish(False)
             points.append((float(stack[-2]), float(stack[-1])))
+        elif token == b"c":
+            x = [float(value) for value in stack[-6:]]
+            points += _along_cubic([points[-1], (x[0], x[1]), (x[2], x[3]), (x[4], x[5])])
         elif token == b"h":
             finish(True)
         elif token == b"S":
@@ -146,6 +161,11 @@ def read_dxf(path: Path) -> dict[str, Layer]:
         if entity.dxftype() == "POLYLINE":
             points = np.array([(p.x, p.y) for p in entity.points()])
             layer.parts.append(Part("", points, entity.is_closed))
+        elif entity.dxftype() == "LWPOLYLINE":
+            layer.parts.append(Part("", np.array(entity.get_points("xy")), entity.closed))
+        elif entity.dxftype() == "SPLINE":
+            points = np.array([(p.x, p.y) for p in entity.flattening(1e-3)])
+            layer.parts.append(Part("", points[:-1], entity.closed))
         elif entity.dxftype() == "TEXT":
             layer.texts.append(entity.dxf.text)
         elif entity.dxftype() == "LINE":

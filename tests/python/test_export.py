@@ -36,6 +36,16 @@ def folded_cube(pymeshlab: Any) -> Any:
     return ms
 
 
+def _square(cells: int) -> tuple[np.ndarray, np.ndarray]:
+    """A flat square of unit cells."""
+    x, y = np.meshgrid(np.arange(cells + 1.0), np.arange(cells + 1.0))
+    low = [r * (cells + 1) + c for r in range(cells) for c in range(cells)]
+    faces = [(i, i + 1, i + cells + 2) for i in low] + [
+        (i, i + cells + 2, i + cells + 1) for i in low
+    ]
+    return np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()]), np.array(faces)
+
+
 def _cross(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     # Sides of the cube by their normal, and how their corners lie in the net.
     nets = {
@@ -79,6 +89,44 @@ def test_all_formats_show_the_same_lines(
     for other in (pdf["Cut"], dxf["CUT"]):
         found = sorted(part.length for part in other.parts)
         np.testing.assert_allclose(found, lengths, atol=0.1)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_curves_are_as_long_as_the_lines_they_replace(
+    flattened: Any, export: Callable, preset: str
+) -> None:
+    options = {"preset": preset, "mm_per_unit": 50.0, "dxf_kind": "Cutter"}
+    name = "sew" if preset == "Sewing" else "cut"
+    lines = files.read_svg(export(flattened, "svg", **options))[name].parts
+    options |= {"curves": "Beziers", "curve_mm": 0.2}
+    path = export(flattened, "svg", **options)
+    assert " C " in path.read_text() and files.renders(path)
+    readers = {"svg": files.read_svg, "pdf": files.read_pdf, "dxf": files.read_dxf}
+    labels = {"svg": name, "pdf": name.capitalize(), "dxf": name.upper()}
+    if name == "sew":
+        labels |= {"pdf": "Sew line", "dxf": "SEW_LINE"}
+    for extension, read in readers.items():
+        path = export(flattened, extension, **options)
+        curves = read(path)[labels[extension]].parts
+        np.testing.assert_allclose(
+            sorted(p.length for p in curves), sorted(p.length for p in lines), atol=0.1
+        )
+    assert b"SPLINE" in path.read_bytes()
+
+
+def test_hems_have_an_allowance_of_their_own(pymeshlab: Any, export: Callable) -> None:
+    vertices, faces = _square(4)
+    wedges = np.array([vertices[v][:2] for face in faces for v in face], dtype=float)
+    ms = pymeshlab.MeshSet()
+    ms.add_mesh(pymeshlab.Mesh(vertices, faces, w_tex_coords_matrix=wedges))
+    size = np.ptp(vertices, axis=0)[:2] * 30.0
+    svg = files.read_svg(
+        export(ms, "svg", mm_per_unit=30.0, seam_allowance_mm=5.0, hem_allowance_mm=20.0)
+    )
+    # A sheet is all hem.
+    (ring,) = svg["cut"].rings
+    np.testing.assert_allclose(np.ptp(ring.points, axis=0), size + 40.0, atol=0.01)
+    assert ring.area == pytest.approx(np.prod(size + 40.0), rel=1e-5)
 
 
 @pytest.mark.parametrize("page", ["none", "a4"])
@@ -165,6 +213,9 @@ def test_apparel_dxf(flattened: Any, export: Callable) -> None:
     assert all(":" in t for layer in layers.values() for t in layer.texts)
     assert layers["14"].rings and layers["4"].parts and layers["7"].parts
     assert all(t.startswith("SEAM: ") for t in layers["15"].texts)
+    # As they are and mirrored, together as many as there are pieces.
+    counts = [t.split(":")[1] for t in layers["1"].texts if t.startswith("Quantity:")]
+    assert sum(int(n) for count in counts for n in count.split(",")) == pieces
 
 
 def test_mirrored_patterns_are_mirrored(folded_cube: Any, export: Callable) -> None:
@@ -196,6 +247,8 @@ def test_same_bytes_again(flattened: Any, export: Callable) -> None:
         ("x.pdf", {"page": "a4", "page_margin_mm": 120.0}, "page_margin_mm: expected"),
         ("x.pdf", {"page": "a4", "tiling": False, "mm_per_unit": 500.0}, "page: expected pieces"),
         ("x.svg", {"seam_allowance_mm": -1.0}, "seam_allowance_mm: expected"),
+        ("x.svg", {"hem_allowance_mm": -2.0}, "hem_allowance_mm: expected"),
+        ("x.svg", {"curve_mm": 0.0}, "curve_mm: expected"),
         ("x.svg", {"seam_allowance_mm": 5.0, "glue_tabs": True}, "glue_tabs: expected"),
     ],
 )

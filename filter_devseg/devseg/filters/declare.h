@@ -88,6 +88,10 @@ public:
         filter_.writes = what;
         return *this;
     }
+    Declare& joins_borders() {
+        filter_.joins_borders = true;
+        return *this;
+    }
     Declare& needs_uv() {
         filter_.needs_uv = true;
         return *this;

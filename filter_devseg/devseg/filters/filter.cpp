@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "devseg/errors.h"
+#include "devseg/mesh/weld.h"
 
 namespace devseg {
 
@@ -96,6 +97,22 @@ HostResult map_back(const GatedMesh& gated, FilterOutput output) {
     return result;
 }
 
+// The mesh with borders joined that lie on each other.
+GatedMesh gate_joined(const RawMesh& raw) {
+    for (const Triangle& t : raw.faces)
+        for (const Index v : t)
+            if (v < 0 || at(v) >= raw.points.size())
+                return gate_mesh(raw); // which says what is wrong
+    const WeldedMesh welded = weld_borders(raw);
+    GatedMesh gated = gate_mesh(welded.mesh);
+    if (welded.edges > 0)
+        gated.notes.push_back(std::to_string(welded.edges) +
+                              (welded.edges == 1 ? " border edge lies" : " border edges lie") +
+                              " on another one: read as a seam "
+                              "('Merge Close Vertices' joins them for good)");
+    return gated;
+}
+
 } // namespace
 
 HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
@@ -103,7 +120,8 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
     if (filter.needs_uv && host.wedge_uv.empty())
         throw InvalidMesh("expected wedge texture coordinates, found none; run 'Charts: Flatten' "
                           "or load a mesh that has them");
-    const GatedMesh gated = gate_mesh(host.geometry);
+    const GatedMesh gated =
+        filter.joins_borders ? gate_joined(host.geometry) : gate_mesh(host.geometry);
     const FilterInput input{gated.mesh, read_charts(host, gated),
                             read_uv(host, gated, filter.needs_uv), gated.source_face};
     try {

@@ -80,6 +80,7 @@ struct FilterDeclaration {
     FilterCategory category = FilterCategory::remeshing;
     unsigned writes = writes_nothing;
     bool needs_uv = false;
+    bool joins_borders = false; // reads border edges that lie on each other as one edge
     std::vector<Parameter> parameters;
     std::vector<ResultField> results;
     std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;

@@ -1,0 +1,108 @@
+#include "devseg/mesh/weld.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+namespace devseg {
+
+namespace {
+
+bool before(const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+struct Edge {
+    Index from; // the end that comes first: by its index, later by its place
+    Index to;
+};
+
+// Edges with one face.
+std::vector<Edge> border_edges(const RawMesh& raw) {
+    std::vector<Edge> edges;
+    for (const Triangle& t : raw.faces)
+        for (std::size_t k = 0; k < 3; ++k)
+            edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+    const auto less = [](const Edge& a, const Edge& b) {
+        return std::pair(a.from, a.to) < std::pair(b.from, b.to);
+    };
+    std::sort(edges.begin(), edges.end(), less);
+    std::vector<Edge> border;
+    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+        while (j < edges.size() && !less(edges[i], edges[j]))
+            ++j;
+        if (j == i + 1 && edges[i].from != edges[i].to)
+            border.push_back(edges[i]);
+    }
+    return border;
+}
+
+// Representatives of vertices that are one.
+class Unions {
+public:
+    explicit Unions(std::size_t size) : parent_(size) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
+    Index find(Index i) {
+        while (parent_[at(i)] != i)
+            i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+        return i;
+    }
+    void join(Index i, Index j) {
+        const Index a = find(i);
+        const Index b = find(j);
+        parent_[at(std::max(a, b))] = std::min(a, b);
+    }
+
+private:
+    std::vector<Index> parent_;
+};
+
+// Faces with three different vertices that lie on those of another face.
+std::size_t count_duplicates(const std::vector<Triangle>& faces) {
+    std::vector<Triangle> sorted;
+    for (Triangle t : faces) {
+        std::sort(t.begin(), t.end());
+        if (t[0] != t[1] && t[1] != t[2])
+            sorted.push_back(t);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    const auto end = std::unique(sorted.begin(), sorted.end());
+    return static_cast<std::size_t>(sorted.end() - end);
+}
+
+} // namespace
+
+WeldedMesh weld_borders(const RawMesh& raw) {
+    const auto place = [&](Index v) -> const Vec3& { return raw.points[at(v)]; };
+    std::vector<Edge> edges = border_edges(raw);
+    for (Edge& edge : edges)
+        if (before(place(edge.to), place(edge.from)))
+            std::swap(edge.from, edge.to);
+    const auto less = [&](const Edge& a, const Edge& b) {
+        if (before(place(a.from), place(b.from)) || before(place(b.from), place(a.from)))
+            return before(place(a.from), place(b.from));
+        return before(place(a.to), place(b.to));
+    };
+    std::stable_sort(edges.begin(), edges.end(), less);
+    WeldedMesh welded{raw, 0};
+    Unions unions(raw.points.size());
+    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+        while (j < edges.size() && !less(edges[i], edges[j]))
+            ++j;
+        if (j != i + 2 || place(edges[i].from) == place(edges[i].to))
+            continue;
+        unions.join(edges[i].from, edges[i + 1].from);
+        unions.join(edges[i].to, edges[i + 1].to);
+        ++welded.edges;
+    }
+    for (Triangle& t : welded.mesh.faces)
+        for (Index& v : t)
+            v = unions.find(v);
+    if (welded.edges > 0 && count_duplicates(welded.mesh.faces) > count_duplicates(raw.faces))
+        return {raw, 0};
+    return welded;
+}
+
+} // namespace devseg
