@@ -37,6 +37,10 @@ constexpr double collapsed = 1e-6;
 // face that some atlas gave a chart of its own. On a sheet of a square metre it is 1 µm wide.
 constexpr double crumb = 1e-12;
 
+// Charts that have collapsed are left out up to this share of the model: makers of atlases give
+// faces that they cannot unfold one point.
+constexpr double left_out_share = 1e-3;
+
 // A model thinner along y than this share of its size has no height to be scaled by.
 constexpr double no_extent = 1e-9;
 
@@ -120,6 +124,7 @@ struct ChartAreas {
     std::vector<double> covered; // the same, faces counted without sign
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
+    Index left_out = 0;       // small charts that have collapsed: their area in the plane is 0
 
     double scale = 1.0; // internal units for one unit of the texture coordinates
     bool is_crumb(std::size_t c) const {
@@ -156,19 +161,27 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& 
     return areas;
 }
 
-// Charts without area in the plane cannot be cut; crumbs need not be.
-void check_charts(const ChartMap& charts, const ChartAreas& areas) {
+// Charts without area in the plane cannot be cut; crumbs need not be. Small ones are left
+// out for that.
+void check_charts(const ChartMap& charts, ChartAreas& areas) {
     const double scale = areas.scale;
     std::vector<std::uint8_t> is_bad(at(charts.count), 0);
     Index count = 0;
+    double lost = 0.0;
     for (std::size_t c = 0; c < is_bad.size(); ++c)
         if (!areas.is_crumb(c) &&
             !(std::abs(areas.plane[c]) * scale * scale >= collapsed * areas.surface[c])) {
             is_bad[c] = 1;
             ++count;
+            lost += areas.surface[c];
         }
-    if (count == 0)
+    if (lost <= left_out_share * areas.surface_total) {
+        for (std::size_t c = 0; c < is_bad.size(); ++c)
+            if (is_bad[c] != 0)
+                areas.plane[c] = 0.0;
+        areas.left_out = count;
         return;
+    }
     std::vector<Index> faces;
     for (std::size_t f = 0; f < charts.chart.size(); ++f)
         if (is_bad[at(charts.chart[f])] != 0)
@@ -189,6 +202,12 @@ void number_pieces(std::vector<PatternPiece>& pieces) {
 }
 
 void note_folds(Pattern& pattern, const ChartAreas& areas) {
+    if (areas.left_out > 0)
+        pattern.notes.push_back(
+            std::to_string(areas.left_out) +
+            (areas.left_out == 1 ? " small chart covers" : " small charts cover") +
+            " no area in the texture coordinates: left out "
+            "('Charts: Flatten' unfolds all)");
     const auto is_folded = [&](const PatternPiece& piece) {
         const double whole = areas.covered[at(piece.chart)];
         return whole - std::abs(areas.plane[at(piece.chart)]) > fold_tolerance * whole;
@@ -272,6 +291,7 @@ SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOpti
                                     progress);
         areas = measure_charts(mesh, uv, result.charts);
         areas.scale = scale;
+        check_charts(result.charts, areas);
     }
     return result;
 }
