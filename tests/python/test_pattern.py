@@ -119,5 +119,5 @@ def test_seams_of_real_models_agree(pymeshlab: ModuleType, data: Path, name: str
     ms.apply_filter(FLATTEN, method="LPFB")
     scale = 600.0 / ms.current_mesh().bounding_box().diagonal()
     measures = ms.apply_filter(MEASURES, mm_per_unit=scale)
-    assert measures["seams_number"] > 4
+    assert measures["seams_number"] >= 4
     assert measures["mismatched_seams_number"] == 0
