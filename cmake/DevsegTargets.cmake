@@ -11,8 +11,8 @@ function(devseg_target name)
     if(DEVSEG_SANITIZE)
         # GCC's analysis sees uninitialised values inside std::regex once code is instrumented.
         target_compile_options(${name} PRIVATE
-            -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+            -fsanitize=${DEVSEG_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
             -Wno-maybe-uninitialized)
-        target_link_options(${name} PRIVATE -fsanitize=address,undefined)
+        target_link_options(${name} PRIVATE -fsanitize=${DEVSEG_SANITIZE})
     endif()
 endfunction()

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "devseg/errors.h"
 #include "devseg/pattern/curves.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
+#include "writers/number_text.h"
 
 namespace devseg {
 
@@ -233,6 +235,11 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
     if (allowance.largest() > 0.0) {
         result.sew = std::move(result.cut);
         result.cut = add_allowance(piece, allowance, options.corner_style);
+        if (result.cut.empty())
+            throw InvalidParameter("seam_allowance_mm: expected pieces large enough for an "
+                                   "allowance, found one of " +
+                                   number_text(piece.box.sizes().maxCoeff(), 6) +
+                                   " mm; check the scale (mm_per_unit, height_mm)");
     }
     if (options.curves == CurveKind::beziers)
         add_curves(piece, outlines, options, result);

@@ -225,6 +225,29 @@ TEST(Gate, EveryComponentKeepsItsOwnMajority) {
     EXPECT_EQ(gate_mesh(raw).mesh.faces, raw.faces);
 }
 
+TEST(Gate, SeparateTrianglesAreJoinedAgain) {
+    const RawMesh sphere = shapes::sphere(2);
+    RawMesh soup;
+    for (const Triangle& t : sphere.faces) {
+        for (const Index v : t)
+            soup.points.push_back(sphere.points[at(v)]);
+        const Index count = static_cast<Index>(soup.points.size());
+        soup.faces.push_back({count - 3, count - 2, count - 1});
+    }
+    const GatedMesh gated = gate_mesh(soup);
+    ASSERT_TRUE(is_valid(gated.mesh));
+    EXPECT_EQ(gated.mesh.points.size(), sphere.points.size());
+    EXPECT_EQ(std::count(gated.mesh.twin.begin(), gated.mesh.twin.end(), -1), 0);
+    ASSERT_EQ(gated.notes.size(), 1U);
+    EXPECT_TRUE(contains(gated.notes[0], "Merge Close Vertices"));
+    // Two sheets that touch are two where their own faces share vertices.
+    const RawMesh sheet = shapes::grid(3, 3);
+    EXPECT_EQ(gate_mesh(shapes::join(sheet, sheet)).mesh.points.size(), 32U);
+    // One face more on vertices of its own changes nothing about a mesh either.
+    const RawMesh two = shapes::join(sheet, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}, {{0, 1, 2}}});
+    EXPECT_EQ(gate_mesh(two).mesh.points.size(), 19U);
+}
+
 // Random triangles on few vertices break every rule at once.
 TEST(Gate, RandomSoupsBecomeManifold) {
     for (std::uint32_t seed = 1; seed <= 300; ++seed) {

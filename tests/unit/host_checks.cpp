@@ -56,6 +56,8 @@ void expect_agreement(const RawMesh& raw, const HostResult& result) {
     ASSERT_EQ(result.chart_id.size(), raw.faces.size());
     ASSERT_EQ(result.seam_edges.size(), raw.faces.size());
     for (const auto& [ends, faces] : edges_of(raw)) {
+        if (ends.size() < 2)
+            continue; // of faces that repeat a vertex
         const auto bit = [&](std::size_t i) {
             return result.seam_edges[faces[i].first] >> faces[i].second & 1;
         };
@@ -64,7 +66,7 @@ void expect_agreement(const RawMesh& raw, const HostResult& result) {
         } else if (faces.size() == 2) {
             ASSERT_EQ(bit(0), bit(1));
             if (result.chart_id[faces[0].first] != result.chart_id[faces[1].first]) {
-                ASSERT_EQ(bit(0), 1);
+                ASSERT_EQ(bit(0), 1) << "faces " << faces[0].first << " and " << faces[1].first;
             }
         }
     }

@@ -52,7 +52,7 @@ bool MinCut::rank_nodes() {
         const Index v = queue[i];
         for (Index k = begin_[at(v)]; k < begin_[at(v) + 1]; ++k) {
             const Arc& arc = arcs_[at(order_[at(k)])];
-            if (arc.capacity <= saturated_ || rank_[at(arc.to)] >= 0)
+            if (!(arc.capacity > saturated_) || rank_[at(arc.to)] >= 0)
                 continue;
             rank_[at(arc.to)] = rank_[at(v)] + 1;
             reached = reached || sides_[at(arc.to)] == CutSide::sink;

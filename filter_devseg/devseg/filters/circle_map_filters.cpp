@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "devseg/cut/disks.h"
 #include "devseg/filters/declare.h"
@@ -39,7 +40,7 @@ FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progres
     output.values = {
         {"charts_number", static_cast<int>(stretch.size())},
         {"circle_l2_stretch", mean},
-        {"circle_l2_stretch_std", standard_deviation(stretch)},
+        {"circle_l2_stretch_std", std::isfinite(mean) ? standard_deviation(stretch) : mean},
         {"largest_circle_l2_stretch", largest},
         {"chart_circle_l2_stretch", std::move(stretch)},
     };

@@ -102,6 +102,13 @@ std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
 
 void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
                                const Progress& progress) {
+    if (problem.faces.size() == 1) { // needles leave a solver no digits, and need none
+        const Triangle& t = problem.faces.front();
+        chart.uv.assign(3, Vec2::Zero());
+        chart.uv[at(t[1])] = problem.edges.front().col(0);
+        chart.uv[at(t[2])] = problem.edges.front().col(1);
+        return;
+    }
     bool refined = false;
     chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
     if (!refined || chart.surface.face_count() <= most_polished_faces) {

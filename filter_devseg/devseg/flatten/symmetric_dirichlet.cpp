@@ -48,12 +48,17 @@ public:
                 entries.emplace_back(i, j, -w);
                 entries.emplace_back(j, i, -w);
             }
-        const double shift = 1e-8 / problem.total_area;
+        double shift = 1e-8 / problem.total_area;
         for (Index v = 0; v < problem.vertex_count; ++v)
             entries.emplace_back(v, v, fixed.empty() || fixed[at(v)] == 0 ? shift : locked);
         Eigen::SparseMatrix<double> matrix(problem.vertex_count, problem.vertex_count);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
+        // The cotangents of needles swallow the shift.
+        for (; solver_.info() != Eigen::Success && shift < locked; shift *= 1e3) {
+            matrix.diagonal().array() += shift;
+            solver_.factorize(matrix);
+        }
         if (solver_.info() != Eigen::Success)
             throw NumericalFailure("expected a positive definite Laplacian, found a singular one");
     }

@@ -108,6 +108,37 @@ Buckets<Item> sort_into_buckets(Index item_count, Index bucket_count, BucketOf b
     return result;
 }
 
+// Files such as STL hold separate triangles: where no two faces share a vertex, those with the same
+// coordinates are one. Returns how many there are less, 0 for any other mesh.
+Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
+    std::vector<std::uint8_t> used(raw.points.size(), 0);
+    std::vector<Index> corners;
+    for (const Triangle& t : faces)
+        for (const Index v : t) {
+            if (used[at(v)]++ != 0)
+                return 0;
+            corners.push_back(v);
+        }
+    const auto key = [&](Index v) {
+        const Vec3& p = raw.points[at(v)];
+        return std::make_tuple(p.x(), p.y(), p.z());
+    };
+    std::sort(corners.begin(), corners.end(), [&](Index a, Index b) {
+        return std::make_pair(key(a), a) < std::make_pair(key(b), b);
+    });
+    std::vector<Index> first(raw.points.size(), -1);
+    Index less = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const bool same = i > 0 && key(corners[i]) == key(corners[i - 1]);
+        first[at(corners[i])] = same ? first[at(corners[i - 1])] : corners[i];
+        less += same ? 1 : 0;
+    }
+    for (Triangle& t : faces)
+        for (Index& v : t)
+            v = first[at(v)];
+    return less;
+}
+
 struct FaceSelection {
     std::vector<Index> kept;         // faces that go on
     std::vector<Index> duplicate_of; // #source faces: the earlier face on the same vertices, or −1
@@ -115,10 +146,10 @@ struct FaceSelection {
     Index duplicates = 0;
 };
 
-FaceSelection select_proper_faces(const RawMesh& raw) {
-    const Index count = static_cast<Index>(raw.faces.size());
+FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vertex_count) {
+    const Index count = static_cast<Index>(faces.size());
     const auto sorted = [&](Index f) {
-        Triangle t = raw.faces[at(f)];
+        Triangle t = faces[at(f)];
         std::sort(t.begin(), t.end());
         return t;
     };
@@ -129,7 +160,7 @@ FaceSelection select_proper_faces(const RawMesh& raw) {
         }
     };
     const auto buckets = sort_into_buckets<Key>(
-        count, static_cast<Index>(raw.points.size()), [&](Index f) { return sorted(f)[0]; },
+        count, vertex_count, [&](Index f) { return sorted(f)[0]; },
         [&](Index f) {
             const Triangle t = sorted(f);
             return Key{t[1], t[2], f};
@@ -306,23 +337,24 @@ void drop_unused_points(Mesh& mesh, std::vector<Index>& source_vertex) {
 
 // Source faces that were left out take the results of a face on the same vertices, or of a face
 // that shares an edge or a vertex with them.
-void find_stand_ins(const RawMesh& raw, const std::vector<Index>& duplicate_of, GatedMesh& gated) {
-    gated.stand_in.assign(raw.faces.size(), -1);
+void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count,
+                    const std::vector<Index>& duplicate_of, GatedMesh& gated) {
+    gated.stand_in.assign(faces.size(), -1);
     for (std::size_t f = 0; f < gated.source_face.size(); ++f)
         gated.stand_in[at(gated.source_face[f])] = static_cast<Index>(f);
-    if (gated.source_face.size() == raw.faces.size())
+    if (gated.source_face.size() == faces.size())
         return;
-    std::vector<Index> face_at_vertex(raw.points.size(), -1);
+    std::vector<Index> face_at_vertex(vertex_count, -1);
     for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        for (const Index v : raw.faces[at(gated.source_face[f])])
+        for (const Index v : faces[at(gated.source_face[f])])
             face_at_vertex[at(v)] = static_cast<Index>(f);
-    for (std::size_t f = 0; f < raw.faces.size(); ++f) {
+    for (std::size_t f = 0; f < faces.size(); ++f) {
         Index& stand_in = gated.stand_in[f];
         if (stand_in >= 0)
             continue;
         if (duplicate_of[f] >= 0)
             stand_in = gated.stand_in[at(duplicate_of[f])];
-        for (const Index v : raw.faces[f])
+        for (const Index v : faces[f])
             if (stand_in < 0)
                 stand_in = face_at_vertex[at(v)];
         if (stand_in < 0)
@@ -343,10 +375,12 @@ GatedMesh gate_mesh(const RawMesh& raw) {
     gated.source_vertex.resize(raw.points.size());
     std::iota(gated.source_vertex.begin(), gated.source_vertex.end(), 0);
 
-    FaceSelection selection = select_proper_faces(raw);
+    std::vector<Triangle> faces = raw.faces;
+    const Index welded = weld_soup(raw, faces);
+    FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
     gated.source_face = std::move(selection.kept);
     for (const Index f : gated.source_face)
-        mesh.faces.push_back(raw.faces[at(f)]);
+        mesh.faces.push_back(faces[at(f)]);
 
     gated.cut.assign(3 * mesh.faces.size(), 0);
     Index crowded_edges = 0;
@@ -378,12 +412,15 @@ GatedMesh gate_mesh(const RawMesh& raw) {
         throw InvalidMesh("expected a surface, found " +
                           counted(static_cast<Index>(raw.faces.size()), "face", "faces") +
                           " without any area; there is nothing to segment");
-    find_stand_ins(raw, selection.duplicate_of, gated);
+    find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
 
     const auto note = [&](Index count, const std::string& text) {
         if (count > 0)
             gated.notes.push_back(text);
     };
+    note(welded, "no two faces share a vertex: " + counted(welded, "vertex was", "vertices were") +
+                     " joined with others at the same place ('Merge Close Vertices' with a "
+                     "threshold of 0 does it for good)");
     note(selection.repeated,
          counted(selection.repeated, "face repeats", "faces repeat") +
              " a vertex and was left out ('Remove Zero Area Faces' drops such faces)");

@@ -1,6 +1,7 @@
 #include "devseg/metrics/circle_maps.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/SparseCholesky>
@@ -15,16 +16,21 @@ namespace {
 
 using Positions = Eigen::MatrixX2d;
 
+// Edges without length get this share of the boundary: their ends must not fall on each other.
+constexpr double least_edge = 1e-9;
+
 // The boundary on the unit circle, in proportion to its length; rows of inner vertices are zero.
 Positions circle_positions(const FlatteningProblem& problem) {
-    const double length =
+    const double given =
         std::accumulate(problem.boundary_edge.begin(), problem.boundary_edge.end(), 0.0);
+    const double added = least_edge * given;
+    const double length = given + added * static_cast<double>(problem.boundary.size());
     const double turn = 2.0 * 3.14159265358979323846 / length;
     Positions positions = Positions::Zero(problem.vertex_count, 2);
     double angle = 0.0;
     for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
         positions.row(problem.boundary[i]) << std::cos(angle), std::sin(angle);
-        angle += turn * problem.boundary_edge[i];
+        angle += turn * (problem.boundary_edge[i] + added);
     }
     return positions;
 }
@@ -87,7 +93,11 @@ double stretch(const FlatteningProblem& problem, const Positions& positions) {
         flat.col(1) = (positions.row(t[2]) - positions.row(t[0])).transpose();
         flat_area += 0.5 * std::abs(flat.determinant());
         // (Γ² + γ²) / 2 of the map from the disc to the surface.
-        sum += problem.area[f] * 0.5 * (problem.edges[f] * flat.inverse()).squaredNorm();
+        const double face = (problem.edges[f] * flat.inverse()).squaredNorm();
+        // Without area in the plane, the inverse is infinite in one direction and no number in
+        // the other.
+        sum += std::isfinite(face) ? problem.area[f] * 0.5 * face
+                                   : std::numeric_limits<double>::infinity();
     }
     return std::sqrt(sum / problem.total_area * (flat_area / problem.total_area));
 }

@@ -60,8 +60,11 @@ std::vector<CutSide> sides_of(const ChartSurface& surface, const CornerUv& uv,
             const Index own = surface.mesh_half_edge(h);
             const Vec2& from = uv[at(own)];
             const Vec2& to = uv[at(Mesh::next(own))];
-            const double off = (line.along.dot(from + to) - line.low - line.high) /
-                               (line.high - line.low); // −1 … 1 within the stretch
+            // −1 … 1 within the stretch, which rounding leaves empty if it is short and far away.
+            const double off =
+                line.high > line.low
+                    ? (line.along.dot(from + to) - line.low - line.high) / (line.high - line.low)
+                    : 0.0;
             cut.link(h / 3, surface.twin[at(h)] / 3,
                      (1.0 + edge_cost * off * off) * (to - from).norm());
         }
