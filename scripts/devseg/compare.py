@@ -83,7 +83,7 @@ def compare(path: Path, options: CompareOptions) -> dict[str, Any]:
                 load_plugins()
             session = Session(path, meshes)
             with progress.stage("segment"):
-                session.apply(method.filter, **parameters)
+                session.segment(method.filter, **parameters)
             # Before flattening, which takes charts apart where they would overlap.
             found = {
                 "segmentation": session.apply(SEGMENTATION_MEASURES),
@@ -105,7 +105,7 @@ def compare(path: Path, options: CompareOptions) -> dict[str, Any]:
             "input": path.name,
             "methods": results,
             "versions": versions(),
-            "warnings": warnings,
+            "warnings": warnings + session.warnings,
             "outputs": {"png": f"{stem}.png", "json": f"{stem}.json"},
         }
         (folder / f"{stem}.json").write_text(to_json(result), encoding="utf-8")

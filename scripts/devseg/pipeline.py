@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import platform
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,11 @@ from devseg.progress import Progress
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
+
+
+# What a verbose host prints for each line of a filter's log, and for its progress.
+_LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
+_PROGRESS = re.compile(r"\[ +\d+% \]$")
 
 
 @dataclass(frozen=True)
@@ -52,6 +58,7 @@ class Session:
         self.meshes = meshes
         self.parameters: dict[str, dict[str, Any]] = {}
         self.warnings: list[str] = []
+        self._chatter = ""  # what the host printed last
 
     def apply(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter and returns its results.
@@ -64,6 +71,24 @@ class Session:
             self.parameters[name] = values
         return self._guard(self.meshes.apply_filter, name, **parameters) or {}
 
+    def segment(self, name: str, **parameters: Any) -> dict[str, Any]:
+        """The same for the filter that reads the mesh first; what it worked around is a warning.
+
+        The host drops texts from results, but logs them.
+        """
+        self.meshes.set_verbosity(True)
+        try:
+            results = self.apply(name, **parameters)
+        finally:
+            self.meshes.set_verbosity(False)
+        values = tuple(f"{result}: " for result in results)
+        self.warnings += [
+            note.rstrip()
+            for note in _LOGGED.findall(self._chatter)
+            if not _PROGRESS.search(note.rstrip()) and not note.startswith(values)
+        ]
+        return results
+
     def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
         """Writes the pattern, in the format of the file's extension."""
         self._guard(self.meshes.apply_filter, EXPORT_FILTER, output_file=str(file), **parameters)
@@ -75,8 +100,10 @@ class Session:
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
         errors = (host.pymeshlab().PyMeshLabException, RuntimeError, MemoryError)
         try:
-            with host.captured():
-                return function(*args, **parameters)
+            with host.captured() as chatter:
+                result = function(*args, **parameters)
+            self._chatter = chatter.text
+            return result
         except errors as error:
             raise DevsegError(f"{self.path}: {host_message(error)}") from error
 
@@ -123,7 +150,7 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
 def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Segments, flattens and packs the mesh; returns the measures."""
     with progress.stage("segment"):
-        found = session.apply(options.method.filter, **_segmentation(session, options))
+        found = session.segment(options.method.filter, **_segmentation(session, options))
     if not found.get("bounds_kept", True):
         session.warnings.append(
             "no number of charts that was tried keeps the bounds on the stretch; "

@@ -183,7 +183,7 @@ TEST(Gate, AMoebiusStripIsCutAcross) {
     const GatedMesh gated = gate_mesh(thin);
     EXPECT_TRUE(is_valid(gated.mesh));
     EXPECT_EQ(cut_edges(gated), 2);
-    EXPECT_TRUE(contains(gated.notes.back(), "one-sided and was cut along 1 edge"));
+    EXPECT_TRUE(contains(gated.notes.back(), "1 edge of a one-sided surface was cut"));
     expect_way_back(thin, gated);
 
     const RawMesh wide = shapes::moebius_strip(20, 4);

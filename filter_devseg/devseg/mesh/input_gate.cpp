@@ -414,30 +414,29 @@ GatedMesh gate_mesh(const RawMesh& raw) {
                           " without any area; there is nothing to segment");
     find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
 
-    const auto note = [&](Index count, const std::string& text) {
+    const auto note = [&](Index count, const char* one, const char* many, const char* rest) {
         if (count > 0)
-            gated.notes.push_back(text);
+            gated.notes.push_back(counted(count, one, many) + rest);
     };
-    note(welded, "no two faces share a vertex: " + counted(welded, "vertex was", "vertices were") +
-                     " joined with others at the same place ('Merge Close Vertices' with a "
-                     "threshold of 0 does it for good)");
-    note(selection.repeated,
-         counted(selection.repeated, "face repeats", "faces repeat") +
-             " a vertex and was left out ('Remove Zero Area Faces' drops such faces)");
-    note(selection.duplicates, counted(selection.duplicates, "face lies", "faces lie") +
-                                   " on the vertices of another one and was left out "
-                                   "('Remove Duplicate Faces' drops such faces)");
-    note(crowded_edges, counted(crowded_edges, "edge has", "edges have") +
-                            " more than two faces and was cut "
-                            "('Repair non Manifold Edges' mends them)");
-    note(orientation.turned, counted(orientation.turned, "face was", "faces were") +
-                                 " read with the orientation of its neighbours "
-                                 "('Re-Orient All Faces Coherently' does it for good)");
-    note(orientation.one_sided_edges, "the surface is one-sided and was cut along " +
-                                          counted(orientation.one_sided_edges, "edge", "edges"));
+    note(welded, "vertex was", "vertices were",
+         " joined with others at the same place, as no two faces share one "
+         "('Merge Close Vertices' with a threshold of 0 does it for good)");
+    note(selection.repeated, "face repeats a vertex and was", "faces repeat a vertex and were",
+         " left out ('Remove Zero Area Faces' drops such faces)");
+    note(selection.duplicates, "face lies on the vertices of another one and was",
+         "faces lie on the vertices of another one and were",
+         " left out ('Remove Duplicate Faces' drops such faces)");
+    note(crowded_edges, "edge has more than two faces and was",
+         "edges have more than two faces and were",
+         " cut ('Repair non Manifold Edges' mends them)");
+    note(orientation.turned, "face was", "faces were",
+         " read with the orientation of its neighbours "
+         "('Re-Orient All Faces Coherently' does it for good)");
+    note(orientation.one_sided_edges, "edge of a one-sided surface was",
+         "edges of a one-sided surface were", " cut, as it has no coherent orientation");
     note(crowded_edges == 0 && orientation.one_sided_edges == 0 ? split : 0,
-         counted(split, "vertex joins", "vertices join") +
-             " fans of faces and was split ('Repair non Manifold Vertices by Splitting')");
+         "vertex joins fans of faces and was", "vertices join fans of faces and were",
+         " split ('Repair non Manifold Vertices by Splitting')");
     return gated;
 }
 
