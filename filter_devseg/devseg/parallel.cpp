@@ -5,6 +5,8 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -60,6 +62,31 @@ void work(Pool& pool, int count, const std::function<void(int)>& task) {
     pool.changed.notify_one();
 }
 
+// A system that is short of memory may start fewer threads than asked for, which changes nothing
+// but the time; without any, nothing has been done.
+std::vector<std::thread> start_workers(Pool& pool, int count,
+                                       const std::function<void(int)>& task) {
+    std::vector<std::thread> workers;
+    const int wanted = worker_count(count);
+    workers.reserve(static_cast<std::size_t>(wanted));
+    for (int i = 0; i < wanted; ++i) {
+        const auto change_running = [&](int by) {
+            const std::lock_guard<std::mutex> lock(pool.mutex);
+            pool.running += by;
+        };
+        change_running(1); // before it ends
+        try {
+            workers.emplace_back([&pool, count, &task] { work(pool, count, task); });
+        } catch (const std::system_error&) {
+            change_running(-1);
+            break;
+        }
+    }
+    if (workers.empty())
+        throw std::bad_alloc();
+    return workers;
+}
+
 } // namespace
 
 void set_thread_limit(int threads) {
@@ -70,10 +97,7 @@ void parallel_for(int count, const std::function<void(int)>& task, Progress& pro
     if (count <= 0)
         return;
     Pool pool;
-    pool.running = worker_count(count);
-    std::vector<std::thread> workers;
-    for (int i = 0, n = pool.running; i < n; ++i)
-        workers.emplace_back([&] { work(pool, count, task); });
+    std::vector<std::thread> workers = start_workers(pool, count, task);
 
     std::exception_ptr interruption; // cancelled, or the host's callback failed
     {

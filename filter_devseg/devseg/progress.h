@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <thread>
 
 namespace devseg {
 
@@ -27,17 +28,35 @@ public:
     /// True once the user said stop. Any thread may ask.
     bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
 
-    /// Throws Cancelled once the user said stop. Any thread may call it.
+    /// Throws Cancelled once the user said stop. Any thread may call it; the thread that began
+    /// the phase asks the host at the same time, so that long work need not know its fraction.
     void check() const;
 
 private:
+    bool ask_host() const;
+
     Callback callback_;
-    std::atomic<bool> cancelled_{false};
+    std::thread::id owner_ = std::this_thread::get_id();
+    mutable std::atomic<bool> cancelled_{false};
     const char* phase_ = "";
     double phase_start_ = 0.0;
     double phase_share_ = 0.0;
     double last_fraction_ = 0.0;
-    std::chrono::steady_clock::time_point last_call_{};
+    mutable std::chrono::steady_clock::time_point last_call_{};
+};
+
+/// Checks for cancellation once in so many steps of a loop that is short of time.
+class Heartbeat {
+public:
+    explicit Heartbeat(const Progress& progress) : progress_(progress) {}
+    void operator()() {
+        if ((++steps_ & 1023U) == 0)
+            progress_.check();
+    }
+
+private:
+    const Progress& progress_;
+    unsigned steps_ = 0;
 };
 
 } // namespace devseg

@@ -54,9 +54,13 @@ inline std::vector<double> read_face_attribute(CMeshO& m, const std::string& nam
     return values;
 }
 
-inline void write_face_attribute(CMeshO& m, const std::string& name,
-                                 const std::vector<int>& values) {
-    auto handle = vcg::tri::Allocator<CMeshO>::GetPerFaceAttribute<Scalarm>(m, name);
+using FaceAttribute = CMeshO::PerFaceAttributeHandle<Scalarm>;
+
+inline FaceAttribute face_attribute(CMeshO& m, const std::string& name) {
+    return vcg::tri::Allocator<CMeshO>::GetPerFaceAttribute<Scalarm>(m, name);
+}
+
+inline void write_face_attribute(CMeshO& m, FaceAttribute handle, const std::vector<int>& values) {
     std::size_t i = 0;
     for (std::size_t f = 0; f < m.face.size(); ++f)
         if (!m.face[f].IsD())
@@ -87,8 +91,11 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
     if (!result.wedge_uv.empty())
         enable(MeshModel::MM_WEDGTEXCOORD);
     if (!result.chart_id.empty()) {
-        write_face_attribute(model.cm, "chart_id", result.chart_id);
-        write_face_attribute(model.cm, "seam_edges", result.seam_edges);
+        // Both before either is written: memory may run out here, and nowhere below.
+        const FaceAttribute chart_id = face_attribute(model.cm, "chart_id");
+        const FaceAttribute seam_edges = face_attribute(model.cm, "seam_edges");
+        write_face_attribute(model.cm, chart_id, result.chart_id);
+        write_face_attribute(model.cm, seam_edges, result.seam_edges);
         changed |= MeshModel::MM_FACEFLAG;
     }
     std::size_t i = 0;
@@ -139,7 +146,7 @@ inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
         face->Q() = static_cast<Scalarm>(layer.face_quality[f]);
     }
     for (const auto& [name, values] : layer.face_attributes)
-        write_face_attribute(m, name, values);
+        write_face_attribute(m, face_attribute(m, name), values);
     // The model's own method for this has another name in every version of the host.
     vcg::tri::UpdateBounding<CMeshO>::Box(m);
     vcg::tri::UpdateNormal<CMeshO>::PerVertexNormalizedPerFace(m);

@@ -82,11 +82,13 @@ class Corpus:
         from devseg import host
 
         devseg.load_plugins()
+        self.host = host
         self.pymeshlab = host.pymeshlab()
         self.order = order
         self.tell = tell
 
     def step(self, file: str, what: str, work: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+        """Does the work, and tells of its begin and its end."""
         self.tell({"begin": what, "file": file})
         start = time.monotonic()
         answer = work()
@@ -126,8 +128,12 @@ class Corpus:
             parameters["output_file"] = str(folder / "pattern.pdf")
         before = fingerprint(self.meshset)
         current = self.meshset.current_mesh_id()
+        # Where a filter fails, a host that is not verbose goes on swallowing what is printed, also
+        # what it says of later files.
+        self.meshset.set_verbosity(True)
         try:
-            results = self.meshset.apply_filter(name, **parameters) or {}
+            with self.host.captured():
+                results = self.meshset.apply_filter(name, **parameters) or {}
         except self.pymeshlab.PyMeshLabException as error:
             answer: dict[str, Any] = {"error": str(error)}
             if fingerprint(self.meshset) != before:
@@ -135,6 +141,8 @@ class Corpus:
             if "output_file" in parameters and any(folder.iterdir()):
                 answer["problems"] = ["a file was left by an export that failed"]
             return answer
+        finally:
+            self.meshset.set_verbosity(False)
         self.meshset.set_current_mesh(current)
         problems = problems_of_result(self.meshset, name, results)
         if name.startswith(("get_", "export_")) and fingerprint(self.meshset) != before:

@@ -29,7 +29,7 @@ TEST(HandleCutter, OneLoopForEachHandleLeavesNone) {
                 shapes::with_noise(shapes::slab(shapes::mask_with_holes(handles)), 0.1, seed));
             const ChartMap charts = checks::components(mesh);
             std::vector<std::uint8_t> seam = charts.seam;
-            for (const Index h : cut_handles(mesh, extract_charts(mesh, charts)[0]))
+            for (const Index h : cut_handles(mesh, extract_charts(mesh, charts)[0], Progress()))
                 seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1; // one chart: local is global
             const ChartMap cuts = make_chart_map(mesh, charts.chart, seam, true);
             EXPECT_EQ(cuts.count, 1); // it hangs together
@@ -43,7 +43,8 @@ TEST(HandleCutter, CutsThroughTheThinPart) {
     // A tube of radius 0.3 in a ring: the loop goes around the tube and not around the ring.
     const Mesh mesh = checks::gated(shapes::torus(48, 16, 2.0, 0.3));
     double length = 0.0;
-    for (const Index h : cut_handles(mesh, extract_charts(mesh, checks::components(mesh))[0]))
+    for (const Index h :
+         cut_handles(mesh, extract_charts(mesh, checks::components(mesh))[0], Progress()))
         length += mesh.edge_length(h) * mesh.unit_length;
     EXPECT_GE(length, 0.99 * 2.0 * pi * 0.3 * std::sin(pi / 16) / (pi / 16));
     EXPECT_LE(length, 1.5 * 2.0 * pi * 0.3);

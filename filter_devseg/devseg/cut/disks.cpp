@@ -28,7 +28,7 @@ double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
 
 // Lowers distances by paths that end at the sources.
 void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
-                 const std::vector<Index>& sources, PathForest& forest) {
+                 const std::vector<Index>& sources, PathForest& forest, Heartbeat& beat) {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (const Index v : sources) {
@@ -37,6 +37,7 @@ void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edg
         queue.emplace(0.0, v);
     }
     while (!queue.empty()) {
+        beat();
         const auto [d, v] = queue.top();
         queue.pop();
         if (d > forest.distance[at(v)])
@@ -55,8 +56,8 @@ void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edg
     }
 }
 
-PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
-                      Index root) {
+PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges, Index root,
+                      const Progress& progress) {
     PathForest forest;
     forest.distance.assign(s.vertex.size(), infinity);
     forest.toward.assign(s.vertex.size(), -1);
@@ -66,17 +67,19 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
     else
         for (const Index h : s.loops.front())
             sources.push_back(s.origin(h));
-    relax_paths(mesh, s, edges, sources, forest);
+    Heartbeat beat(progress);
+    relax_paths(mesh, s, edges, sources, forest, beat);
     return forest;
 }
 
 class Cutter {
 public:
-    Cutter(const Mesh& mesh, const ChartSurface& surface, std::vector<std::uint8_t>& seam)
-        : mesh_(mesh), s_(surface), seam_(seam) {}
+    Cutter(const Mesh& mesh, const ChartSurface& surface, std::vector<std::uint8_t>& seam,
+           const Progress& progress)
+        : mesh_(mesh), s_(surface), seam_(seam), progress_(progress) {}
 
     // For charts with several boundary loops. Returns the length of the cuts, as all of these.
-    double join() { return cut(join_loops(mesh_, s_)); }
+    double join() { return cut(join_loops(mesh_, s_, progress_)); }
 
     double cut(const std::vector<Index>& half_edges) {
         for (const Index h : half_edges)
@@ -100,7 +103,7 @@ public:
     // For charts with at most one loop.
     double cut_handles() {
         const VertexEdges edges(s_);
-        const PathForest forest = grow_paths(mesh_, s_, edges, 0);
+        const PathForest forest = grow_paths(mesh_, s_, edges, 0, progress_);
         for (const Index h : handle_edges(forest)) {
             cut_edge(h);
             cut_path(forest, s_.origin(h));
@@ -168,7 +171,9 @@ private:
             Index half_edge;
         };
         std::vector<Dual> duals;
+        Heartbeat beat(progress_);
         for (Index h = 0; h < 3 * s_.face_count(); ++h) {
+            beat();
             const Index opposite = s_.twin[at(h)];
             if (opposite < h)
                 continue;
@@ -189,6 +194,7 @@ private:
         };
         std::vector<Index> rest;
         for (const Dual& dual : duals) {
+            beat();
             const Index a = find(dual.half_edge / 3);
             const Index b = find(s_.twin[at(dual.half_edge)] / 3);
             if (a == b)
@@ -209,13 +215,14 @@ private:
     // No boundary and no handle: a slit between two vertices that are far from each other.
     void cut_sphere(const VertexEdges& edges, const PathForest& forest) {
         const Index far = farthest(forest);
-        const PathForest from_far = grow_paths(mesh_, s_, edges, far);
+        const PathForest from_far = grow_paths(mesh_, s_, edges, far, progress_);
         cut_path(from_far, farthest(from_far));
     }
 
     const Mesh& mesh_;
     const ChartSurface& s_;
     std::vector<std::uint8_t>& seam_;
+    const Progress& progress_;
     double length_ = 0.0;
     bool any_cut_ = false;
 };
@@ -227,28 +234,28 @@ struct Opening {
     double length = 0.0;
 };
 
-void join(const Mesh& mesh, Opening& opening) {
+void join(const Mesh& mesh, Opening& opening, const Progress& progress) {
     if (opening.surface.loops.size() < 2)
         return;
-    opening.length += Cutter(mesh, opening.surface, opening.seam).join();
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).join();
     opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
 }
 
 // [EHP04], once all loops are joined.
-void open_joined_first(const Mesh& mesh, Opening& opening) {
-    join(mesh, opening);
+void open_joined_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
+    join(mesh, opening, progress);
     if (opening.surface.is_disk())
         return;
-    opening.length += Cutter(mesh, opening.surface, opening.seam).cut_handles();
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).cut_handles();
     opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
 }
 
 // [YGZS05]: a loop through each handle, then the loops are joined.
-void open_handles_first(const Mesh& mesh, Opening& opening) {
-    opening.length +=
-        Cutter(mesh, opening.surface, opening.seam).cut(cut_handles(mesh, opening.surface));
+void open_handles_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress)
+                          .cut(cut_handles(mesh, opening.surface, progress));
     opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
-    join(mesh, opening);
+    join(mesh, opening, progress);
 }
 
 bool has_handles(const ChartSurface& surface) {
@@ -258,14 +265,14 @@ bool has_handles(const ChartSurface& surface) {
 } // namespace
 
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
-                         double* cut_length) {
+                         const Progress& progress, double* cut_length) {
     double length = 0.0;
     if (!surface.is_disk()) {
         Opening best{seam, surface, 0.0};
-        open_joined_first(mesh, best);
+        open_joined_first(mesh, best, progress);
         if (has_handles(surface)) {
             Opening other{seam, surface, 0.0};
-            open_handles_first(mesh, other);
+            open_handles_first(mesh, other, progress);
             if (other.surface.is_disk() && other.length < best.length)
                 best = std::move(other);
         }
@@ -274,7 +281,7 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
         length += best.length;
     }
     if (surface.loops.front().size() < 3) {
-        length += Cutter(mesh, surface, seam).lengthen();
+        length += Cutter(mesh, surface, seam, progress).lengthen();
         surface = extract_surface(mesh, std::move(surface.face), seam);
     }
     if (cut_length != nullptr)
@@ -283,11 +290,11 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
 }
 
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
-                  const TipRule& rule, double& cut_length) {
+                  const TipRule& rule, double& cut_length, const Progress& progress) {
     const VertexEdges edges(disk);
-    const PathForest forest = grow_paths(mesh, disk, edges, 0);
-    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule);
-    Cutter cutter(mesh, disk, seam);
+    const PathForest forest = grow_paths(mesh, disk, edges, 0, progress);
+    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule, progress);
+    Cutter cutter(mesh, disk, seam, progress);
     for (const Index tip : tips)
         cutter.cut_path(forest, tip);
     cut_length += cutter.length();
@@ -303,11 +310,11 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
         const double before = result.cut_length;
         if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
-            surfaces[c] =
-                cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, &result.cut_length);
+            surfaces[c] = cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, progress,
+                                      &result.cut_length);
         if (options.cut_tips)
             result.cut_tips += cut_to_tips(mesh, surfaces[c], result.charts.seam, options.tip_rule,
-                                           result.cut_length);
+                                           result.cut_length, progress);
         result.cut_charts += result.cut_length > before ? 1 : 0;
     }
     return result;

@@ -30,12 +30,12 @@ struct DiskCuts {
 /// Cuts one chart: marks the new seams in `seam` (3 #F) and returns the chart as a disk.
 /// `cut_length`, if given, is increased by the length of the new cuts.
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
-                         double* cut_length = nullptr);
+                         const Progress& progress, double* cut_length = nullptr);
 
 /// Cuts a chart that is a disk open along shortest paths from its boundary to its tips (see
 /// tips.h). Marks the seams, adds their length to `cut_length` and returns their number.
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
-                  const TipRule& rule, double& cut_length);
+                  const TipRule& rule, double& cut_length, const Progress& progress);
 
 /// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop):
 /// shortest paths between boundary loops, short cycles through handles, and for a sphere a path

@@ -210,7 +210,9 @@ private:
 
 } // namespace
 
-std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface) {
+std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
+                               const Progress& progress) {
+    Heartbeat beat(progress);
     Wavefronts fronts(mesh, surface);
     // Faces with two neighbours inside shorten the wavefront and come first, then the nearest.
     using Entry = std::tuple<int, double, Index>; // (class, distance, half-edge of the region)
@@ -234,6 +236,7 @@ std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface) {
     fronts.start(0);
     offer(0);
     while (!queue.empty()) {
+        beat();
         const auto [rank, d, h] = queue.top();
         queue.pop();
         const Index f = surface.twin[at(h)] / 3;

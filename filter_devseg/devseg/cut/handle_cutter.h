@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -15,6 +16,7 @@ namespace devseg {
 /// chart has no handle left, and hangs together. A region grows from one face and keeps its
 /// wavefronts short. Where two wavefronts meet there is a handle, cut along the shorter of the
 /// shortest loops that the two have been. Parts of loops on the chart's boundary cost nothing.
-std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface);
+std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
+                               const Progress& progress);
 
 } // namespace devseg

@@ -43,13 +43,15 @@ public:
                 open_loop_[at(s_.origin(h))] = static_cast<Index>(l);
     }
 
-    std::vector<Index> run() {
+    std::vector<Index> run(const Progress& progress) {
+        Heartbeat beat(progress);
         std::size_t longest = 0;
         for (std::size_t l = 1; l < s_.loops.size(); ++l)
             if (loop_length(mesh_, s_, s_.loops[l]) > loop_length(mesh_, s_, s_.loops[longest]))
                 longest = l;
         absorb_loop(static_cast<Index>(longest));
         for (std::size_t open = s_.loops.size() - 1; open > 0 && !queue_.empty();) {
+            beat();
             const auto [d, v] = queue_.top();
             queue_.pop();
             if (d > distance_[at(v)])
@@ -114,8 +116,9 @@ private:
 
 } // namespace
 
-std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface) {
-    return LoopJoiner(mesh, surface).run();
+std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
+                              const Progress& progress) {
+    return LoopJoiner(mesh, surface).run(progress);
 }
 
 } // namespace devseg

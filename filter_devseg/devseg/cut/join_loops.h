@@ -4,13 +4,15 @@
 #include <vector>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
 /// Half-edges (local, one for each edge) of cuts that join all boundary loops into one. Starting
 /// from the longest loop, the nearest loop is joined by a shortest path to all that is joined
 /// already, cuts included (Prim's algorithm with paths).
-std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface);
+std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
+                              const Progress& progress);
 
 /// Outgoing half-edges of each vertex and, at boundary vertices, the incoming boundary half-edge:
 /// what it takes to visit every edge at a vertex.

@@ -77,7 +77,9 @@ private:
 } // namespace
 
 std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
-                             const std::vector<double>& distance, const TipRule& rule) {
+                             const std::vector<double>& distance, const TipRule& rule,
+                             const Progress& progress) {
+    Heartbeat beat(progress);
     std::vector<double> level(surface.face.size());
     for (Index f = 0; f < surface.face_count(); ++f)
         level[at(f)] =
@@ -94,6 +96,7 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
     Parts parts(surface, distance);
     std::vector<Index> tips;
     for (const Index f : order) {
+        beat();
         std::array<double, 3> lengths{};
         for (Index k = 0; k < 3; ++k)
             lengths[at(k)] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -21,6 +22,7 @@ struct TipRule {
 
 /// The tips, ascending. `distance` (#v) is that from the boundary along edges.
 std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
-                             const std::vector<double>& distance, const TipRule& rule);
+                             const std::vector<double>& distance, const TipRule& rule,
+                             const Progress& progress);
 
 } // namespace devseg

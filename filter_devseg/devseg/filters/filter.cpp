@@ -98,13 +98,13 @@ HostResult map_back(const GatedMesh& gated, FilterOutput output) {
 }
 
 // The mesh with borders joined that lie on each other.
-GatedMesh gate_joined(const RawMesh& raw) {
+GatedMesh gate_joined(const RawMesh& raw, const Progress& progress) {
     for (const Triangle& t : raw.faces)
         for (const Index v : t)
             if (v < 0 || at(v) >= raw.points.size())
-                return gate_mesh(raw); // which says what is wrong
+                return gate_mesh(raw, progress); // which says what is wrong
     const WeldedMesh welded = weld_borders(raw);
-    GatedMesh gated = gate_mesh(welded.mesh);
+    GatedMesh gated = gate_mesh(welded.mesh, progress);
     if (welded.edges > 0)
         gated.notes.push_back(std::to_string(welded.edges) +
                               (welded.edges == 1 ? " border edge lies" : " border edges lie") +
@@ -120,8 +120,10 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
     if (filter.needs_uv && host.wedge_uv.empty())
         throw InvalidMesh("expected wedge texture coordinates, found none; run 'Charts: Flatten' "
                           "or load a mesh that has them");
-    const GatedMesh gated =
-        filter.joins_borders ? gate_joined(host.geometry) : gate_mesh(host.geometry);
+    progress.begin_phase("reading the mesh", 0.0);
+    const GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
+                                                 : gate_mesh(host.geometry, progress);
+    progress.check();
     const FilterInput input{gated.mesh, read_charts(host, gated),
                             read_uv(host, gated, filter.needs_uv), gated.source_face};
     try {

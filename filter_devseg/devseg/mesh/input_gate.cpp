@@ -364,7 +364,7 @@ void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count
 
 } // namespace
 
-GatedMesh gate_mesh(const RawMesh& raw) {
+GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
     require_faces(raw);
     require_valid_indices(raw);
     require_finite(raw);
@@ -376,19 +376,24 @@ GatedMesh gate_mesh(const RawMesh& raw) {
     std::iota(gated.source_vertex.begin(), gated.source_vertex.end(), 0);
 
     std::vector<Triangle> faces = raw.faces;
+    progress.check();
     const Index welded = weld_soup(raw, faces);
+    progress.check();
     FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
     gated.source_face = std::move(selection.kept);
     for (const Index f : gated.source_face)
         mesh.faces.push_back(faces[at(f)]);
 
+    progress.check();
     gated.cut.assign(3 * mesh.faces.size(), 0);
     Index crowded_edges = 0;
     std::vector<Index> neighbour = neighbours_regardless_of_direction(
         mesh.faces, mesh.vertex_count(), gated.cut, crowded_edges);
+    progress.check();
     Orientation orientation = orient(mesh.faces, neighbour, gated.cut);
     gated.flipped = std::move(orientation.flipped);
 
+    progress.check();
     // Turn faces over: corners (a, b, c) become (a, c, b), so edge e becomes edge 2 − e.
     const auto moved = [&](Index h) {
         return gated.flipped[at(h / 3)] != 0 ? h / 3 * 3 + 2 - h % 3 : h;
@@ -405,13 +410,17 @@ GatedMesh gate_mesh(const RawMesh& raw) {
         if (gated.flipped[f] != 0)
             std::swap(mesh.faces[f][1], mesh.faces[f][2]);
 
+    progress.check();
     const Index split = split_fans(mesh, gated.source_vertex);
+    progress.check();
     drop_unused_points(mesh, gated.source_vertex);
+    progress.check();
     compute_face_geometry(mesh);
     if (!(mesh.total_area > 0.0))
         throw InvalidMesh("expected a surface, found " +
                           counted(static_cast<Index>(raw.faces.size()), "face", "faces") +
                           " without any area; there is nothing to segment");
+    progress.check();
     find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
 
     const auto note = [&](Index count, const char* one, const char* many, const char* rest) {

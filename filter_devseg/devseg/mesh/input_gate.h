@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -41,7 +42,7 @@ struct GatedMesh {
 };
 
 /// Throws InvalidMesh where nothing sensible can be done: no faces, an index out of range,
-/// coordinates that are not finite, all faces without area.
-GatedMesh gate_mesh(const RawMesh& raw);
+/// coordinates that are not finite, all faces without area; Cancelled.
+GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress = Progress());
 
 } // namespace devseg

@@ -110,7 +110,7 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
         map.area += mesh.face_areas[at(f)];
     std::vector<std::uint8_t> marks = enclose(mesh, faces, seam);
     const ChartSurface surface =
-        cut_to_disk(mesh, extract_surface(mesh, faces, marks), marks, &map.cut_length);
+        cut_to_disk(mesh, extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     std::vector<Vec2> uv;
     try {
