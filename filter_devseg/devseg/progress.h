@@ -36,7 +36,7 @@ private:
     bool ask_host() const;
 
     Callback callback_;
-    std::thread::id owner_ = std::this_thread::get_id();
+    std::thread::id owner_; // none before the first phase
     mutable std::atomic<bool> cancelled_{false};
     const char* phase_ = "";
     double phase_start_ = 0.0;

@@ -65,13 +65,15 @@ bool is_apparel(const ExportOptions& options) {
 }
 
 Document make_document(const Mesh& mesh, const Pattern& pattern, const PatternLayout& layout,
-                       const ExportOptions& options) {
+                       const ExportOptions& options, const Progress& progress) {
     Document document;
     document.title = title_of(options.output_file);
     document.drawing = draw_sheets(layout, options);
     const std::vector<PrintedPage> printed = printed_pages(layout, document.drawing);
+    progress.check();
     if (options.cover)
         document.pages = cover_pages(mesh, pattern, layout, printed, document.title);
+    progress.check();
     if (options.cover && layout.page && printed.size() > 1)
         document.pages.push_back(overview_page(layout, document.drawing, printed, document.title));
     for (DocumentPage& page : page_sheets(layout, document.drawing, printed, document.title))
@@ -93,7 +95,7 @@ ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOp
     ExportReport report;
     std::string bytes;
     if (format == Format::pdf) {
-        const Document document = make_document(mesh, pattern, layout, options);
+        const Document document = make_document(mesh, pattern, layout, options, progress);
         report.pages = static_cast<Index>(document.pages.size());
         bytes = pdf_bytes(document);
     } else if (format == Format::dxf && is_apparel(options)) {

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from devseg import host, ply
+from devseg import host, obj, ply
 from devseg.errors import DevsegError, host_message
 
 # What pymeshlab itself reports about a mesh that it changed while loading.
@@ -55,7 +55,15 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
                 meshes.set_verbosity(False)
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
-    return meshes, _check(path, meshes, chatter.text)
+    warnings = _check(path, meshes, chatter.text)
+    if path.suffix.lower() == ".obj":
+        count, line = obj.faces_without_vertices(path)
+        if count:
+            warnings.append(
+                f"{count} faces name vertices that the file does not have and were left out "
+                f"(the first in line {line})"
+            )
+    return meshes, warnings
 
 
 def _load_message(path: Path, error: BaseException) -> str:

@@ -254,7 +254,7 @@ TEST(Coarsen, RefinedLabelsAreConnectedAndCoverAll) {
         std::vector<Index> label(mesh.faces.size(), -1);
         for (std::size_t f = 0; f < on_coarse.size(); ++f)
             label[at(coarse.face[f])] = on_coarse[f];
-        const std::vector<Index> fine = refine_labels(mesh.points, s, label);
+        const std::vector<Index> fine = refine_labels(mesh.points, s, label, Progress());
         for (std::size_t f = 0; f < fine.size(); ++f) {
             ASSERT_GE(fine[f], 0);
             ASSERT_LT(fine[f], count);

@@ -305,6 +305,7 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
                              Progress& progress) {
     DiskCuts result;
     result.charts = charts;
+    progress.check();
     std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));

@@ -50,9 +50,9 @@ FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOption
                          Progress& progress) {
     DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, progress);
     progress.begin_phase("cutting charts to disks", 0.1);
-    DiskCuts cuts = cut_charts_to_disks(
-        input.mesh, make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false),
-        progress);
+    const ChartMap charts =
+        make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts, progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},

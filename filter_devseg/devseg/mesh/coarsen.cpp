@@ -424,12 +424,14 @@ double border_length(const std::vector<Vec3>& points, const CoarseSurface& s, In
 } // namespace
 
 std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
-                                 std::vector<Index> label) {
+                                 std::vector<Index> label, const Progress& progress) {
+    Heartbeat beat(progress);
     const auto across = [&](Index k) {
         const Index twin = surface.twin[at(k)];
         return twin < 0 ? -1 : label[at(twin / 3)];
     };
     while (!surface.collapses.empty()) {
+        beat();
         const Index h = undo_collapse(surface);
         const Index twin = surface.twin[at(h)];
         double shortest = -1.0;

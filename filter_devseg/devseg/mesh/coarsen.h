@@ -50,6 +50,6 @@ CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface);
 /// two faces that come back with a vertex take the label of a neighbour each, so that regions stay
 /// connected; where they may choose, borders stay short.
 std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
-                                 std::vector<Index> label);
+                                 std::vector<Index> label, const Progress& progress);
 
 } // namespace devseg

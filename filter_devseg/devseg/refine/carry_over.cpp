@@ -58,17 +58,20 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
         std::vector<Index> label(full_.faces.size(), -1);
         for (std::size_t f = 0; f < coarse_->face.size(); ++f)
             label[at(coarse_->face[f])] = draft.chart[f];
-        result.chart = refine_labels(full_.points, *surface_, std::move(label));
+        result.chart = refine_labels(full_.points, *surface_, std::move(label), progress);
     } else {
         result.chart = draft.chart;
     }
     straighten(draft, patch, max_fitting_error, straightening, result.chart, progress);
     if (coarse_ || straightening != Straightening::none) {
         result.chart = absorb_fragments(full_, result.chart, fragment_share);
+        progress.check();
         result.seam.assign(full_.twin.size(), 0);
         result.darts = cut_darts_to(full_, result.chart, tips_of(draft), result.seam);
     }
+    progress.check();
     result.chart = make_chart_map(full_, result.chart, result.seam, false).chart;
+    progress.check();
     return result;
 }
 

@@ -250,6 +250,7 @@ private:
         result.seam = std::move(full.seam);
         result.darts = full.darts;
         result.fitting_error = working_.fitting_errors(result.chart);
+        progress_.check();
         return result;
     }
 

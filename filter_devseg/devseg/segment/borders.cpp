@@ -81,11 +81,13 @@ namespace {
 
 // Normals averaged over neighbours, but not across creases: single faces of a scan lean far to one
 // side, and would leave holes in the fuzzy area that the border has to wind around.
-std::vector<Vec3> smooth_normals(const Mesh& mesh) {
+std::vector<Vec3> smooth_normals(const Mesh& mesh, const Progress& progress) {
+    Heartbeat beat(progress);
     std::vector<Vec3> normals = mesh.face_normals;
     for (int round = 0; round < smoothing_rounds; ++round) {
         std::vector<Vec3> next(normals.size());
         for (Index f = 0; f < mesh.face_count(); ++f) {
+            beat();
             Vec3 sum = mesh.face_areas[at(f)] * normals[at(f)];
             for (Index h = 3 * f; h < 3 * f + 3; ++h) {
                 const Index twin = mesh.twin[at(h)];
@@ -105,8 +107,8 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh) {
 class Straightener {
 public:
     Straightener(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error, int rings,
-                 std::vector<Index>& chart)
-        : mesh_(mesh), normals_(smooth_normals(mesh)), proxies_(proxies),
+                 std::vector<Index>& chart, const Progress& progress)
+        : mesh_(mesh), normals_(smooth_normals(mesh, progress)), proxies_(proxies),
           max_fitting_error_(max_fitting_error), rings_(rings), chart_(chart),
           fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
           distance_(mesh.points.size(), std::numeric_limits<double>::infinity()),
@@ -445,8 +447,9 @@ private:
 
 Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
                          int rings, std::vector<Index>& chart, Progress& progress) {
-    Straightener straightener(mesh, proxies, max_fitting_error, rings, chart);
+    Straightener straightener(mesh, proxies, max_fitting_error, rings, chart, progress);
     Index replaced = 0;
+    progress.check();
     std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
     // Each border changes what the next ones find: the longest first, whatever the order of faces.
     const auto length = [&](const BorderSegment& segment) {
