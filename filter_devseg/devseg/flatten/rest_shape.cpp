@@ -69,8 +69,9 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& 
     double longest = 0.0;
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         longest = std::max(longest, mesh.edge_length(surface.mesh_half_edge(h)));
-    // Faces whose corners coincide get a size as well: a billionth of the chart's longest edge.
-    const double floor = 1e-9 * longest;
+    // Faces whose corners coincide get a size as well: a billionth of the chart's longest edge, and
+    // one whose fourth power does not vanish where the chart is a point.
+    const double floor = std::max(1e-9 * longest, 1e-60 * std::sqrt(mesh.total_area));
     for (Index f = 0; f < surface.face_count(); ++f) {
         std::array<double, 3> length{};
         for (Index k = 0; k < 3; ++k)
