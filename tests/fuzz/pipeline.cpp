@@ -82,8 +82,12 @@ void run_pipeline(Bytes& bytes) {
     }
     host.chart_id.assign(segmented.chart_id.begin(), segmented.chart_id.end());
     host.seam_edges.assign(segmented.seam_edges.begin(), segmented.seam_edges.end());
-    // What could be segmented can be flattened.
-    host.wedge_uv = run(flattening(), host, way).wedge_uv;
+    // What could be segmented can be flattened, unless it is too large for 32 bits.
+    try {
+        host.wedge_uv = run(flattening(), host, way).wedge_uv;
+    } catch (const InvalidMesh&) {
+        return;
+    }
     for (const FilterDeclaration& filter : filter_table()) {
         if (filter.python_name != "get_parametrization_measures")
             continue;

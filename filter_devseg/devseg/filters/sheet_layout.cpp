@@ -1,7 +1,9 @@
 #include "devseg/filters/sheet_layout.h"
 
+#include <limits>
 #include <string>
 
+#include "devseg/errors.h"
 #include "devseg/flatten/snap.h"
 
 namespace devseg {
@@ -13,6 +15,9 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const Pack
         items.push_back({&chart.surface.corners, &chart.uv});
     const PackResult packed = pack_charts(items, options, progress);
     const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
+    if (!(scale * packed.side < std::numeric_limits<float>::max()))
+        throw InvalidMesh("expected a model small enough for 32-bit texture coordinates in its own "
+                          "units, found a larger one; scale it down, or pack into the unit square");
     SheetLayout layout;
     layout.uv.assign(mesh.twin.size(), Vec2::Zero());
     for (std::size_t c = 0; c < charts.size(); ++c) {
