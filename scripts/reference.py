@@ -34,6 +34,9 @@ SEGMENTATION = re.compile(r"compute_segmentation_(\w+)_per_face")
 # What most filters work on is made by these.
 PREPARATION = ("Segmentation: D-Charts", "Charts: Flatten")
 AFTER_SEGMENTATION = ("Charts: Flatten", "Pattern: Export")
+# Methods whose charts are deformed first.
+DEFORMED = ("papercraft",)
+DEFORMATION = "Charts: Deform to Exact Developability"
 # The bits of Writes in devseg/filters/filter.h.
 WRITES = {
     1: "face attributes `chart_id` and `seam_edges`, edge selection",
@@ -41,6 +44,7 @@ WRITES = {
     4: "face colours",
     8: "wedge texture coordinates",
     16: "a new layer",
+    32: "coordinates of the vertices",
 }
 WRITES_LAYER = 16
 RICH_TYPES = {
@@ -150,7 +154,10 @@ def mlx_scripts(table: list[dict[str, Any]]) -> dict[str, str]:
     for filter_ in table:
         method = SEGMENTATION.fullmatch(filter_["python_name"])
         if method:
-            steps = [filter_, *(by_name[name] for name in AFTER_SEGMENTATION if name in by_name)]
+            after = (
+                (DEFORMATION, *AFTER_SEGMENTATION) if method[1] in DEFORMED else AFTER_SEGMENTATION
+            )
+            steps = [filter_, *(by_name[name] for name in after if name in by_name)]
             scripts[f"{method[1]}.mlx"] = mlx_script(steps)
     return scripts
 

@@ -57,6 +57,8 @@ int written_elements(const FilterDeclaration& filter) {
         mask |= MeshModel::MM_FACECOLOR;
     if (filter.writes & writes_uv)
         mask |= MeshModel::MM_WEDGTEXCOORD;
+    if (filter.writes & writes_points)
+        mask |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
     return mask;
 }
 

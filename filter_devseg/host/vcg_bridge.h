@@ -77,6 +77,19 @@ inline HostMesh read_host_mesh(MeshModel& model) {
     return host;
 }
 
+/// Moves the live vertices, with what depends on them.
+inline void write_points(CMeshO& m, const std::vector<Vec3>& points) {
+    std::size_t i = 0;
+    for (auto& v : m.vert)
+        if (!v.IsD()) {
+            const Vec3& p = points[i++];
+            v.P() = CMeshO::CoordType(static_cast<Scalarm>(p.x()), static_cast<Scalarm>(p.y()),
+                                      static_cast<Scalarm>(p.z()));
+        }
+    vcg::tri::UpdateBounding<CMeshO>::Box(m);
+    vcg::tri::UpdateNormal<CMeshO>::PerVertexNormalizedPerFace(m);
+}
+
 /// Writes what the result holds, after the filter has succeeded; returns the bits of what changed.
 inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
     unsigned changed = MeshModel::MM_NONE;
@@ -97,6 +110,10 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
         write_face_attribute(model.cm, chart_id, result.chart_id);
         write_face_attribute(model.cm, seam_edges, result.seam_edges);
         changed |= MeshModel::MM_FACEFLAG;
+    }
+    if (!result.points.empty()) {
+        write_points(model.cm, result.points);
+        changed |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
     }
     std::size_t i = 0;
     for (auto& f : model.cm.face) {

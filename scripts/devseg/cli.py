@@ -12,7 +12,13 @@ from typing import Any
 
 from devseg.errors import DevsegError, one_line
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS
-from devseg.pattern import PATTERN_FORMATS, add_pattern_options, pattern_parameters
+from devseg.pattern import (
+    PATTERN_FORMATS,
+    PRESETS,
+    add_pattern_options,
+    length,
+    pattern_parameters,
+)
 
 FORMATS = (*PATTERN_FORMATS, "ply", "obj")
 
@@ -111,6 +117,15 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(name, type=_stretch, metavar="S", help=help_text)
     parser.add_argument(
         "--max-fitting-error", type=_positive, metavar="E", help="how far from developable"
+    )
+    parser.add_argument(
+        "--slit-threshold", type=length(), metavar="T", help="width of the gaps that are closed"
+    )
+    parser.add_argument(
+        "--target-faces",
+        type=_integer(4),
+        metavar="N",
+        help="simplify the mesh to N faces first; people fold tens of edges, not thousands",
     )
     parser.add_argument("--max-iterations", type=_integer(1), metavar="N", help="at most N rounds")
     parser.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
@@ -213,7 +228,11 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         parser.error(f"--charts auto does not apply to --method {method.name}")
     _check_names(args, parser)
     pattern = pattern_parameters(args)
-    options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, pattern)
+    if method.preset:
+        pattern.setdefault("preset", PRESETS[method.preset])
+    options = RunOptions(
+        args.out, method, segmentation, args.flatten, args.formats, pattern, args.target_faces
+    )
     results = []
     for path in args.input:
         result = run(path, options)
@@ -264,7 +283,22 @@ def _summary(result: dict[str, Any], out: Path) -> str:
         f"packing {100 * flat['packing_efficiency']:.0f} %",
         f"{sum(result['seconds'].values()):.1f} s",
     ]
-    return "\n".join([*lines, f"{'figures':<9} {', '.join(figures)}"])
+    lines.append(f"{'figures':<9} {', '.join(figures)}")
+    if "simplification" in result:
+        simple = result["simplification"]
+        mean, largest = 100 * simple["mean_deviation"], 100 * simple["largest_deviation"]
+        lines.append(
+            f"{'simpler':<9} {simple['faces']} faces, {mean:.2g} % of the diagonal away "
+            f"on average, {largest:.2g} % at most"
+        )
+    if "deformation" in result:
+        moved = result["deformation"]
+        lines.append(
+            f"{'deformed':<9} by {100 * moved['mean_share']:.2g} % of the diagonal on average, "
+            f"{100 * moved['largest_share']:.2g} % at most, "
+            f"{moved['residual']:.1g} rad from developable"
+        )
+    return "\n".join(lines)
 
 
 def _compare_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:

@@ -15,11 +15,15 @@ class Method:
         filter: name of the filter.
         options: options of the command line and the filter parameters they set; an option that
             is not here does not apply to the method.
+        deforms: whether the charts are deformed until they can be unfolded exactly.
+        preset: of the pattern, unless another one is asked for.
     """
 
     name: str
     filter: str
     options: Mapping[str, str]
+    deforms: bool = False
+    preset: str | None = None
 
 
 # Every segmentation filter has these.
@@ -43,6 +47,13 @@ METHODS = {
             "t-flooding",
             "compute_segmentation_t_flooding_per_face",
             {"charts": "charts_number", **_COMMON},
+        ),
+        Method(
+            "papercraft",
+            "compute_segmentation_papercraft_per_face",
+            {"charts": "charts_number", "slit_threshold": "slit_threshold", **_COMMON},
+            deforms=True,
+            preset="papercraft",
         ),
         Method(
             "vsa",
@@ -72,6 +83,7 @@ METHOD_OPTIONS = (
     "max_l2_stretch",
     "max_linf_stretch",
     "max_fitting_error",
+    "slit_threshold",
     "seed",
     "max_iterations",
 )

@@ -19,6 +19,9 @@ from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
+SIMPLIFY_FILTER = "meshing_decimation_quadric_edge_collapse"
+DISTANCE_FILTER = "get_hausdorff_distance"
+DEFORM_FILTER = "apply_coord_developable_charts"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
@@ -40,6 +43,7 @@ class RunOptions:
         flatten: key of FLATTENINGS.
         formats: svg, pdf, dxf, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
+        target_faces: simplify the mesh to so many faces first; None: leave it.
     """
 
     out: Path
@@ -48,6 +52,7 @@ class RunOptions:
     flatten: str
     formats: tuple[str, ...]
     pattern: Mapping[str, Any]
+    target_faces: int | None = None
 
 
 class Session:
@@ -88,6 +93,10 @@ class Session:
             if not _PROGRESS.search(note.rstrip()) and not note.startswith(values)
         ]
         return results
+
+    def call(self, name: str, **parameters: Any) -> dict[str, Any]:
+        """Applies a filter of the host that shapes no result, without noting its parameters."""
+        return self._guard(self.meshes.apply_filter, name, **parameters) or {}
 
     def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
         """Writes the pattern, in the format of the file's extension."""
@@ -148,21 +157,76 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
 
 
 def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
-    """Segments, flattens and packs the mesh; returns the measures."""
+    """Simplifies, segments, deforms, flattens and packs the mesh, as far as asked for.
+
+    Returns:
+        The measures, by stage.
+    """
+    found: dict[str, Any] = {}
+    if options.target_faces is not None:
+        with progress.stage("simplify"):
+            found["simplification"] = simplify(session, options.target_faces)
     with progress.stage("segment"):
-        found = session.segment(options.method.filter, **_segmentation(session, options))
-    if not found.get("bounds_kept", True):
+        made = session.segment(options.method.filter, **_segmentation(session, options))
+    found["method_results"] = made
+    if not made.get("bounds_kept", True):
         session.warnings.append(
             "no number of charts that was tried keeps the bounds on the stretch; "
             "these charts come nearest"
         )
+    if options.method.deforms:
+        with progress.stage("deform"):
+            found["deformation"] = _deform(session)
     with progress.stage("flatten"):
         session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
     with progress.stage("measure"):
         return {
+            **found,
             "segmentation": session.apply(SEGMENTATION_MEASURES),
             "parametrization": session.apply(PARAMETRIZATION_MEASURES),
         }
+
+
+def simplify(session: Session, target_faces: int) -> dict[str, Any]:
+    """Replaces the mesh by one of so many faces; how far apart both are, both ways.
+
+    Deviations are shares of the diagonal of the model's box.
+    """
+    meshes = session.meshes
+    original = meshes.current_mesh_id()
+    diagonal = meshes.current_mesh().bounding_box().diagonal()
+    session.call("generate_copy_of_current_mesh")
+    copy = meshes.current_mesh_id()
+    session.apply(
+        SIMPLIFY_FILTER,
+        targetfacenum=target_faces,
+        preserveboundary=True,
+        preservetopology=True,
+        preservenormal=True,
+    )
+    ways = [
+        session.call(DISTANCE_FILTER, sampledmesh=one, targetmesh=other, samplevert=True)
+        for one, other in ((original, copy), (copy, original))
+    ]
+    meshes.set_current_mesh(original)
+    session.call("delete_current_mesh")
+    meshes.set_current_mesh(copy)
+    return {
+        "faces": meshes.current_mesh().face_number(),
+        "mean_deviation": max(way["mean"] for way in ways) / diagonal,
+        "largest_deviation": max(way["max"] for way in ways) / diagonal,
+    }
+
+
+def _deform(session: Session) -> dict[str, Any]:
+    """Deforms the charts; the filter's results, and displacements as shares of the diagonal."""
+    diagonal = session.meshes.current_mesh().bounding_box().diagonal()
+    moved = session.apply(DEFORM_FILTER)
+    return {
+        **moved,
+        "mean_share": moved["mean_displacement"] / diagonal,
+        "largest_share": moved["largest_displacement"] / diagonal,
+    }
 
 
 def _segmentation(session: Session, options: RunOptions) -> dict[str, Any]:

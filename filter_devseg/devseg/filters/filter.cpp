@@ -70,8 +70,22 @@ int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
     return bits;
 }
 
-HostResult map_back(const GatedMesh& gated, FilterOutput output) {
+// Where the vertices have moved to; those that no face uses stay.
+std::vector<Vec3> moved_points(const HostMesh& host, const GatedMesh& gated,
+                               const std::vector<Vec3>& points) {
+    std::vector<Vec3> moved = host.geometry.points;
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const std::size_t source = at(gated.source_vertex[v]);
+        moved[source] = host.geometry.points[source] +
+                        gated.mesh.unit_length * (points[v] - gated.mesh.points[v]);
+    }
+    return moved;
+}
+
+HostResult map_back(const HostMesh& host, const GatedMesh& gated, FilterOutput output) {
     HostResult result;
+    if (output.points)
+        result.points = moved_points(host, gated, *output.points);
     result.values = std::move(output.values);
     result.layer = std::move(output.layer);
     result.notes = gated.notes;
@@ -125,9 +139,10 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
                                                  : gate_mesh(host.geometry, progress);
     progress.check();
     const FilterInput input{gated.mesh, read_charts(host, gated),
-                            read_uv(host, gated, filter.needs_uv), gated.source_face};
+                            read_uv(host, gated, filter.needs_uv), gated.source_face,
+                            gated.source_vertex};
     try {
-        return map_back(gated, filter.run(input, values, progress));
+        return map_back(host, gated, filter.run(input, values, progress));
     } catch (InvalidMesh& error) {
         for (Index& f : error.faces)
             f = gated.source_face[at(f)];

@@ -52,15 +52,18 @@ enum Writes : unsigned {
     writes_quality = 2,
     writes_color = 4,
     writes_uv = 8,
-    writes_layer = 16 // a new mesh; the host's own stays as it is
+    writes_layer = 16, // a new mesh; the host's own stays as it is
+    writes_points = 32 // coordinates of the vertices
 };
 
 /// What filters see of a mesh: checked, in internal units.
 struct FilterInput {
     const Mesh& mesh;
-    std::optional<ChartMap> charts;        // from chart_id and seam_edges, if the mesh has them
-    std::optional<CornerUv> uv;            // wedge texture coordinates, if the mesh has them
-    const std::vector<Index>& source_face; // #F: the host's number of each face, for results
+    std::optional<ChartMap> charts;          // from chart_id and seam_edges, if the mesh has them
+    std::optional<CornerUv> uv;              // wedge texture coordinates, if the mesh has them
+    const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
+    const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
+                                             // a vertex that the gate had to split share one
 };
 
 struct FilterOutput {
@@ -68,6 +71,7 @@ struct FilterOutput {
     std::optional<std::vector<double>> face_quality; // #F
     std::optional<std::vector<Color>> face_color;    // #F
     std::optional<CornerUv> uv;
+    std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
@@ -97,13 +101,14 @@ struct HostMesh {
     std::vector<std::array<Vec2, 3>> wedge_uv;
 };
 
-/// The results for the host's own faces. Vectors are for all faces or empty.
+/// The results for the host's own elements. Vectors are for all faces or empty.
 struct HostResult {
     std::vector<int> chart_id;
     std::vector<int> seam_edges;
     std::vector<double> face_quality;
     std::vector<Color> face_color;
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::vector<Vec3> points; // for all vertices or empty
     std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes;

@@ -9,6 +9,8 @@ namespace devseg {
 
 std::vector<FilterDeclaration> segmentation_filters();
 std::vector<FilterDeclaration> t_flooding_filters();
+std::vector<FilterDeclaration> papercraft_filters();
+std::vector<FilterDeclaration> deformation_filters();
 std::vector<FilterDeclaration> baseline_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> pattern_filters();

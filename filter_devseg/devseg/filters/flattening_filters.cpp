@@ -29,6 +29,8 @@ constexpr const char* flatten_help =
     "<b>ARAP</b> keeps lengths as well; <b>LSCM</b> and <b>ABF++</b> keep angles and change lengths "
     "more; <b>LPFB</b> keeps the length of every boundary edge instead of the area, for sewing. "
     "Charts on which a method turns faces over are flattened with Symmetric Dirichlet, and counted. "
+    "Charts that are exactly developable, such as those that 'Charts: Deform to Exact "
+    "Developability' leaves, are unfolded without any stretch, whatever the method. "
     "Parts of a chart that would lie on each other are pushed apart (Symmetric Dirichlet) or cut "
     "apart along a short path, and counted too.<br>"
     "See:<br><i>Jason Smith, Scott Schaefer</i><br>"
@@ -68,10 +70,12 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     FilterOutput output;
     int mended = 0;
     int pushed = 0;
+    int developed = 0;
     bool converged = true;
     double energy = 0.0;
     for (const FlatChart& chart : flattened.flat) {
         pushed += chart.pushed ? 1 : 0;
+        developed += chart.developed ? 1 : 0;
         mended += chart.mended ? 1 : 0;
         converged = converged && chart.converged;
         energy = std::max(energy, chart.energy);
@@ -80,6 +84,8 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
         {"charts_number", flattened.charts.count},
         {"cut_charts_number", cuts.cut_charts},
         {"overlap_cuts_number", flattened.cuts},
+        {"reattached_parts_number", flattened.reattached},
+        {"developed_charts_number", developed},
         {"pushed_charts_number", pushed},
         {"mended_charts_number", mended},
         {"converged", converged},
@@ -155,6 +161,8 @@ FilterDeclaration flatten() {
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut first")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
+        .result("reattached_parts_number", "small parts that were hinged to another chart then")
+        .result("developed_charts_number", "charts that are exactly developable and were unfolded")
         .result("pushed_charts_number", "charts whose parts were pushed apart instead")
         .result("mended_charts_number", "charts that needed the injective method")
         .result("converged", "whether all charts reached the tolerance")

@@ -6,6 +6,7 @@
 
 #include "devseg/cut/disks.h"
 #include "devseg/flatten/one_chart.h"
+#include "devseg/flatten/reattach.h"
 #include "devseg/flatten/slivers.h"
 #include "devseg/metrics/overlap.h"
 #include "devseg/parallel.h"
@@ -82,6 +83,8 @@ FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMe
         open = cut_apart(mesh, flatten_some(mesh, method, tolerance, open, result.flat, progress),
                          result, progress);
     hand_over_slivers(mesh, method, tolerance, result, progress);
+    if (result.cuts > 0)
+        result.reattached = reattach_parts(mesh, tolerance, result, progress);
     return result;
 }
 

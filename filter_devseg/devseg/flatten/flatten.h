@@ -15,10 +15,11 @@ enum class FlattenMethod { symmetric_dirichlet, lscm, abf, arap, lpfb };
 /// the lengths of its boundary edges instead).
 struct FlatChart {
     ChartSurface surface;
-    std::vector<Vec2> uv; // #v, internal units of the mesh
-    bool mended = false;  // the chosen method flipped faces: the injective one was used instead
-    bool pushed = false;  // parts lay on top of each other and were pushed apart
-    bool cut_off = false; // a part of a given chart that lay on top of another part
+    std::vector<Vec2> uv;   // #v, internal units of the mesh
+    bool mended = false;    // the chosen method flipped faces: the injective one was used instead
+    bool pushed = false;    // parts lay on top of each other and were pushed apart
+    bool cut_off = false;   // a part of a given chart that lay on top of another part
+    bool developed = false; // exactly developable, and unfolded instead of mapped
     bool converged = true;
     double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
 };
@@ -26,14 +27,17 @@ struct FlatChart {
 struct FlattenResult {
     ChartMap charts; // the given charts, cut where a part lay on top of another
     std::vector<FlatChart> flat;
-    int cuts = 0; // that were needed
+    int cuts = 0;       // that were needed
+    int reattached = 0; // parts that were hinged to another chart after that
 };
 
 /// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
 /// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
 /// else cut apart along a short path; what is then too small to be a chart goes to a neighbour
-/// whose map has room for it. The result does not depend on the number of threads. Throws
-/// NumericalFailure, naming the chart's size, where no map without flips could be found.
+/// whose map has room for it. Charts that are exactly developable are unfolded, whatever the
+/// method: only cut apart, never pushed, and small parts are hinged to another chart. The result
+/// does not depend on the number of threads. Throws NumericalFailure, naming the chart's size,
+/// where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 

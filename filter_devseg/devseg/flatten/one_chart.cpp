@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "devseg/develop/unfold.h"
 #include "devseg/errors.h"
 #include "devseg/flatten/abf.h"
 #include "devseg/flatten/arap.h"
@@ -34,6 +35,8 @@ namespace {
 // what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
 // person or a cutter sees (0.015 mm on a sheet of 300 mm).
 constexpr double slit_gap = 5e-5;
+// What readers certainly see.
+constexpr double visible_gap = 5e-6;
 
 // A face that keeps less of its area has collapsed.
 constexpr double collapsed = 1e-5;
@@ -238,6 +241,20 @@ std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress) {
     const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    if (auto development = unfold(problem, chart.surface.twin)) {
+        // What every method looks for, exactly. It stays as it is: parts are not pushed apart, and
+        // slits are opened only where the chart would not be seen as a disk.
+        chart.uv = std::move(*development);
+        scale_to_area(problem, chart.uv);
+        const double size = std::sqrt(mesh.total_area);
+        if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * size, chart.uv))
+            open_closed_slits(mesh, chart.surface, slit_gap * size, chart.uv);
+        chart.developed = true;
+        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+        const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
+        return pairs.empty() ? std::vector<Index>{}
+                             : on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
+    }
     try {
         if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
             chart.mended = true;

@@ -1,6 +1,8 @@
 #include "devseg/flatten/slits.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "devseg/flatten/map_tools.h"
 
@@ -86,6 +88,37 @@ void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap
         opener.part(surface.origin(h), surface.target(g), h, g);
         opener.part(surface.target(h), surface.origin(g), h, g);
     }
+}
+
+bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, double gap,
+                            const std::vector<Vec2>& uv) {
+    std::vector<Index> same(surface.vertex.size());
+    std::iota(same.begin(), same.end(), 0);
+    const auto find = [&](Index v) {
+        while (same[at(v)] != v)
+            v = same[at(v)] = same[at(same[at(v)])];
+        return v;
+    };
+    const auto meet = [&](Index v, Index w) {
+        return v == w || (uv[at(v)] - uv[at(w)]).norm() < gap;
+    };
+    // Every closed edge is one edge less; the vertices that it joins are fewer as well, by as many
+    // as it takes for the chart to stay a disk, or not.
+    Index euler = surface.euler_characteristic();
+    for (const auto& [h, g] : slit_sides(mesh, surface)) {
+        if (!meet(surface.origin(h), surface.target(g)) ||
+            !meet(surface.target(h), surface.origin(g)))
+            continue;
+        ++euler;
+        for (const auto& [v, w] : {std::pair(surface.origin(h), surface.target(g)),
+                                   std::pair(surface.target(h), surface.origin(g))}) {
+            const Index a = find(v);
+            const Index b = find(w);
+            euler -= a == b ? 0 : 1;
+            same[at(a)] = b;
+        }
+    }
+    return euler != 1;
 }
 
 } // namespace devseg

@@ -14,4 +14,9 @@ namespace devseg {
 void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap,
                        std::vector<Vec2>& uv);
 
+/// Whether a reader that takes points closer than `gap` for one would find something else than a
+/// disk: cuts between two holes, say, that close over their whole length.
+bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, double gap,
+                            const std::vector<Vec2>& uv);
+
 } // namespace devseg

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "devseg/develop/unfold.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/rest_shape.h"
@@ -90,8 +91,13 @@ bool try_to_join(const Mesh& mesh, FlattenMethod method, double tolerance, Index
     std::sort(faces.begin(), faces.end());
     FlatChart joined;
     joined.surface = extract_surface(mesh, std::move(faces), seam);
-    if (!joined.surface.is_disk() ||
-        !flatten_one(mesh, method, tolerance, joined, progress).empty())
+    if (!joined.surface.is_disk())
+        return false;
+    // What can be folded of paper stays so.
+    if ((small.developed || large.developed) &&
+        !unfold(make_flattening_problem(mesh, joined.surface), joined.surface.twin))
+        return false;
+    if (!flatten_one(mesh, method, tolerance, joined, progress).empty())
         return false;
     const double before = excess_of(mesh, small) + excess_of(mesh, large);
     const double worst =

@@ -1,0 +1,389 @@
+#include "devseg/develop/deform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <sstream>
+#include <utility>
+
+#include "devseg/develop/intersections.h"
+#include "devseg/develop/projection.h"
+#include "devseg/errors.h"
+#include "devseg/mesh/angle_defects.h"
+#include "devseg/segment/slit_closing.h"
+
+namespace devseg {
+
+namespace {
+
+// Of the tolerance: Newton's steps gain so much at the end that exactness costs one or two more.
+constexpr double polished = 1e-6;
+constexpr int patience = 4;      // rounds without gain
+constexpr int relaxed_after = 3; // rounds in which a place was blocked
+constexpr int cut_after = 7;
+constexpr std::size_t most_slits_at_once = 3;
+constexpr double late = 0.75;     // share of the rounds
+constexpr double late_gain = 0.3; // what the residual has to fall to in `patience` rounds then
+constexpr int attempts = 3;       // at a surface that does not run through itself
+constexpr double held_back = 0.2; // mobility of points where it did
+constexpr int most_focused_rounds = 25;
+constexpr double most_in_focus = 0.5; // share of the inner vertices
+constexpr double focus_share = 0.1;
+constexpr double most_inner_defect = 0.5; // radians: more is not taken inside of a chart
+
+} // namespace
+
+std::vector<Index> inner_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
+    const std::vector<Index> cuts = cut_edges_at_vertices(mesh, seam);
+    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
+    const std::vector<Index> leaving = leaving_half_edges(mesh);
+    std::vector<Index> inner;
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        if (leaving[at(v)] >= 0 && boundary[at(v)] == 0 && cuts[at(v)] == 0)
+            inner.push_back(v);
+    return inner;
+}
+
+namespace {
+
+// Cuts along the shortest path from the vertex to the border of its chart; false where it has none.
+bool cut_to_border(const Mesh& mesh, const std::vector<Index>& leaving, Index start,
+                   std::vector<std::uint8_t>& on_border, std::vector<std::uint8_t>& seam) {
+    std::vector<double> distance(mesh.points.size(), std::numeric_limits<double>::infinity());
+    std::vector<Index> from(mesh.points.size(), -1); // half-edge that arrives
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    distance[at(start)] = 0.0;
+    queue.emplace(0.0, start);
+    while (!queue.empty()) {
+        const auto [d, v] = queue.top();
+        queue.pop();
+        if (d > distance[at(v)])
+            continue;
+        if (on_border[at(v)] != 0) {
+            for (Index u = v; u != start; u = mesh.origin(from[at(u)])) {
+                on_border[at(mesh.origin(from[at(u)]))] = 1;
+                seam[at(from[at(u)])] = seam[at(mesh.twin[at(from[at(u)])])] = 1;
+            }
+            return true;
+        }
+        visit_star(mesh, leaving[at(v)], [&, d = d](Index h) {
+            const double through = d + mesh.edge_length(h);
+            if (through < distance[at(mesh.target(h))]) {
+                distance[at(mesh.target(h))] = through;
+                from[at(mesh.target(h))] = h;
+                queue.emplace(through, mesh.target(h));
+            }
+        });
+    }
+    return false;
+}
+
+class Deformation {
+public:
+    Deformation(const Mesh& mesh, const ChartMap& charts, const std::vector<Index>& point_of,
+                const DeformOptions& options, const std::vector<double>& ease)
+        : mesh_(mesh), point_of_(point_of), options_(options), projection_(mesh, point_of, ease),
+          leaving_(leaving_half_edges(mesh)) {
+        result_.charts = charts;
+        constrain_all();
+        result_.start_residual = projection_.residual();
+    }
+
+    DeformResult run(Progress& progress) {
+        const std::vector<Vec3> start = projection_.points();
+        iterate(progress);
+        result_.residual = projection_.residual();
+        result_.converged = result_.residual <= options_.tolerance;
+        result_.inner_vertices = static_cast<Index>(rows_.size());
+        const std::vector<Vec3>& end = projection_.points();
+        for (std::size_t p = 0; p < end.size(); ++p) {
+            const double moved = (end[p] - start[p]).norm();
+            result_.largest_displacement = std::max(result_.largest_displacement, moved);
+            result_.mean_displacement += moved / static_cast<double>(end.size());
+        }
+        for (const Index p : point_of_)
+            result_.points.push_back(end[at(p)]);
+        return std::move(result_);
+    }
+
+private:
+    // Alternates deforming and closing until no tip is left with more than 2π around it.
+    void iterate(Progress& progress) {
+        if (options_.adjust_slits)
+            add_slits(0, most_inner_defect, rows_.size());
+        do
+            project(progress);
+        while (options_.adjust_slits && projection_.residual() <= options_.tolerance &&
+               effort_ < options_.max_iterations && close_reflex_tips());
+    }
+
+    bool close_reflex_tips() {
+        Mesh now = mesh_;
+        for (std::size_t v = 0; v < now.points.size(); ++v)
+            now.points[v] = projection_.points()[at(point_of_[v])];
+        const std::vector<double> defect = angle_defects(now);
+        const std::vector<std::uint8_t> boundary = boundary_vertices(mesh_);
+        std::vector<Index> cuts = cut_edges_at_vertices(mesh_, result_.charts.seam);
+        std::vector<std::uint8_t>& seam = result_.charts.seam;
+        const Index closed_before = result_.closed_edges;
+        kept_open_.resize(mesh_.points.size(), 0);
+        for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+            if (boundary[at(v)] != 0 || cuts[at(v)] != 1 || kept_open_[at(v)] != 0 ||
+                !(defect[at(v)] < -options_.tolerance) || defect[at(v)] < -most_inner_defect)
+                continue;
+            Index edge = -1;
+            visit_star(mesh_, leaving_[at(v)],
+                       [&](Index h) { edge = seam[at(h)] != 0 ? h : edge; });
+            const Index other = mesh_.target(edge);
+            if (boundary[at(other)] == 0 && cuts[at(other)] == 1)
+                continue; // the last cut of a closed chart
+            seam[at(edge)] = seam[at(mesh_.twin[at(edge)])] = 0;
+            cuts[at(v)] = 0;
+            --cuts[at(other)];
+            kept_open_[at(v)] = 1; // if it is cut again, it stays so
+            ++result_.closed_edges;
+        }
+        if (result_.closed_edges == closed_before)
+            return false;
+        constrain_all();
+        return true;
+    }
+
+    void constrain_all() {
+        rows_ = inner_vertices(mesh_, result_.charts.seam);
+        projection_.constrain(rows_, {});
+        all_rows_ = rows_.size();
+        focused_ = false;
+    }
+
+    // Where few charts are left with defects, these are all that has to move.
+    bool focus() {
+        std::vector<std::uint8_t> open(at(result_.charts.count), 0);
+        const auto chart_of = [&](Index v) {
+            return result_.charts.chart[at(leaving_[at(v)] / 3)];
+        };
+        for (Index r = 0; r < projection_.defects().size(); ++r)
+            if (std::abs(projection_.defects()[r]) > focus_share * options_.tolerance)
+                open[at(chart_of(rows_[at(r)]))] = 1;
+        std::vector<std::uint8_t> near(mesh_.points.size(), 0);
+        std::size_t count = 0;
+        for (const Index v : rows_) {
+            near[at(v)] = open[at(chart_of(v))];
+            count += near[at(v)];
+        }
+        if (static_cast<double>(count) > most_in_focus * static_cast<double>(rows_.size()))
+            return false;
+        std::vector<std::uint8_t> outside(mesh_.points.size(), 0);
+        std::vector<Index> rows;
+        for (const Index v : rows_)
+            if (near[at(v)] != 0)
+                rows.push_back(v);
+            else
+                outside[at(v)] = 1;
+        std::vector<std::uint8_t> fixed(projection_.points().size(), 0);
+        for (const Triangle& t : mesh_.faces)
+            if ((outside[at(t[0])] | outside[at(t[1])] | outside[at(t[2])]) != 0)
+                for (const Index v : t)
+                    fixed[at(point_of_[at(v)])] = 1;
+        rows_ = std::move(rows);
+        projection_.constrain(rows_, fixed);
+        focused_ = true;
+        return true;
+    }
+
+    // Rounds until all defects are as small as rounding lets them be. What is stuck is relaxed, and
+    // then cut open if that is allowed.
+    void project(Progress& progress) {
+        int failed = 0;
+        int idle = 0;
+        int focused_rounds = 0;
+        bool may_focus = true;
+        while (effort_ < options_.max_iterations) {
+            if (projection_.residual() <= polished * options_.tolerance ||
+                focused_rounds > most_focused_rounds) {
+                if (!focused_)
+                    return;
+                may_focus = focused_rounds <= most_focused_rounds;
+                focused_rounds = 0;
+                constrain_all();
+                continue;
+            }
+            if (!focused_ && may_focus && projection_.residual() > options_.tolerance && focus())
+                continue;
+            progress.update(effort_ / options_.max_iterations);
+            const double before = projection_.residual();
+            const bool moved = projection_.step();
+            ++result_.rounds;
+            effort_ += static_cast<double>(rows_.size()) / static_cast<double>(all_rows_);
+            focused_rounds += focused_ ? 1 : 0;
+            idle = projection_.residual() > 0.5 * before ? idle + 1 : 0;
+            if (before <= options_.tolerance && idle == patience) {
+                if (!focused_)
+                    return; // rounding is all that is left
+                constrain_all();
+                continue;
+            }
+            failed = moved ? 0 : failed + 1;
+            const int block = projection_.longest_block();
+            if (block == relaxed_after)
+                projection_.relax_blocked(relaxed_after);
+            else if (block >= cut_after && options_.adjust_slits &&
+                     add_slits(cut_after, options_.tolerance, most_slits_at_once))
+                continue;
+            // Slits cost parts: they are few as long as there is time, and then as many as it
+            // takes.
+            if (options_.adjust_slits && effort_ > late * options_.max_iterations &&
+                result_.rounds % patience == 0) {
+                if (projection_.residual() >
+                        std::max(options_.tolerance, late_gain * late_residual_) &&
+                    add_slits(0, std::max(options_.tolerance, 0.1 * projection_.residual()),
+                              rows_.size())) {
+                    failed = 0;
+                    late_residual_ = projection_.residual();
+                    continue;
+                }
+                late_residual_ = projection_.residual();
+            }
+            if (failed < patience)
+                continue;
+            if (options_.adjust_slits && failed == patience && add_slits(0, options_.tolerance, 1))
+                failed = 0;
+            if (failed > 2 * patience && !focused_)
+                return;
+            if (failed > 2 * patience)
+                focused_rounds = most_focused_rounds + 1;
+        }
+        if (focused_)
+            constrain_all();
+    }
+
+    // Cuts to vertices with defects above `least` that were blocked for so many rounds; to the
+    // worst one of each neighbourhood, as others may get on once it is free.
+    bool add_slits(int rounds, double least, std::size_t most) {
+        std::vector<std::pair<double, Index>> worst;
+        const Eigen::VectorXd& defects = projection_.defects();
+        for (Index r = 0; r < defects.size(); ++r)
+            if (std::abs(defects[r]) > least && projection_.block(r) >= rounds)
+                worst.emplace_back(-std::abs(defects[r]), rows_[at(r)]);
+        std::sort(worst.begin(), worst.end());
+        worst.resize(std::min(worst.size(), most));
+        std::vector<std::uint8_t> on_border = boundary_vertices(mesh_);
+        const std::vector<Index> cuts = cut_edges_at_vertices(mesh_, result_.charts.seam);
+        for (std::size_t v = 0; v < cuts.size(); ++v)
+            on_border[v] = on_border[v] != 0 || cuts[v] > 0;
+        std::vector<std::uint8_t> relieved(mesh_.points.size(), 0);
+        bool any = false;
+        for (const auto& [size, v] : worst) {
+            if (on_border[at(v)] != 0 || relieved[at(v)] != 0 ||
+                !cut_to_border(mesh_, leaving_, v, on_border, result_.charts.seam))
+                continue;
+            ++result_.added_slits;
+            any = true;
+            if (least < most_inner_defect)
+                visit_star(mesh_, leaving_[at(v)],
+                           [&](Index h) { relieved[at(mesh_.target(h))] = 1; });
+        }
+        if (any)
+            constrain_all();
+        return any;
+    }
+
+    const Mesh& mesh_;
+    const std::vector<Index>& point_of_;
+    const DeformOptions& options_;
+    Projection projection_;
+    std::vector<Index> rows_; // vertices of the projection's rows
+    std::size_t all_rows_ = 0;
+    double effort_ = 0.0; // rounds; those with a part of the rows count by that part
+    double late_residual_ = std::numeric_limits<double>::infinity(); // at the last late look
+    std::vector<Index> leaving_;
+    bool focused_ = false;                // whether these are a part of all inner vertices
+    std::vector<std::uint8_t> kept_open_; // #V: tips that were closed before
+    DeformResult result_;
+};
+
+// Pairs of faces that cross after the deformation and not before; close to where the surface
+// crossed itself already, crossings just move from face to face.
+std::vector<std::pair<Index, Index>> new_crossings(const std::vector<Triangle>& faces,
+                                                   const std::vector<Vec3>& before,
+                                                   const std::vector<Vec3>& after,
+                                                   const Progress& progress) {
+    std::vector<std::uint8_t> crossed(before.size(), 0); // by point
+    for (const auto& [f, g] : find_intersections(before, faces, progress))
+        for (std::size_t k = 0; k < 3; ++k)
+            crossed[at(faces[at(f)][k])] = crossed[at(faces[at(g)][k])] = 1;
+    const auto had_crossed = [&](Index f) {
+        const Triangle& t = faces[at(f)];
+        return (crossed[at(t[0])] | crossed[at(t[1])] | crossed[at(t[2])]) != 0;
+    };
+    std::vector<std::pair<Index, Index>> added;
+    for (const auto& [f, g] : find_intersections(after, faces, progress))
+        if (!had_crossed(f) || !had_crossed(g))
+            added.emplace_back(f, g);
+    return added;
+}
+
+// Throws where the result is not what was asked for.
+void check(const DeformResult& result, const DeformOptions& options) {
+    std::ostringstream text;
+    if (!result.converged)
+        text << "expected angle sums of 2 pi to within " << options.tolerance
+             << " rad at all inner vertices of the charts, found a defect of " << result.residual
+             << " rad after " << result.rounds << " rounds";
+    else if (result.new_intersections > 0)
+        text << "expected a surface that does not run through itself, found "
+             << result.new_intersections << " new pairs of faces that intersect";
+    else
+        return;
+    text << "; use more charts, set 'adjust_slits', or set 'keep_unfinished' to get the best state";
+    throw NumericalFailure(text.str());
+}
+
+} // namespace
+
+DeformResult deform_to_developable(const Mesh& mesh, const ChartMap& charts,
+                                   const std::vector<Index>& point_of, const DeformOptions& options,
+                                   Progress& progress) {
+    if (options.max_iterations < 1)
+        throw InvalidParameter("max_iterations: expected a number of at least 1, found " +
+                               std::to_string(options.max_iterations));
+    std::vector<Triangle> faces;
+    for (const Triangle& t : mesh.faces)
+        faces.push_back({point_of[at(t[0])], point_of[at(t[1])], point_of[at(t[2])]});
+    const auto by_point = [&](const std::vector<Vec3>& vertices) {
+        std::vector<Vec3> points(at(*std::max_element(point_of.begin(), point_of.end())) + 1,
+                                 Vec3::Zero());
+        for (std::size_t v = 0; v < point_of.size(); ++v)
+            points[at(point_of[v])] = vertices[v];
+        return points;
+    };
+    const std::vector<Vec3> before = by_point(mesh.points);
+    std::vector<double> ease(before.size(), 1.0);
+    DeformResult result;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        progress.begin_phase("deforming to exact developability", attempt == 0 ? 0.7 : 0.05);
+        DeformResult next = Deformation(mesh, charts, point_of, options, ease).run(progress);
+        if (attempt > 0 && !next.converged)
+            break;
+        result = std::move(next);
+        if (!result.converged)
+            break;
+        progress.begin_phase("looking for intersections", 0.05);
+        const auto added = new_crossings(faces, before, by_point(result.points), progress);
+        result.new_intersections = static_cast<Index>(added.size());
+        if (added.empty())
+            break;
+        for (const auto& [f, g] : added) // once more, with these held back
+            for (std::size_t k = 0; k < 3; ++k)
+                ease[at(faces[at(f)][k])] = ease[at(faces[at(g)][k])] =
+                    std::pow(held_back, attempt + 1);
+    }
+    if (!options.keep_unfinished)
+        check(result, options);
+    return result;
+}
+
+} // namespace devseg

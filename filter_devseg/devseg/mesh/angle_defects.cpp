@@ -1,0 +1,34 @@
+#include "devseg/mesh/angle_defects.h"
+
+namespace devseg {
+
+std::vector<double> angle_defects(const Mesh& mesh) {
+    std::vector<double> defect(mesh.points.size(), 2.0 * 3.14159265358979323846);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        defect[at(mesh.origin(h))] -=
+            corner_angle(mesh.points[at(mesh.origin(h))], mesh.points[at(mesh.target(h))],
+                         mesh.points[at(mesh.origin(Mesh::previous(h)))]);
+    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
+    for (std::size_t v = 0; v < defect.size(); ++v)
+        if (boundary[v] != 0)
+            defect[v] = 0.0;
+    return defect;
+}
+
+std::vector<Index> leaving_half_edges(const Mesh& mesh) {
+    std::vector<Index> leaving(mesh.points.size(), -1);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (leaving[at(mesh.origin(h))] < 0 || mesh.twin[at(h)] < 0)
+            leaving[at(mesh.origin(h))] = h;
+    return leaving;
+}
+
+std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh) {
+    std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (mesh.twin[at(h)] < 0)
+            boundary[at(mesh.origin(h))] = boundary[at(mesh.target(h))] = 1;
+    return boundary;
+}
+
+} // namespace devseg
