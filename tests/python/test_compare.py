@@ -60,7 +60,10 @@ def test_unknown_methods_are_refused(torus: Path, capsys: pytest.CaptureFixture[
     with pytest.raises(SystemExit) as error:
         main(["compare", str(torus), "--methods", "vsa,best"])
     assert error.value.code == 2
-    assert "expected some of dcharts,t-flooding,vsa,mcgim, found 'best'" in capsys.readouterr().err
+    assert (
+        "expected some of dcharts,t-flooding,papercraft,vsa,mcgim, found 'best'"
+        in capsys.readouterr().err
+    )
 
 
 def test_more_charts_than_faces_is_one_line(
