@@ -9,6 +9,7 @@ namespace devseg {
 
 std::vector<FilterDeclaration> segmentation_filters();
 std::vector<FilterDeclaration> t_flooding_filters();
+std::vector<FilterDeclaration> plush_filters();
 std::vector<FilterDeclaration> baseline_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> pattern_filters();
