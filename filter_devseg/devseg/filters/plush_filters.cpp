@@ -28,6 +28,7 @@ std::vector<FilterDeclaration> plush_filters() {
                        FilterCategory::remeshing, plush_help)
                 .real(&O::max_area_change, "max_area_change", "Largest change of area", 0.01, 1.0,
                       "x")
+                .boolean(&O::symmetric, "symmetric", "s", "s")
                 .writes(writes_charts | writes_color)
                 .runs(run_plush)};
 }

@@ -104,25 +104,23 @@ void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& proble
     scale_to_area(problem, chart.uv);
 }
 
-// Keeps the lengths of boundary edges. Where the angles on the surface give no acceptable map, or
-// one that lies on itself, those of the nearest isometric map are tried.
+// Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those of
+// the nearest isometric map, whatever the areas.
 bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
                 FlatChart& chart, const Progress& progress) {
-    LpfbMap own = settle_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
-    if (is_sewable(problem, own) &&
-        overlapping_pairs(chart.surface, own.uv, tolerance).empty()) {
-        chart.uv = std::move(own.uv);
+    if (auto map = sewing_map(problem, chart.surface, tolerance, SewingMapOptions{}, progress)) {
+        chart.uv = std::move(map->uv);
         return true;
     }
     apply_symmetric_dirichlet(mesh, problem, chart, progress);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    const std::vector<double> angles = boundary_angles(problem, chart.uv);
-    LpfbMap near =
-        settle_lpfb(problem, flatten_lpfb(problem, angles, LpfbOptions{}, progress), progress);
-    LpfbMap& better = near.energy <= own.energy ? near : own;
-    if (!std::isfinite(better.energy))
+    auto near = settle_lpfb(
+        problem,
+        flatten_lpfb(problem, boundary_angles(problem, chart.uv), LpfbOptions{}, progress),
+        progress);
+    if (!near)
         return false;
-    chart.uv = std::move(better.uv);
+    chart.uv = std::move(near->uv);
     return true;
 }
 

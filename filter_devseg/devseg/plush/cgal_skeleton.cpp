@@ -3,18 +3,75 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <exception>
 #include <map>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "devseg/errors.h"
 #include "devseg/mesh/coarsen.h"
+
+namespace devseg {
+
+// CGAL keeps elements of its meshes in sets ordered by their addresses. They come from one block
+// and are never given back before its end, so that their order is that of their making, and the
+// skeleton the same every time.
+class SkeletonArena {
+public:
+    SkeletonArena() : block_(new std::byte[capacity]) { current() = this; }
+    ~SkeletonArena() { current() = nullptr; }
+    SkeletonArena(const SkeletonArena&) = delete;
+    SkeletonArena& operator=(const SkeletonArena&) = delete;
+
+    static SkeletonArena*& current() {
+        thread_local SkeletonArena* arena = nullptr;
+        return arena;
+    }
+    void* take(std::size_t bytes) {
+        bytes = (bytes + alignof(std::max_align_t) - 1) / alignof(std::max_align_t) *
+                alignof(std::max_align_t);
+        if (capacity - used_ < bytes)
+            throw std::bad_alloc();
+        used_ += bytes;
+        return block_.get() + used_ - bytes;
+    }
+
+private:
+    static constexpr std::size_t capacity = std::size_t{1} << 28; // only what is used gets memory
+    std::unique_ptr<std::byte[]> block_;
+    std::size_t used_ = 0;
+};
+
+template <class T>
+struct SkeletonAllocator {
+    using value_type = T;
+    SkeletonAllocator() = default;
+    template <class U>
+    SkeletonAllocator(const SkeletonAllocator<U>&) {} // NOLINT: allocators convert
+    T* allocate(std::size_t n) {
+        return static_cast<T*>(SkeletonArena::current()->take(n * sizeof(T)));
+    }
+    void deallocate(T*, std::size_t) {}
+    template <class U>
+    bool operator==(const SkeletonAllocator<U>&) const {
+        return true;
+    }
+    template <class U>
+    bool operator!=(const SkeletonAllocator<U>&) const {
+        return false;
+    }
+};
+
+} // namespace devseg
 
 // CGAL checks itself in every build, and failed checks become exceptions: a host must never be
 // aborted.
 #define CGAL_DEBUG
 #define CGAL_DISABLE_GMP 1 // nothing here needs exact numbers: no library to link
 #define CGAL_EIGEN3_ENABLED
+#define CGAL_ALLOCATOR(T) devseg::SkeletonAllocator<T>
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Simple_cartesian.h>
@@ -181,6 +238,7 @@ Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
         if (is_open[at(c)] != 0 || faces[at(c)] < least_faces)
             continue;
         try {
+            const SkeletonArena arena;
             add_bones(contract(to_surface(coarse.mesh, parts.label, c), progress), size, skeleton);
         } catch (const Cancelled&) {
             throw;

@@ -10,7 +10,6 @@
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/overlaps.h"
 #include "devseg/flatten/slits.h"
-#include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
 #include "devseg/metrics/overlap.h"
 
@@ -19,18 +18,10 @@ namespace devseg {
 namespace {
 
 constexpr double kept = 0.98; // share of the bound that is used: maps are rounded to 32 bits later
-constexpr double hopeless_energy = 1.6; // of the harmonic map: no later step makes it even
-constexpr double most_stretch = 1.15;   // L2: what an even area may cost in shear
-
-double polygon_area(const std::vector<Vec2>& points) {
-    double twice = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec2& p = points[i];
-        const Vec2& q = points[i + 1 < points.size() ? i + 1 : 0];
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
-    return 0.5 * twice;
-}
+constexpr double most_stretch = 1.15; // L2: what even areas may cost in shear
+// Symmetric Dirichlet energy of patches that are not worth a closer look: lines that change their
+// length by a tenth, everywhere, have 1.02.
+constexpr double hopeless_energy = 1.02;
 
 void describe(const ChartSurface& surface, const FlatteningProblem& problem,
               const std::vector<Vec2>& uv, PatchTrial& trial) {
@@ -55,6 +46,12 @@ bool lies_flat(const Mesh& mesh, const ChartSurface& surface, std::vector<Vec2> 
 }
 
 } // namespace
+#include <atomic>
+#include <cstdio>
+std::atomic<int> plush_stat[8];
+void plush_dump() {
+    std::fprintf(stderr, "nondisk %d nomap %d area %d l2 %d overlap %d ok %d\n", plush_stat[0].exchange(0), plush_stat[1].exchange(0), plush_stat[2].exchange(0), plush_stat[3].exchange(0), plush_stat[4].exchange(0), plush_stat[5].exchange(0));
+}
 
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
@@ -63,35 +60,19 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     const ChartSurface surface = extract_surface(mesh, faces, seam);
     trial.is_disk = surface.is_disk();
     if (!trial.is_disk)
-        return trial;
+        return plush_stat[0]++, trial;
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
-    try {
-        const LpfbOptions options;
-        const ClosedBoundary boundary = close_boundary(
-            problem.boundary_edge, boundary_angles(problem), options, progress);
-        const double whole = polygon_area(boundary.points) / problem.total_area;
-        const bool fits = std::abs(whole - 1.0) <= std::min(lpfb_area_change, max_area_change);
-        if (fits || details) {
-            LpfbResult lpfb = flatten_lpfb(problem, options, progress);
-            const bool hopeful = fits && lpfb.flips == 0 &&
-                                 symmetric_dirichlet_energy(problem, lpfb.uv) < hopeless_energy;
-            if (!hopeful && details)
-                describe(surface, problem, lpfb.flips == 0 ? lpfb.uv : any_map(problem), trial);
-            if (!hopeful)
-                return trial;
-            const LpfbMap map = settle_lpfb(problem, std::move(lpfb), progress);
-            trial.area_change = measure_area_change(problem, map.uv).largest();
-            trial.accepted = trial.area_change <= kept * max_area_change &&
-                             is_sewable(problem, map) &&
-                             l2_stretch(problem, map.uv) * std::sqrt(whole) <= most_stretch &&
-                             lies_flat(mesh, surface, map.uv);
-            if (details)
-                describe(surface, problem, map.uv, trial);
-        }
-    } catch (const NumericalFailure&) {
-        if (details)
-            describe(surface, problem, any_map(problem), trial);
-    }
+    const double bound = kept * max_area_change;
+    const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
+                                {bound, hopeless_energy}, progress);
+    if (map) {
+        trial.area_change = map->area_change;
+        trial.accepted = map->area_change <= bound && map->l2_stretch <= most_stretch &&
+                         lies_flat(mesh, surface, map->uv);
+        plush_stat[trial.accepted ? 5 : map->area_change > bound ? 2 : map->l2_stretch > most_stretch ? 3 : 4]++;
+    } else plush_stat[1]++;
+    if (details)
+        describe(surface, problem, map ? map->uv : any_map(problem), trial);
     return trial;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -24,20 +25,37 @@ Key key_of(const Mesh& mesh, const SeamSegment& segment) {
     return {lowest, static_cast<Index>(segment.half_edges.size())};
 }
 
-// Segments that go together, and what would become of the patches beside them.
+enum class Mode { whole_segments, joins, darts };
+
+// The part of a segment from one share of its length to another.
+struct Window {
+    double from = 0.0;
+    double to = 1.0;
+};
+
+// What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
+constexpr Window join_windows[] = {
+    {0.0, 1.0},   {0.15, 1.0}, {0.0, 0.85},  {0.15, 0.85}, {0.35, 1.0}, {0.0, 0.65},
+    {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65}, {0.7, 1.0},  {0.0, 0.3},
+    {0.4, 0.6},   {0.2, 0.45}, {0.55, 0.8}};
+// A dart keeps its outer end, which comes first.
+constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
+
+// Segments that go together, or parts of them, and what becomes of the patches beside them.
 struct Removal {
     std::vector<std::size_t> segments;
-    std::vector<Index> patches;            // that are joined or lose a dart
-    std::vector<std::vector<Index>> faces; // of the patches that there would be
-    double order = 0.0;                    // the largest goes first
-    bool accepted = false;
+    std::vector<std::uint8_t> reversed;          // the mirror image runs the other way
+    std::vector<Window> windows;                 // to be tried, in this order
+    std::vector<Index> patches;                  // that are joined or lose a dart
+    std::vector<Index> half_edges;               // that go; empty = no window was accepted
 };
 
 class Remover {
 public:
-    Remover(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-            Progress& progress)
-        : s_(setting), options_(options), seam_(seam), progress_(progress) {}
+    Remover(const SeamSetting& setting, Mode mode, const RemovalOptions& options,
+            double least_neck, SeamMarks& seam, Progress& progress)
+        : s_(setting), mode_(mode), options_(options), least_neck_(least_neck), seam_(seam),
+          progress_(progress) {}
 
     Index run() {
         refresh();
@@ -69,6 +87,7 @@ private:
     void refresh() {
         segments_ = find_segments(s_.mesh, seam_, s_.hard, s_.weight);
         patches_ = find_patches(s_.mesh, seam_);
+        degree_ = seam_degrees(s_.mesh, seam_);
         faces_.assign(at(patches_.count), {});
         area_.assign(at(patches_.count), 0.0);
         for (Index f = 0; f < s_.mesh.face_count(); ++f) {
@@ -92,13 +111,11 @@ private:
 
     double order(std::size_t i) const {
         const SeamSegment& segment = segments_[i];
-        double defect = 0.0;
-        for (const Index h : segment.half_edges)
-            defect += s_.defect[at(s_.mesh.target(h))];
         const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / s_.mesh.total_area;
+        if (mode_ == Mode::joins)
+            return segment.length / std::max(size, 1e-9);
         return segment.weight * std::pow(segment.length, options_.length_power) *
-               std::pow(size, -options_.size_power) *
-               std::pow(0.05 + defect, -options_.defect_power);
+               std::pow(size, -options_.size_power);
     }
 
     // The mirror image of a segment: the one on which most of its mirrored vertices lie.
@@ -128,10 +145,28 @@ private:
         return ratio > 0.5 && ratio < 2.0 ? at(best->first) : i;
     }
 
+    std::pair<Index, Index> patches_beside(std::size_t i) const {
+        return {std::min(left(i), right(i)), std::max(left(i), right(i))};
+    }
+
+    // Of the segments between the same two patches.
+    bool is_longest_between(std::size_t i) const {
+        const std::pair<Index, Index> sides = patches_beside(i);
+        if (sides.first == sides.second)
+            return false;
+        for (std::size_t k = 0; k < segments_.size(); ++k)
+            if (patches_beside(k) == sides && !segments_[k].is_hard &&
+                (segments_[k].length > segments_[i].length ||
+                 (segments_[k].length == segments_[i].length && k < i)))
+                return false;
+        return true;
+    }
+
     std::vector<Removal> next_round() {
         std::vector<std::pair<double, std::size_t>> queue;
         for (std::size_t i = 0; i < segments_.size(); ++i)
-            if (!segments_[i].is_hard && failed_.count(key_of(s_.mesh, segments_[i])) == 0)
+            if (!segments_[i].is_hard && failed_.count(key_of(s_.mesh, segments_[i])) == 0 &&
+                may_go(i))
                 queue.emplace_back(-order(i), i);
         std::sort(queue.begin(), queue.end());
         std::vector<std::uint8_t> taken(faces_.size(), 0);
@@ -142,11 +177,7 @@ private:
                 break;
             if (used[i] != 0)
                 continue;
-            Removal removal;
-            removal.segments = {i};
-            const std::size_t other = partner(i);
-            if (other != i && !segments_[other].is_hard)
-                removal.segments.push_back(other);
+            Removal removal = removal_of(i);
             bool is_free = true;
             for (const std::size_t k : removal.segments) {
                 used[k] = 1;
@@ -165,12 +196,94 @@ private:
         return round;
     }
 
-    // The patches that there are without the removal's segments.
-    void flood(Removal& removal, const SeamMarks& marks) const {
+    bool may_go(std::size_t i) const {
+        switch (mode_) {
+        case Mode::whole_segments:
+            return true;
+        case Mode::joins:
+            return is_longest_between(i);
+        case Mode::darts:
+            return !segments_[i].is_loop && left(i) == right(i) && free_end(i) != 0;
+        }
+        return false;
+    }
+
+    // 1 where a segment ends inside a patch, −1 where it starts there, 0 for neither.
+    int free_end(std::size_t i) const {
+        const std::vector<Index>& line = segments_[i].half_edges;
+        if (degree_[at(s_.mesh.target(line.back()))] == 1)
+            return 1;
+        return degree_[at(s_.mesh.origin(line.front()))] == 1 ? -1 : 0;
+    }
+
+    Removal removal_of(std::size_t i) const {
+        Removal removal;
+        removal.segments = {i};
+        removal.reversed = {static_cast<std::uint8_t>(
+            mode_ == Mode::darts && free_end(i) < 0 ? 1 : 0)};
+        const std::size_t other = partner(i);
+        const bool has_image = other != i && !segments_[other].is_hard && may_go(other);
+        if (has_image) {
+            removal.segments.push_back(other);
+            removal.reversed.push_back(static_cast<std::uint8_t>(
+                mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
+                                     : (is_reversed(i, other) ? 1 : 0)));
+        }
+        if (mode_ == Mode::whole_segments) {
+            removal.windows = {{0.0, 1.0}};
+        } else if (mode_ == Mode::darts) {
+            removal.windows.assign(std::begin(dart_windows), std::end(dart_windows));
+        } else {
+            const double size = std::min(area_[at(left(i))], area_[at(right(i))]);
+            const double least = least_neck_ * std::sqrt(size) / segments_[i].length;
+            const bool is_own_image = other == i && !s_.mirror.empty() && is_reversed(i, i);
+            for (const Window& w : join_windows)
+                if ((w.from == 0.0 && w.to == 1.0) ||
+                    (w.to - w.from >= least && (!is_own_image || w.from == 1.0 - w.to)))
+                    removal.windows.push_back(w);
+        }
+        return removal;
+    }
+
+    // Whether the mirror image of segment i runs against segment k.
+    bool is_reversed(std::size_t i, std::size_t k) const {
+        const auto image = [&](Index v) {
+            const Index m = s_.mirror[at(v)];
+            return s_.mesh.points[at(m >= 0 ? m : v)];
+        };
+        const Vec3 start = image(s_.mesh.origin(segments_[i].half_edges.front()));
+        const Vec3 end = image(s_.mesh.target(segments_[i].half_edges.back()));
+        const Vec3& first = s_.mesh.points[at(s_.mesh.origin(segments_[k].half_edges.front()))];
+        const Vec3& last = s_.mesh.points[at(s_.mesh.target(segments_[k].half_edges.back()))];
+        return (start - last).norm() + (end - first).norm() <
+               (start - first).norm() + (end - last).norm();
+    }
+
+    std::vector<Index> edges_within(const Removal& removal, const Window& window) const {
+        std::vector<Index> edges;
+        for (std::size_t j = 0; j < removal.segments.size(); ++j) {
+            const SeamSegment& segment = segments_[removal.segments[j]];
+            const Window w = removal.reversed[j] != 0 ? Window{1.0 - window.to, 1.0 - window.from}
+                                                      : window;
+            double before = 0.0;
+            for (const Index h : segment.half_edges) {
+                const double middle =
+                    (before + 0.5 * s_.mesh.edge_length(h)) / segment.length;
+                if (middle >= w.from && middle <= w.to)
+                    edges.push_back(h);
+                before += s_.mesh.edge_length(h);
+            }
+        }
+        return edges;
+    }
+
+    // The patches that there are with other marks, in place of the removal's.
+    std::vector<std::vector<Index>> flood(const Removal& removal, const SeamMarks& marks) const {
         std::vector<Index> open;
         for (const Index p : removal.patches)
             open.insert(open.end(), faces_[at(p)].begin(), faces_[at(p)].end());
         std::sort(open.begin(), open.end());
+        std::vector<std::vector<Index>> parts;
         std::vector<std::uint8_t> seen(s_.mesh.faces.size(), 0);
         for (const Index start : open) {
             if (seen[at(start)] != 0)
@@ -186,44 +299,53 @@ private:
                     }
                 }
             std::sort(part.begin(), part.end());
-            removal.faces.push_back(std::move(part));
+            parts.push_back(std::move(part));
+        }
+        return parts;
+    }
+
+    void try_windows(Removal& removal) const {
+        std::vector<Index> tried;
+        for (const Window& window : removal.windows) {
+            std::vector<Index> edges = edges_within(removal, window);
+            if (edges.empty() || edges == tried)
+                continue;
+            SeamMarks marks = seam_;
+            for (const Index h : edges)
+                mark(s_.mesh, h, 0, marks);
+            const auto parts = flood(removal, marks);
+            const bool fits = std::all_of(parts.begin(), parts.end(), [&](const auto& faces) {
+                return try_patch(s_.mesh, faces, marks, s_.max_area_change, false, progress_)
+                    .accepted;
+            });
+            if (fits) {
+                removal.half_edges = std::move(edges);
+                return;
+            }
+            tried = std::move(edges);
         }
     }
 
     void test(std::vector<Removal>& round) {
         parallel_for(
             static_cast<int>(round.size()),
-            [&](int i) {
-                Removal& removal = round[static_cast<std::size_t>(i)];
-                SeamMarks marks = seam_;
-                for (const std::size_t k : removal.segments)
-                    for (const Index h : segments_[k].half_edges)
-                        mark(s_.mesh, h, 0, marks);
-                flood(removal, marks);
-                removal.accepted = true;
-                for (const auto& faces : removal.faces)
-                    removal.accepted =
-                        removal.accepted &&
-                        try_patch(s_.mesh, faces, marks, options_.max_area_change, false, progress_)
-                            .accepted;
-            },
-            progress_);
+            [&](int i) { try_windows(round[static_cast<std::size_t>(i)]); }, progress_);
         trials_ += static_cast<Index>(round.size());
     }
 
     bool apply(const Removal& removal) {
-        for (const std::size_t k : removal.segments) {
-            if (!removal.accepted)
+        for (const Index h : removal.half_edges)
+            mark(s_.mesh, h, 0, seam_);
+        if (removal.half_edges.empty())
+            for (const std::size_t k : removal.segments)
                 failed_.insert(key_of(s_.mesh, segments_[k]));
-            else
-                for (const Index h : segments_[k].half_edges)
-                    mark(s_.mesh, h, 0, seam_);
-        }
-        return removal.accepted;
+        return !removal.half_edges.empty();
     }
 
     const SeamSetting& s_;
+    const Mode mode_;
     const RemovalOptions& options_;
+    const double least_neck_;
     SeamMarks& seam_;
     Progress& progress_;
     std::vector<SeamSegment> segments_;
@@ -231,6 +353,7 @@ private:
     std::vector<std::vector<Index>> faces_; // of each patch
     std::vector<double> area_;
     std::vector<Index> segment_of_; // #V
+    std::vector<Index> degree_;     // #V
     std::set<Key> failed_;
     Index trials_ = 0;
 };
@@ -239,7 +362,16 @@ private:
 
 Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
                    Progress& progress) {
-    return Remover(setting, options, seam, progress).run();
+    return Remover(setting, Mode::whole_segments, options, 0.0, seam, progress).run();
+}
+
+Index join_patches(const SeamSetting& setting, double least_neck, SeamMarks& seam,
+                   Progress& progress) {
+    return Remover(setting, Mode::joins, {}, least_neck, seam, progress).run();
+}
+
+Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+    return Remover(setting, Mode::darts, {}, 0.0, seam, progress).run();
 }
 
 } // namespace devseg

@@ -6,22 +6,20 @@
 
 namespace devseg {
 
-struct RemovalOptions {
-    double max_area_change = 0.15;
-    // What goes first: the mean weight of a segment's edges [the paper], times a power of its length
-    // and of the smaller patch's size.
-    double length_power = 0.0;
-    double size_power = 0.0;
-    double defect_power = 0.0;
-};
-
 /// What seams are judged by.
 struct SeamSetting {
     const Mesh& mesh;
-    const SeamMarks& hard;             // 3 #F or empty
+    const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
     const std::vector<double>& weight; // 3 #F
-    const std::vector<Index>& mirror;  // #V: the vertex on the other side, or empty
-    const std::vector<double>& defect; // #V: |angle defect|
+    const std::vector<Index>& mirror;  // #V: the vertex on the other side, −1 = none; or empty
+    double max_area_change = 0.15;
+};
+
+struct RemovalOptions {
+    // What goes first: the mean weight of a segment's edges [the paper], times powers of its length
+    // and of the smaller patch's size.
+    double length_power = 0.0;
+    double size_power = 0.5;
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all
@@ -29,5 +27,15 @@ struct SeamSetting {
 /// of trials.
 Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
                    Progress& progress);
+
+/// Joins patches, the smallest first, where only a part of the seam between them can be removed:
+/// what stays of it are darts. The part is as long as possible, and at least `least_neck` times the
+/// root of the smaller patch's area. Returns the number of trials.
+Index join_patches(const SeamSetting& setting, double least_neck, SeamMarks& seam,
+                   Progress& progress);
+
+/// Removes darts, or their inner ends, where patches stay developable without them. Returns the
+/// number of trials.
+Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg
