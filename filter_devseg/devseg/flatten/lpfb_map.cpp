@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "devseg/errors.h"
+#include "devseg/flatten/arap.h"
 #include "devseg/flatten/area_balance.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
@@ -19,8 +20,8 @@ constexpr double most_stretch = 2.0;
 // Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
 constexpr double harmonic_is_enough = 1.02;
 // The isometric map only gives angles: a few steps are enough.
-constexpr int isometry_steps = 60;
-constexpr double isometry_tolerance = 1e-5;
+constexpr int first_steps = 12;
+constexpr int more_steps = 25;
 
 double polygon_area(const std::vector<Vec2>& points) {
     double twice = 0.0;
@@ -61,14 +62,15 @@ std::vector<double> isometric_angles(const FlatteningProblem& problem, double gi
     if (count_flips(problem, start) > 0)
         return {};
     scale_to_area(problem, start);
-    SymmetricDirichletOptions options;
-    options.max_iterations = isometry_steps;
-    options.relative_tolerance = isometry_tolerance;
-    options.give_up_energy = give_up_energy;
-    const SymmetricDirichletResult map =
-        minimise_symmetric_dirichlet(problem, start, options, progress);
+    ArapOptions options;
+    options.max_rounds = first_steps;
+    ArapResult map = minimise_arap(problem, start, options, progress);
     if (map.energy > give_up_energy)
         return {};
+    if (!map.converged) {
+        options.max_rounds = more_steps;
+        map = minimise_arap(problem, map.uv, options, progress);
+    }
     return boundary_angles(problem, map.uv);
 }
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double least_part = 0.12; // of the patch's area: smaller parts are not cut off by isolines
 constexpr int most_rounds = 60;
+constexpr int smoothing_rounds = 4; // of isolines
 
 struct Split {
     bool is_needed = false;
@@ -91,13 +92,28 @@ private:
         }
         if (part_area < least_part * area || part_area > (1.0 - least_part) * area)
             return {};
+        smooth(trial.face, state);
         std::vector<Index> cuts;
-        for (const Index f : part)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+        for (const Index f : trial.face)
+            for (Index h = 3 * f; h < 3 * f + 3 && state[at(f)] == 2; ++h)
                 if (mesh_.twin[at(h)] >= 0 && seam_[at(h)] == 0 &&
                     state[at(mesh_.twin[at(h)] / 3)] == 1)
                     cuts.push_back(h);
         return cuts;
+    }
+
+    // Faces take the side (1 or 2) of most of their neighbours, a few times.
+    void smooth(const std::vector<Index>& faces, std::vector<std::uint8_t>& state) const {
+        for (int round = 0; round < smoothing_rounds; ++round)
+            for (const Index f : faces) {
+                int same = 0;
+                int other = 0;
+                for (Index h = 3 * f; h < 3 * f + 3; ++h)
+                    if (mesh_.twin[at(h)] >= 0 && seam_[at(h)] == 0)
+                        ++(state[at(mesh_.twin[at(h)] / 3)] == state[at(f)] ? same : other);
+                if (other > same)
+                    state[at(f)] = state[at(f)] == 1 ? 2 : 1;
+            }
     }
 
     // From the worst spot to the nearest place on the border, and to the nearest on its far side.

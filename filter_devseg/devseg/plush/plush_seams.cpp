@@ -9,6 +9,7 @@
 #include "devseg/plush/local_seams.h"
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_removal.h"
+#include "devseg/plush/seam_smoothing.h"
 #include "devseg/plush/symmetry.h"
 #include "devseg/segment/fragments.h"
 
@@ -17,7 +18,7 @@ namespace devseg {
 void plush_dump();
 namespace {
 
-constexpr double symmetric_enough = 0.02; // of the diagonal
+constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
 
 // The seams of one side and their mirror images, and the line between the two sides.
@@ -32,6 +33,7 @@ SeamMarks mirror_seams(const Mesh& mesh, const std::vector<std::uint8_t>& side,
         if (side[at(f)] != 0)
             label[at(f)] = patches.count + patches.label[at(image[at(f)])];
     label = absorb_fragments(mesh, label, fragment);
+    remove_teeth(mesh, {}, label);
     return make_chart_map(mesh, label, {}, false).seam;
 }
 
@@ -104,6 +106,9 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     if (const char* e = std::getenv("PLD")) neck = std::atof(e);
     result.trials += join_patches(setting, neck, seam, progress);
     std::fprintf(stderr, "trials %d patches %d\n", result.trials, find_patches(mesh, seam).count);
+    plush_dump();
+    progress.begin_phase("straightening seams", 0.1);
+    if (!std::getenv("PLNS")) std::fprintf(stderr, "straightened %d\n", straighten_seams(setting, graph, seam, progress));
     plush_dump();
     progress.begin_phase("shortening darts", 0.1);
     result.trials += shorten_darts(setting, seam, progress);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -14,7 +15,9 @@ namespace devseg {
 namespace {
 
 constexpr std::size_t batch = 6; // trials that run side by side; fixed, for the same result anywhere
-constexpr int most_passes = 4;
+constexpr int most_passes = 2;
+constexpr double unpaired = 0.1; // of the root of the area
+constexpr double lone = 0.02;    // of the area: patches that may be joined without a mirror image
 
 using Key = std::pair<Index, Index>; // lowest half-edge and number of edges of a segment
 
@@ -58,10 +61,12 @@ public:
           progress_(progress) {}
 
     Index run() {
+        unpaired_ = unpaired * std::sqrt(s_.mesh.total_area);
         refresh();
         const double start = static_cast<double>(segments_.size());
         for (int pass = 0; pass < most_passes; ++pass) {
             failed_.clear();
+            may_be_lone_ = pass > 0;
             bool changed = false;
             while (true) {
                 std::vector<Removal> round = next_round();
@@ -77,7 +82,7 @@ public:
                 progress_.update(std::min(
                     0.95, 1.0 - static_cast<double>(segments_.size()) / std::max(1.0, start)));
             }
-            if (!changed)
+            if (!changed && (may_be_lone_ || s_.mirror.empty()))
                 break;
         }
         return trials_;
@@ -94,12 +99,32 @@ private:
             faces_[at(patches_.label[at(f)])].push_back(f);
             area_[at(patches_.label[at(f)])] += s_.mesh.face_areas[at(f)];
         }
-        segment_of_.assign(s_.mesh.points.size(), -1);
+        if (!s_.mirror.empty())
+            find_nearby();
+    }
+
+    // The segments within two rings of each vertex.
+    void find_nearby() {
+        nearby_.assign(s_.mesh.points.size(), {});
         for (std::size_t i = 0; i < segments_.size(); ++i)
             for (const Index h : segments_[i].half_edges)
                 for (const Index v : {s_.mesh.origin(h), s_.mesh.target(h)})
-                    if (segment_of_[at(v)] < 0)
-                        segment_of_[at(v)] = static_cast<Index>(i);
+                    nearby_[at(v)].push_back(static_cast<Index>(i));
+        for (int ring = 0; ring < 2; ++ring) {
+            const std::vector<std::vector<Index>> before = nearby_;
+            for (Index h = 0; h < s_.mesh.half_edge_count(); ++h) {
+                const std::vector<Index>& from = before[at(s_.mesh.origin(h))];
+                const std::vector<Index>& back = before[at(s_.mesh.target(h))];
+                std::vector<Index>& to = nearby_[at(s_.mesh.target(h))];
+                std::vector<Index>& start = nearby_[at(s_.mesh.origin(h))];
+                to.insert(to.end(), from.begin(), from.end());
+                start.insert(start.end(), back.begin(), back.end());
+            }
+            for (std::vector<Index>& near : nearby_) {
+                std::sort(near.begin(), near.end());
+                near.erase(std::unique(near.begin(), near.end()), near.end());
+            }
+        }
     }
 
     Index left(std::size_t i) const {
@@ -118,31 +143,31 @@ private:
                std::pow(size, -options_.size_power);
     }
 
-    // The mirror image of a segment: the one on which most of its mirrored vertices lie.
-    std::size_t partner(std::size_t i) const {
+    // The mirror image of a segment: the one near which most of its mirrored vertices lie; −1 where
+    // there is none. Without symmetry the segment itself.
+    Index partner(std::size_t i) const {
         if (s_.mirror.empty())
-            return i;
-        std::vector<std::pair<Index, int>> votes;
+            return static_cast<Index>(i);
+        std::map<Index, int> votes;
+        int total = 0;
         for (const Index h : segments_[i].half_edges) {
             const Index v = s_.mirror[at(s_.mesh.target(h))];
-            const Index hit = v >= 0 ? segment_of_[at(v)] : -1;
-            if (hit < 0)
-                continue;
-            const auto vote = std::find_if(votes.begin(), votes.end(),
-                                           [&](const auto& entry) { return entry.first == hit; });
-            if (vote == votes.end())
-                votes.emplace_back(hit, 1);
-            else
-                ++vote->second;
+            ++total;
+            if (v >= 0)
+                for (const Index k : nearby_[at(v)])
+                    ++votes[k];
         }
-        const auto best = std::max_element(
-            votes.begin(), votes.end(),
-            [](const auto& a, const auto& b) { return a.second < b.second; });
-        if (best == votes.end() ||
-            2 * best->second < static_cast<int>(segments_[i].half_edges.size()))
-            return i;
-        const double ratio = segments_[at(best->first)].length / segments_[i].length;
-        return ratio > 0.5 && ratio < 2.0 ? at(best->first) : i;
+        Index best = -1;
+        double most = 0.0;
+        for (const auto& [k, count] : votes) {
+            const double ratio = std::min(segments_[at(k)].length, segments_[i].length) /
+                                 std::max(segments_[at(k)].length, segments_[i].length);
+            if (2 * count > total && ratio > 0.5 && count * ratio > most) {
+                most = count * ratio;
+                best = k;
+            }
+        }
+        return best;
     }
 
     std::pair<Index, Index> patches_beside(std::size_t i) const {
@@ -175,7 +200,7 @@ private:
         for (const auto& [price, i] : queue) {
             if (round.size() >= batch)
                 break;
-            if (used[i] != 0)
+            if (used[i] != 0 || (partner(i) < 0 && !may_go_alone(i)))
                 continue;
             Removal removal = removal_of(i);
             bool is_free = true;
@@ -194,6 +219,12 @@ private:
                 round.push_back(std::move(removal));
         }
         return round;
+    }
+
+    // Seams of small patches do not show.
+    bool may_go_alone(std::size_t i) const {
+        return segments_[i].length <= unpaired_ ||
+               std::min(area_[at(left(i))], area_[at(right(i))]) <= lone * s_.mesh.total_area;
     }
 
     bool may_go(std::size_t i) const {
@@ -221,9 +252,10 @@ private:
         removal.segments = {i};
         removal.reversed = {static_cast<std::uint8_t>(
             mode_ == Mode::darts && free_end(i) < 0 ? 1 : 0)};
-        const std::size_t other = partner(i);
-        const bool has_image = other != i && !segments_[other].is_hard && may_go(other);
-        if (has_image) {
+        const Index image = partner(i);
+        const std::size_t other = image >= 0 ? at(image) : i;
+        if (other != i && !segments_[other].is_hard && may_go(other) &&
+            !(may_be_lone_ && may_go_alone(i))) {
             removal.segments.push_back(other);
             removal.reversed.push_back(static_cast<std::uint8_t>(
                 mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
@@ -236,7 +268,8 @@ private:
         } else {
             const double size = std::min(area_[at(left(i))], area_[at(right(i))]);
             const double least = least_neck_ * std::sqrt(size) / segments_[i].length;
-            const bool is_own_image = other == i && !s_.mirror.empty() && is_reversed(i, i);
+            const bool is_own_image = image == static_cast<Index>(i) && !s_.mirror.empty() &&
+                                      is_reversed(i, i);
             for (const Window& w : join_windows)
                 if ((w.from == 0.0 && w.to == 1.0) ||
                     (w.to - w.from >= least && (!is_own_image || w.from == 1.0 - w.to)))
@@ -352,9 +385,11 @@ private:
     FaceComponents patches_;
     std::vector<std::vector<Index>> faces_; // of each patch
     std::vector<double> area_;
-    std::vector<Index> segment_of_; // #V
+    std::vector<std::vector<Index>> nearby_; // #V: segments
     std::vector<Index> degree_;     // #V
     std::set<Key> failed_;
+    bool may_be_lone_ = false; // small patches may be joined without their mirror images
+    double unpaired_ = 0.0; // length of segments that may go without a mirror image
     Index trials_ = 0;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/Eigenvalues>
 
@@ -181,6 +180,12 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
             vertices.push_back(v);
     }
     const double diagonal = box.diagonal().norm();
+    const auto extent = [&](const MirrorPlane& plane) {
+        double farthest = 0.0;
+        for (const Index v : vertices)
+            farthest = std::max(farthest, std::abs(plane.height(mesh.points[at(v)])));
+        return farthest;
+    };
     std::optional<MirrorPlane> best;
     for (MirrorPlane plane : first_guesses(mesh)) {
         for (int round = 0; round < most_rounds; ++round) {
@@ -192,7 +197,10 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
             plane.deviation = pairs[pairs.size() * 9 / 10].distance / diagonal;
             if (pairs.size() < vertices.size() * 9 / 10)
                 plane.deviation = 1.0;
-            if (!best || plane.deviation < best->deviation)
+            // A flat model is near to its mirror image front to back: how far it reaches to both
+            // sides of the plane is compared with.
+            if (plane.deviation <= tolerance &&
+                (!best || plane.deviation / extent(plane) < best->deviation / extent(*best)))
                 best = plane;
             const MirrorPlane next = fit_plane(pairs, count);
             const bool is_settled = (next.normal - plane.normal).norm() < 1e-5 &&
@@ -204,9 +212,6 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
             plane.offset = next.offset;
         }
     }
-    if (best) std::fprintf(stderr, "best dev %f\n", best->deviation);
-    if (best && best->deviation > tolerance)
-        best.reset();
     return best;
 }
 
