@@ -13,6 +13,7 @@ std::vector<FilterDeclaration> plush_filters();
 std::vector<FilterDeclaration> baseline_filters();
 std::vector<FilterDeclaration> flattening_filters();
 std::vector<FilterDeclaration> pattern_filters();
+std::vector<FilterDeclaration> sewn_preview_filters();
 std::vector<FilterDeclaration> measure_filters();
 std::vector<FilterDeclaration> circle_map_filters();
 

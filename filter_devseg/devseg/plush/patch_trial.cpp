@@ -46,12 +46,6 @@ bool lies_flat(const Mesh& mesh, const ChartSurface& surface, std::vector<Vec2> 
 }
 
 } // namespace
-#include <atomic>
-#include <cstdio>
-std::atomic<int> plush_stat[8];
-void plush_dump() {
-    std::fprintf(stderr, "nondisk %d nomap %d area %d l2 %d overlap %d ok %d\n", plush_stat[0].exchange(0), plush_stat[1].exchange(0), plush_stat[2].exchange(0), plush_stat[3].exchange(0), plush_stat[4].exchange(0), plush_stat[5].exchange(0));
-}
 
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
@@ -60,17 +54,16 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     const ChartSurface surface = extract_surface(mesh, faces, seam);
     trial.is_disk = surface.is_disk();
     if (!trial.is_disk)
-        return plush_stat[0]++, trial;
+        return trial;
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     const double bound = kept * max_area_change;
     const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
-                                {bound, std::getenv("PLG") ? std::atof(std::getenv("PLG")) : hopeless_energy}, progress);
+                                {bound, hopeless_energy}, progress);
     if (map) {
         trial.area_change = map->area_change;
         trial.accepted = map->area_change <= bound && map->l2_stretch <= most_stretch &&
                          lies_flat(mesh, surface, map->uv);
-        plush_stat[trial.accepted ? 5 : map->area_change > bound ? 2 : map->l2_stretch > most_stretch ? 3 : 4]++;
-    } else plush_stat[1]++;
+    }
     if (details)
         describe(surface, problem, map ? map->uv : any_map(problem), trial);
     return trial;

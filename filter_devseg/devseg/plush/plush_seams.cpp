@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "devseg/parallel.h"
 #include "devseg/plush/limbs.h"
@@ -12,111 +13,183 @@
 #include "devseg/plush/seam_smoothing.h"
 #include "devseg/plush/symmetry.h"
 #include "devseg/segment/fragments.h"
+#include "devseg/segment/option_checks.h"
 
 namespace devseg {
 
-void plush_dump();
 namespace {
 
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
+// Of the root of the smaller patch's area: patches that hang together by less stay apart, at first,
+// and once everything else has been done.
+constexpr double wide_neck = 0.3;
+constexpr double narrow_neck = 0.15;
 
-// The seams of one side and their mirror images, and the line between the two sides.
-SeamMarks mirror_seams(const Mesh& mesh, const std::vector<std::uint8_t>& side,
-                       const std::vector<Index>& image, SeamMarks seam) {
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] >= 0 && side[at(h / 3)] != side[at(mesh.twin[at(h)] / 3)])
-            seam[at(h)] = 1;
-    const FaceComponents patches = find_patches(mesh, seam);
-    std::vector<Index> label = patches.label;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (side[at(f)] != 0)
-            label[at(f)] = patches.count + patches.label[at(image[at(f)])];
-    label = absorb_fragments(mesh, label, fragment);
-    remove_teeth(mesh, {}, label);
-    return make_chart_map(mesh, label, {}, false).seam;
-}
+// The steps of the method on one surface, with what they share.
+class PlushSegmentation {
+public:
+    PlushSegmentation(const Mesh& mesh, const PlushOptions& options, const SeamMarks& hard,
+                      Progress& progress)
+        : mesh_(mesh), options_(options), hard_(hard), progress_(progress),
+          graph_(build_vertex_graph(mesh)), seam_(mesh.twin.size(), 0) {}
+
+    PlushSeams run(Skeleton skeleton) {
+        weigh_edges(std::move(skeleton));
+        find_symmetry();
+        lay_candidates();
+        const SeamSetting setting{mesh_, hard_, weight_, mirror_, options_.max_area_change,
+                                  options_.max_iterations};
+        remove(setting);
+        finish();
+        return std::move(result_);
+    }
+
+private:
+    void weigh_edges(Skeleton skeleton) {
+        progress_.begin_phase("finding the skeleton", 0.08);
+        if (skeleton.empty())
+            skeleton = extract_skeleton(mesh_, progress_);
+        BoneWeights bones;
+        if (!skeleton.empty())
+            bones = bone_weights(mesh_, skeleton, progress_);
+        result_.bones = static_cast<Index>(skeleton.bones.size());
+        curvature_ = mean_curvature(mesh_);
+        weight_ = seam_weights(
+            mesh_, {options_.geodesic_weight, options_.skeleton_weight, options_.curvature_weight},
+            curvature_, skeleton, bones);
+        progress_.update(1.0);
+        const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh_.points.size())));
+        extrema_ = find_extrema(graph_, conformal_factor(mesh_),
+                                options_.max_extrema > 0 ? options_.max_extrema : most);
+        result_.extrema = static_cast<Index>(extrema_.size());
+    }
+
+    void find_symmetry() {
+        progress_.begin_phase("finding symmetry", 0.04);
+        const auto plane = options_.symmetric
+                               ? find_mirror_plane(mesh_, symmetric_enough, progress_)
+                               : std::nullopt;
+        result_.is_symmetric = plane.has_value();
+        if (!plane)
+            return;
+        side_ = sides_of(mesh_, *plane);
+        image_ = mirror_faces(mesh_, *plane, side_);
+        mirror_ = mirror_vertices(mesh_, *plane);
+    }
+
+    void lay_candidates() {
+        progress_.begin_phase("laying seams", 0.08);
+        add_middle_line(seam_);
+        const std::vector<Limb> limbs =
+            find_limbs(mesh_, graph_, curvature_, extrema_, progress_);
+        result_.limbs = static_cast<Index>(limbs.size());
+        add_limb_seams(mesh_, limbs, seam_);
+        add_structural_seams(mesh_, graph_, weight_, extrema_, seam_, progress_);
+        mirror_seams();
+        progress_.begin_phase("cutting patches", 0.2);
+        result_.all_developable = cut_patches();
+        if (result_.is_symmetric) {
+            mirror_seams();
+            result_.all_developable = cut_patches();
+        }
+        result_.candidates =
+            static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
+    }
+
+    void add_middle_line(SeamMarks& seam) const {
+        for (Index h = 0; h < mesh_.half_edge_count() && !side_.empty(); ++h)
+            if (mesh_.twin[at(h)] >= 0 && side_[at(h / 3)] != side_[at(mesh_.twin[at(h)] / 3)])
+                seam[at(h)] = 1;
+    }
+
+    bool cut_patches() {
+        return add_local_seams(mesh_, graph_, weight_, options_.max_area_change, seam_, progress_)
+            .all_developable;
+    }
+
+    // Patches without teeth, those of one side mirrored to the other; seams inside patches go.
+    void mirror_seams() {
+        add_middle_line(seam_);
+        const FaceComponents patches = find_patches(mesh_, seam_);
+        std::vector<Index> label = patches.label;
+        for (std::size_t f = 0; f < side_.size(); ++f)
+            if (side_[f] != 0)
+                label[f] = patches.count + patches.label[at(image_[f])];
+        label = absorb_fragments(mesh_, label, fragment);
+        remove_teeth(mesh_, label);
+        seam_ = make_chart_map(mesh_, label, {}, false).seam;
+        for (std::size_t h = 0; h < hard_.size(); ++h)
+            if (hard_[h] != 0)
+                seam_[h] = 1;
+    }
+
+    void remove(const SeamSetting& setting) {
+        progress_.begin_phase("removing seams", 0.25);
+        RemovalOptions removal;
+        removal.random_seed = options_.random_seed;
+        result_.trials += remove_seams(setting, removal, seam_, progress_);
+        progress_.begin_phase("joining patches", 0.15);
+        result_.trials += join_patches(setting, wide_neck, seam_, progress_);
+        progress_.begin_phase("straightening seams", 0.1);
+        straighten_seams(setting, graph_, seam_, progress_);
+        progress_.begin_phase("joining patches", 0.05);
+        result_.trials += join_patches(setting, narrow_neck, seam_, progress_);
+        progress_.begin_phase("shortening darts", 0.03);
+        result_.trials += shorten_darts(setting, seam_, progress_);
+    }
+
+    // The charts, and the change of area in the maps that were accepted.
+    void finish() {
+        progress_.begin_phase("measuring patches", 0.02);
+        result_.charts = make_chart_map(mesh_, find_patches(mesh_, seam_).label, seam_, false);
+        const ChartFaces groups = group_faces(result_.charts);
+        std::vector<PatchTrial> trials(at(result_.charts.count));
+        parallel_for(
+            result_.charts.count,
+            [&](int c) {
+                const std::vector<Index> faces{groups.faces.begin() + groups.begin[at(c)],
+                                               groups.faces.begin() + groups.begin[at(c) + 1]};
+                trials[at(c)] =
+                    try_patch(mesh_, faces, seam_, options_.max_area_change, true, progress_);
+            },
+            progress_);
+        result_.area_change.assign(mesh_.faces.size(), 0.0);
+        for (const PatchTrial& trial : trials) {
+            result_.max_area_change = std::max(result_.max_area_change, trial.area_change);
+            result_.all_developable = result_.all_developable && trial.accepted;
+            for (std::size_t i = 0; i < trial.change.size(); ++i)
+                result_.area_change[at(trial.face[i])] = std::abs(trial.change[i]);
+        }
+        for (const Index degree : seam_degrees(mesh_, seam_))
+            result_.darts += degree == 1 ? 1 : 0;
+    }
+
+    const Mesh& mesh_;
+    const PlushOptions& options_;
+    const SeamMarks& hard_;
+    Progress& progress_;
+    const VertexGraph graph_;
+    std::vector<double> curvature_; // #V
+    std::vector<double> weight_;    // 3 #F
+    std::vector<Index> extrema_;
+    std::vector<std::uint8_t> side_; // #F; empty without symmetry, as the next two
+    std::vector<Index> image_;       // #F
+    std::vector<Index> mirror_;      // #V
+    SeamMarks seam_;
+    PlushSeams result_;
+};
 
 } // namespace
 
 PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
                                const std::vector<std::uint8_t>& hard, Progress& progress) {
-    PlushSeams result;
-    progress.begin_phase("finding the skeleton", 0.1);
-    if (skeleton.empty())
-        skeleton = extract_skeleton(mesh, progress);
-    result.bones = static_cast<Index>(skeleton.bones.size());
-    BoneWeights bones;
-    if (!skeleton.empty())
-        bones = bone_weights(mesh, skeleton, progress);
-    const VertexGraph graph = build_vertex_graph(mesh);
-    const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh.points.size())));
-    const std::vector<Index> extrema =
-        find_extrema(graph, conformal_factor(mesh), options.max_extrema > 0 ? options.max_extrema : most);
-    result.extrema = static_cast<Index>(extrema.size());
-    const std::vector<double> curvature = mean_curvature(mesh);
-    const std::vector<double> weight =
-        seam_weights(mesh, {options.geodesic_weight, options.skeleton_weight, options.curvature_weight},
-                     curvature, skeleton, bones);
-    SeamMarks seam(mesh.twin.size(), 0);
-    progress.begin_phase("structural seams", 0.1);
-    std::optional<MirrorPlane> plane;
-    if (options.symmetric)
-        plane = find_mirror_plane(mesh, symmetric_enough, progress);
-    std::vector<std::uint8_t> side;
-    std::vector<Index> image;
-    std::vector<Index> mirror;
-    if (plane) {
-        result.is_symmetric = true;
-        side = sides_of(mesh, *plane);
-        image = mirror_faces(mesh, *plane, side);
-        mirror = mirror_vertices(mesh, *plane);
-        std::fprintf(stderr, "plane %f %f %f dev %f\n", plane->normal.x(), plane->normal.y(), plane->normal.z(), plane->deviation);
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] >= 0 && side[at(h / 3)] != side[at(mesh.twin[at(h)] / 3)])
-                seam[at(h)] = 1;
-    }
-    const std::vector<Limb> limbs = find_limbs(mesh, graph, curvature, extrema, progress);
-    result.limbs = static_cast<Index>(limbs.size());
-    if (std::getenv("PL_LIMBS")) { for (auto& l : limbs) { SeamMarks m(seam.size(),0); add_limb_seams(mesh,{l},m); std::fprintf(stderr,"limb tip %d faces %zu\n", l.tip, l.faces.size()); } }
-    add_limb_seams(mesh, limbs, seam);
-    add_structural_seams(mesh, graph, weight, extrema, seam, progress);
-    if (plane)
-        seam = mirror_seams(mesh, side, image, seam);
-    std::fprintf(stderr, "extrema %d bones %d limbs %d patches %d\n", result.extrema, result.bones, result.limbs, find_patches(mesh, seam).count);
-    progress.begin_phase("local seams", 0.2);
-    LocalSeams local = add_local_seams(mesh, graph, weight, options.max_area_change, seam, progress);
-    if (plane) {
-        seam = mirror_seams(mesh, side, image, seam);
-        local = add_local_seams(mesh, graph, weight, options.max_area_change, seam, progress);
-    }
-    result.all_developable = local.all_developable;
-    result.candidates = static_cast<Index>(find_segments(mesh, seam, hard, weight).size());
-    std::fprintf(stderr, "splits %d patches %d segments %d all %d\n", local.splits, find_patches(mesh, seam).count, result.candidates, local.all_developable);
-    plush_dump();
-    progress.begin_phase("removing seams", 0.25);
-    RemovalOptions removal;
-    if (const char* e = std::getenv("PL")) std::sscanf(e, "%lf,%lf", &removal.length_power, &removal.size_power);
-    const SeamSetting setting{mesh, hard, weight, mirror, options.max_area_change};
-    result.trials = remove_seams(setting, removal, seam, progress);
-    std::fprintf(stderr, "trials %d patches %d\n", result.trials, find_patches(mesh, seam).count);
-    plush_dump();
-    progress.begin_phase("joining patches with darts", 0.25);
-    double neck = 0.3;
-    if (const char* e = std::getenv("PLD")) neck = std::atof(e);
-    result.trials += join_patches(setting, neck, seam, progress);
-    std::fprintf(stderr, "trials %d patches %d\n", result.trials, find_patches(mesh, seam).count);
-    plush_dump();
-    progress.begin_phase("straightening seams", 0.1);
-    if (!std::getenv("PLNS")) std::fprintf(stderr, "straightened %d\n", straighten_seams(setting, graph, seam, progress));
-    plush_dump();
-    progress.begin_phase("shortening darts", 0.1);
-    result.trials += shorten_darts(setting, seam, progress);
-    std::fprintf(stderr, "trials %d patches %d\n", result.trials, find_patches(mesh, seam).count);
-    plush_dump();
-    result.charts = make_chart_map(mesh, find_patches(mesh, seam).label, seam, false);
-    plush_dump();
-    return result;
+    check_range("max_area_change", options.max_area_change, 0.0, 1.0,
+                "a number above 0 and at most 1");
+    if (options.max_extrema < 0)
+        refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
+    check_rounds(options.max_iterations, options.random_seed);
+    return PlushSegmentation(mesh, options, hard, progress).run(std::move(skeleton));
 }
 
 } // namespace devseg

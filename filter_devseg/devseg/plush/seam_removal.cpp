@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -15,7 +16,6 @@ namespace devseg {
 namespace {
 
 constexpr std::size_t batch = 6; // trials that run side by side; fixed, for the same result anywhere
-constexpr int most_passes = 2;
 constexpr double unpaired = 0.1; // of the root of the area
 constexpr double lone = 0.02;    // of the area: patches that may be joined without a mirror image
 
@@ -64,7 +64,7 @@ public:
         unpaired_ = unpaired * std::sqrt(s_.mesh.total_area);
         refresh();
         const double start = static_cast<double>(segments_.size());
-        for (int pass = 0; pass < most_passes; ++pass) {
+        for (int pass = 0; pass < s_.max_passes; ++pass) {
             failed_.clear();
             may_be_lone_ = pass > 0;
             bool changed = false;
@@ -134,12 +134,23 @@ private:
         return patches_.label[at(s_.mesh.twin[at(segments_[i].half_edges.front())] / 3)];
     }
 
+    // A factor near 1 that depends on the seed and on where the segment is; 1 for the seed 0.
+    double jitter(const SeamSegment& segment) const {
+        if (options_.random_seed == 0)
+            return 1.0;
+        const auto [lowest, count] = key_of(s_.mesh, segment);
+        std::minstd_rand random(static_cast<std::uint32_t>(options_.random_seed) * 2654435761U +
+                                static_cast<std::uint32_t>(lowest));
+        random.discard(2);
+        return 0.8 + 0.4 * static_cast<double>(random()) / std::minstd_rand::max();
+    }
+
     double order(std::size_t i) const {
         const SeamSegment& segment = segments_[i];
         const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / s_.mesh.total_area;
         if (mode_ == Mode::joins)
             return segment.length / std::max(size, 1e-9);
-        return segment.weight * std::pow(segment.length, options_.length_power) *
+        return jitter(segment) * segment.weight * std::pow(segment.length, options_.length_power) *
                std::pow(size, -options_.size_power);
     }
 

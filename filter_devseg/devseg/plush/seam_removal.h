@@ -13,6 +13,7 @@ struct SeamSetting {
     const std::vector<double>& weight; // 3 #F
     const std::vector<Index>& mirror;  // #V: the vertex on the other side, −1 = none; or empty
     double max_area_change = 0.15;
+    int max_passes = 2; // over all segments
 };
 
 struct RemovalOptions {
@@ -20,6 +21,7 @@ struct RemovalOptions {
     // and of the smaller patch's size.
     double length_power = 0.0;
     double size_power = 0.5;
+    int random_seed = 0; // other numbers than 0 change the order a little
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all

@@ -168,13 +168,10 @@ private:
 
 } // namespace
 
-void remove_teeth(const Mesh& mesh, const std::vector<std::uint8_t>& frozen,
-                  std::vector<Index>& label) {
+void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
     for (int round = 0; round < most_rounds; ++round) {
         bool changed = false;
         for (Index f = 0; f < mesh.face_count(); ++f) {
-            if (!frozen.empty() && frozen[at(f)] != 0)
-                continue;
             std::array<Index, 3> other{-1, -1, -1};
             for (std::size_t k = 0; k < 3; ++k) {
                 const Index twin = mesh.twin[at(3 * f) + k];

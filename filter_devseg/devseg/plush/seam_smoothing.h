@@ -7,9 +7,8 @@
 namespace devseg {
 
 /// Gives faces that stick out of their label, with two edges to one other label, to that one, again
-/// and again. `frozen` (#F, may be empty) holds faces that stay.
-void remove_teeth(const Mesh& mesh, const std::vector<std::uint8_t>& frozen,
-                  std::vector<Index>& label);
+/// and again.
+void remove_teeth(const Mesh& mesh, std::vector<Index>& label);
 
 /// Replaces each segment by the shortest path between its ends within a few rings of faces around
 /// it, where the patches beside it stay developable disks. Returns the number of segments that were

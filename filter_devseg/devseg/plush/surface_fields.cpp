@@ -44,14 +44,6 @@ double mean_edge(const Mesh& mesh) {
 
 } // namespace
 
-std::vector<Index> leaving_half_edges(const Mesh& mesh) {
-    std::vector<Index> leaving(mesh.points.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (leaving[at(mesh.origin(h))] < 0)
-            leaving[at(mesh.origin(h))] = h;
-    return leaving;
-}
-
 VertexGraph build_vertex_graph(const Mesh& mesh) {
     std::vector<std::array<Index, 3>> links; // vertex, neighbour, half-edge
     for (Index h = 0; h < mesh.half_edge_count(); ++h)

@@ -14,10 +14,6 @@
 
 namespace devseg {
 
-/// One outgoing half-edge of each vertex, −1 for vertices without faces; on a boundary the one that
-/// visit_star may start from as well.
-std::vector<Index> leaving_half_edges(const Mesh& mesh);
-
 /// Neighbours of all vertices: those of v are vertex[begin[v]] … vertex[begin[v + 1] − 1],
 /// ascending, with a half-edge between the two in either direction.
 struct VertexGraph {

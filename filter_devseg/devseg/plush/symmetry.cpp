@@ -6,8 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "devseg/cut/min_cut.h"
-#include "devseg/plush/point_grid.h"
-#include "devseg/plush/surface_fields.h"
+#include "devseg/mesh/surface_search.h"
 
 namespace devseg {
 
@@ -17,73 +16,6 @@ constexpr Index samples = 1500;    // points that are mirrored while a plane is 
 constexpr int most_rounds = 30;    // of fitting
 constexpr double trusted = 0.8;    // share of the points, the nearest, that a plane is fitted to
 constexpr double cut_reach = 2.5;  // of the mean edge: how far the middle line may leave the plane
-constexpr double facing = 0.2;     // least cosine between a normal and its mirror image
-
-std::vector<Vec3> vertex_normals(const Mesh& mesh) {
-    std::vector<Vec3> normal(mesh.points.size(), Vec3::Zero());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        normal[at(mesh.origin(h))] += mesh.face_areas[at(h / 3)] * mesh.face_normals[at(h / 3)];
-    for (Vec3& n : normal)
-        n = n.stableNormalized();
-    return normal;
-}
-
-Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto on_edge = [&](const Vec3& u, const Vec3& v) -> Vec3 {
-        const Vec3 e = v - u;
-        const double t = e.squaredNorm() > 0.0 ? (p - u).dot(e) / e.squaredNorm() : 0.0;
-        return u + std::clamp(t, 0.0, 1.0) * e;
-    };
-    const Vec3 n = (b - a).cross(c - a);
-    if (n.squaredNorm() > 0.0 && n.cross(b - a).dot(p - a) >= 0.0 &&
-        n.cross(c - b).dot(p - b) >= 0.0 && n.cross(a - c).dot(p - c) >= 0.0)
-        return p - n * (n.dot(p - a) / n.squaredNorm());
-    Vec3 best = on_edge(a, b);
-    for (const Vec3& q : {on_edge(b, c), on_edge(c, a)})
-        if ((q - p).squaredNorm() < (best - p).squaredNorm())
-            best = q;
-    return best;
-}
-
-// Places on the surface near given points.
-class SurfaceSearch {
-public:
-    explicit SurfaceSearch(const Mesh& mesh)
-        : mesh_(mesh), grid_(mesh.points), leaving_(leaving_half_edges(mesh)),
-          normal_(vertex_normals(mesh)) {}
-
-    // The vertex nearest to p with a normal near to n for which accept(v) holds; −1 = none.
-    template <class Accept>
-    Index vertex(const Vec3& p, const Vec3& n, Accept accept) const {
-        return grid_.nearest(p, [&](Index v) {
-            return leaving_[at(v)] >= 0 && normal_[at(v)].dot(n) > facing && accept(v);
-        });
-    }
-
-    // The place on the faces around a vertex that is nearest to p, among those that are accepted.
-    template <class Accept>
-    std::pair<Index, Vec3> on_faces(const Vec3& p, Index v, Accept accept) const {
-        std::pair<Index, Vec3> best{-1, mesh_.points[at(v)]};
-        visit_star(mesh_, leaving_[at(v)], [&](Index h) {
-            if (!accept(h / 3))
-                return;
-            const Triangle& t = mesh_.faces[at(h / 3)];
-            const Vec3 q = nearest_in_triangle(p, mesh_.points[at(t[0])], mesh_.points[at(t[1])],
-                                               mesh_.points[at(t[2])]);
-            if (best.first < 0 || (q - p).squaredNorm() < (best.second - p).squaredNorm())
-                best = {h / 3, q};
-        });
-        return best;
-    }
-    const Vec3& normal(Index v) const { return normal_[at(v)]; }
-    Index leaving(Index v) const { return leaving_[at(v)]; }
-
-private:
-    const Mesh& mesh_;
-    PointGrid grid_;
-    std::vector<Index> leaving_;
-    std::vector<Vec3> normal_;
-};
 
 Vec3 reflect_direction(const MirrorPlane& plane, const Vec3& d) {
     return d - 2.0 * plane.normal.dot(d) * plane.normal;
