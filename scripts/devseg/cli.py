@@ -109,8 +109,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--flatten",
         choices=FLATTENINGS,
-        default="symmetric-dirichlet",
-        help="default: symmetric-dirichlet",
+        help="default: symmetric-dirichlet; lpfb with --method plush",
     )
     parser.add_argument(
         "--formats",
@@ -188,7 +187,9 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         segmentation[method.options[name]] = value
     _check_names(args, parser)
     pattern = pattern_parameters(args)
-    options = RunOptions(args.out, method, segmentation, args.flatten, args.formats, pattern)
+    options = RunOptions(
+        args.out, method, segmentation, args.flatten or method.flatten, args.formats, pattern
+    )
     results = []
     for path in args.input:
         result = run(path, options)
@@ -249,7 +250,11 @@ def _compare_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> No
     methods = [METHODS[name] for name in args.methods]
     given = {"charts": args.charts, "seed": args.seed}
     segmentation = [
-        {method.options[name]: value for name, value in given.items() if value is not None}
+        {
+            method.options[name]: value
+            for name, value in given.items()
+            if value is not None and name in method.options
+        }
         for method in methods
     ]
     result = compare(args.input, CompareOptions(args.out, methods, segmentation, args.flatten))

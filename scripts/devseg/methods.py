@@ -15,11 +15,13 @@ class Method:
         filter: name of the filter.
         options: options of the command line and the filter parameters they set; an option that
             is not here does not apply to the method.
+        flatten: key of FLATTENINGS that `devseg run` takes without --flatten.
     """
 
     name: str
     filter: str
     options: Mapping[str, str]
+    flatten: str = "symmetric-dirichlet"
 
 
 # Every segmentation filter has these.
@@ -37,6 +39,12 @@ METHODS = {
             "t-flooding",
             "compute_segmentation_t_flooding_per_face",
             {"charts": "charts_number", **_COMMON},
+        ),
+        Method(
+            "plush",
+            "compute_segmentation_plush_seams_per_face",
+            {**_COMMON},
+            flatten="lpfb",
         ),
         Method(
             "vsa",

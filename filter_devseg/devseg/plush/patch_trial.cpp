@@ -39,10 +39,13 @@ std::vector<Vec2> any_map(const FlatteningProblem& problem) {
     return uv;
 }
 
-bool lies_flat(const Mesh& mesh, const ChartSurface& surface, std::vector<Vec2> uv) {
+// What is asked of a map once its closed slits are open, as when charts are flattened.
+bool lies_flat(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+               std::vector<Vec2> uv, double bound) {
     const double size = std::sqrt(mesh.total_area);
     open_closed_slits(mesh, surface, slit_gap * size, uv);
-    return overlapping_pairs(surface, uv, layout_tolerance(size)).empty();
+    return measure_area_change(problem, uv).largest() <= bound &&
+           overlapping_pairs(surface, uv, layout_tolerance(size)).empty();
 }
 
 } // namespace
@@ -62,7 +65,7 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     if (map) {
         trial.area_change = map->area_change;
         trial.accepted = map->area_change <= bound && map->l2_stretch <= most_stretch &&
-                         lies_flat(mesh, surface, map->uv);
+                         lies_flat(mesh, surface, problem, map->uv, bound);
     }
     if (details)
         describe(surface, problem, map ? map->uv : any_map(problem), trial);

@@ -21,9 +21,8 @@ namespace {
 
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
-// Of the root of the smaller patch's area: patches that hang together by less stay apart, at first,
-// and once everything else has been done.
-constexpr double wide_neck = 0.3;
+// Once seams are straight, patches up to this share of the surface are joined along narrower necks.
+constexpr double small_patch = 0.02;
 constexpr double narrow_neck = 0.15;
 
 // The steps of the method on one surface, with what they share.
@@ -130,11 +129,13 @@ private:
         removal.random_seed = options_.random_seed;
         result_.trials += remove_seams(setting, removal, seam_, progress_);
         progress_.begin_phase("joining patches", 0.15);
-        result_.trials += join_patches(setting, wide_neck, seam_, progress_);
+        result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("straightening seams", 0.1);
         straighten_seams(setting, graph_, seam_, progress_);
         progress_.begin_phase("joining patches", 0.05);
-        result_.trials += join_patches(setting, narrow_neck, seam_, progress_);
+        removal.most_area = small_patch;
+        removal.least_neck = narrow_neck;
+        result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("shortening darts", 0.03);
         result_.trials += shorten_darts(setting, seam_, progress_);
     }

@@ -38,9 +38,8 @@ struct Window {
 
 // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
 constexpr Window join_windows[] = {
-    {0.0, 1.0},   {0.15, 1.0}, {0.0, 0.85},  {0.15, 0.85}, {0.35, 1.0}, {0.0, 0.65},
-    {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65}, {0.7, 1.0},  {0.0, 0.3},
-    {0.4, 0.6},   {0.2, 0.45}, {0.55, 0.8}};
+    {0.0, 1.0},   {0.2, 1.0}, {0.0, 0.8},   {0.2, 0.8},
+    {0.25, 0.75}, {0.5, 1.0}, {0.0, 0.5},   {0.35, 0.65}, {0.7, 1.0}, {0.0, 0.3}};
 // A dart keeps its outer end, which comes first.
 constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
@@ -56,8 +55,8 @@ struct Removal {
 class Remover {
 public:
     Remover(const SeamSetting& setting, Mode mode, const RemovalOptions& options,
-            double least_neck, SeamMarks& seam, Progress& progress)
-        : s_(setting), mode_(mode), options_(options), least_neck_(least_neck), seam_(seam),
+            SeamMarks& seam, Progress& progress)
+        : s_(setting), mode_(mode), options_(options), seam_(seam),
           progress_(progress) {}
 
     Index run() {
@@ -66,7 +65,7 @@ public:
         const double start = static_cast<double>(segments_.size());
         for (int pass = 0; pass < s_.max_passes; ++pass) {
             failed_.clear();
-            may_be_lone_ = pass > 0;
+            is_first_pass_ = pass == 0;
             bool changed = false;
             while (true) {
                 std::vector<Removal> round = next_round();
@@ -82,7 +81,7 @@ public:
                 progress_.update(std::min(
                     0.95, 1.0 - static_cast<double>(segments_.size()) / std::max(1.0, start)));
             }
-            if (!changed && (may_be_lone_ || s_.mirror.empty()))
+            if (!changed && !is_first_pass_)
                 break;
         }
         return trials_;
@@ -235,15 +234,19 @@ private:
     // Seams of small patches do not show.
     bool may_go_alone(std::size_t i) const {
         return segments_[i].length <= unpaired_ ||
-               std::min(area_[at(left(i))], area_[at(right(i))]) <= lone * s_.mesh.total_area;
+               smaller_area(i) <= lone * s_.mesh.total_area;
+    }
+    double smaller_area(std::size_t i) const {
+        return std::min(area_[at(left(i))], area_[at(right(i))]);
     }
 
     bool may_go(std::size_t i) const {
         switch (mode_) {
         case Mode::whole_segments:
-            return true;
+            return is_first_pass_ || may_go_alone(i);
         case Mode::joins:
-            return is_longest_between(i);
+            return smaller_area(i) <= options_.most_area * s_.mesh.total_area &&
+                   is_longest_between(i);
         case Mode::darts:
             return !segments_[i].is_loop && left(i) == right(i) && free_end(i) != 0;
         }
@@ -266,7 +269,7 @@ private:
         const Index image = partner(i);
         const std::size_t other = image >= 0 ? at(image) : i;
         if (other != i && !segments_[other].is_hard && may_go(other) &&
-            !(may_be_lone_ && may_go_alone(i))) {
+            (is_first_pass_ || !may_go_alone(i))) {
             removal.segments.push_back(other);
             removal.reversed.push_back(static_cast<std::uint8_t>(
                 mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
@@ -278,7 +281,7 @@ private:
             removal.windows.assign(std::begin(dart_windows), std::end(dart_windows));
         } else {
             const double size = std::min(area_[at(left(i))], area_[at(right(i))]);
-            const double least = least_neck_ * std::sqrt(size) / segments_[i].length;
+            const double least = options_.least_neck * std::sqrt(size) / segments_[i].length;
             const bool is_own_image = image == static_cast<Index>(i) && !s_.mirror.empty() &&
                                       is_reversed(i, i);
             for (const Window& w : join_windows)
@@ -389,7 +392,6 @@ private:
     const SeamSetting& s_;
     const Mode mode_;
     const RemovalOptions& options_;
-    const double least_neck_;
     SeamMarks& seam_;
     Progress& progress_;
     std::vector<SeamSegment> segments_;
@@ -399,7 +401,7 @@ private:
     std::vector<std::vector<Index>> nearby_; // #V: segments
     std::vector<Index> degree_;     // #V
     std::set<Key> failed_;
-    bool may_be_lone_ = false; // small patches may be joined without their mirror images
+    bool is_first_pass_ = true; // later, small patches may be joined without their mirror images
     double unpaired_ = 0.0; // length of segments that may go without a mirror image
     Index trials_ = 0;
 };
@@ -408,16 +410,17 @@ private:
 
 Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
                    Progress& progress) {
-    return Remover(setting, Mode::whole_segments, options, 0.0, seam, progress).run();
+    return Remover(setting, Mode::whole_segments, options, seam, progress).run();
 }
 
-Index join_patches(const SeamSetting& setting, double least_neck, SeamMarks& seam,
+Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
                    Progress& progress) {
-    return Remover(setting, Mode::joins, {}, least_neck, seam, progress).run();
+    return Remover(setting, Mode::joins, options, seam, progress).run();
 }
 
 Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
-    return Remover(setting, Mode::darts, {}, 0.0, seam, progress).run();
+    const RemovalOptions options;
+    return Remover(setting, Mode::darts, options, seam, progress).run();
 }
 
 } // namespace devseg

@@ -22,6 +22,10 @@ struct RemovalOptions {
     double length_power = 0.0;
     double size_power = 0.5;
     int random_seed = 0; // other numbers than 0 change the order a little
+    // Of joins: only patches up to this share of the surface are joined to a neighbour, along at
+    // least so much of the root of their area.
+    double most_area = 0.08;
+    double least_neck = 0.3;
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all
@@ -31,9 +35,8 @@ Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, Se
                    Progress& progress);
 
 /// Joins patches, the smallest first, where only a part of the seam between them can be removed:
-/// what stays of it are darts. The part is as long as possible, and at least `least_neck` times the
-/// root of the smaller patch's area. Returns the number of trials.
-Index join_patches(const SeamSetting& setting, double least_neck, SeamMarks& seam,
+/// what stays of it are darts. The part is as long as possible. Returns the number of trials.
+Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
                    Progress& progress);
 
 /// Removes darts, or their inner ends, where patches stay developable without them. Returns the
