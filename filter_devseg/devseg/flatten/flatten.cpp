@@ -17,6 +17,7 @@
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/multilevel.h"
+#include "devseg/flatten/needles.h"
 #include "devseg/flatten/overlaps.h"
 #include "devseg/flatten/peaks.h"
 #include "devseg/flatten/push_apart.h"
@@ -201,6 +202,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
             throw;
         return halve(mesh, chart.surface); // the halves are easier
     }
+    restore_needles(mesh, chart.surface, problem, chart.uv);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);

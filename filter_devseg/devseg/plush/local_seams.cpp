@@ -13,6 +13,7 @@ namespace devseg {
 namespace {
 
 constexpr double least_part = 0.12; // of the patch's area: smaller parts are not cut off by isolines
+constexpr int patient_rounds = 15; // after them, what is left is cut in halves
 constexpr int most_rounds = 60;
 constexpr int smoothing_rounds = 4; // of isolines
 
@@ -28,7 +29,7 @@ public:
         : mesh_(mesh), graph_(graph), weight_(weight), max_area_change_(max_area_change),
           seam_(seam) {}
 
-    Split split(const std::vector<Index>& faces, const Progress& progress) const {
+    Split split(const std::vector<Index>& faces, bool in_halves, const Progress& progress) const {
         const PatchTrial trial = try_patch(mesh_, faces, seam_, max_area_change_, true, progress);
         Split split;
         if (trial.accepted)
@@ -43,8 +44,9 @@ public:
                         split.cuts.push_back(h);
             return split;
         }
-        split.cuts = isoline(trial);
-        if (split.cuts.empty())
+        if (!in_halves)
+            split.cuts = isoline(trial);
+        if (!in_halves && split.cuts.empty())
             split.cuts = path_through(trial);
         if (split.cuts.empty())
             split.cuts = halves(faces);
@@ -238,7 +240,7 @@ LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
             static_cast<int>(faces.size()),
             [&](int i) {
                 const auto k = static_cast<std::size_t>(i);
-                splits[k] = splitter.split(faces[k], progress);
+                splits[k] = splitter.split(faces[k], round >= patient_rounds, progress);
             },
             progress);
         for (std::size_t i = 0; i < splits.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_rounds = 12;      // of taking teeth away
 constexpr int corridor_rings = 3;    // of vertices beside a segment
-constexpr double worth = 0.995;      // of its cost: what a new path must save
+constexpr double worth = 0.97;       // of its cost: what a new path must save
 constexpr double natural_share = 0.3; // of the seam weight in the cost of an edge, beside its length
 
 class Straightener {
