@@ -17,7 +17,7 @@ constexpr double even = 0.1; // changes below this are left alone: Wang's own bo
 // The penalty is (z²)³, with z the change over this bound: nothing for changes that are allowed,
 // and more than the shear of a usual face for others.
 constexpr double bound = 0.12;
-constexpr double weight = 0.02;
+constexpr double usual_weight = 0.02;
 constexpr int most_steps = 12;
 constexpr double sufficient_decrease = 1e-4; // Armijo's constant
 constexpr double safe_step = 0.8;            // of the step at which the first face collapses
@@ -71,6 +71,15 @@ public:
 
     /// In units of what is allowed, from the middle of it.
     double change(double det) const { return (det - center_) / width_; }
+
+    double largest_change(const FlatteningProblem& problem, const Positions& x) const {
+        double largest = 0.0;
+        for (std::size_t f = 0; f < problem.faces.size(); ++f)
+            largest = std::max(largest, std::abs(change(jacobian(problem, x, f).determinant())));
+        return largest;
+    }
+
+    double weight = usual_weight; // of the penalty
 
 private:
     double center_ = 1.0;
@@ -198,14 +207,19 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
                    const Progress& progress) {
     if (is_even(problem, uv))
         return;
-    const BalancedEnergy energy(map_area(problem, uv) / problem.total_area);
+    BalancedEnergy energy(map_area(problem, uv) / problem.total_area);
     const Region region = region_around_uneven(problem, uv, energy);
     if (region.vertex.empty())
         return;
     Positions x(region.problem.vertex_count, 2);
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
         x.row(static_cast<Eigen::Index>(v)) = uv[at(region.vertex[v])].transpose();
-    descend(region, energy, x, progress);
+    for (const double strength : {1.0, 30.0}) {
+        energy.weight = strength * usual_weight;
+        descend(region, energy, x, progress);
+        if (energy.largest_change(region.problem, x) <= 1.0)
+            break;
+    }
     std::vector<Vec2> moved = uv;
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
         moved[at(region.vertex[v])] = x.row(static_cast<Eigen::Index>(v)).transpose();

@@ -22,7 +22,7 @@ namespace {
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
-constexpr double small_patch = 0.05;
+constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
 
 // The steps of the method on one surface, with what they share.

@@ -38,8 +38,9 @@ struct Window {
 
 // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
 constexpr Window join_windows[] = {
-    {0.0, 1.0},   {0.2, 1.0}, {0.0, 0.8},   {0.2, 0.8},
-    {0.25, 0.75}, {0.5, 1.0}, {0.0, 0.5},   {0.35, 0.65}, {0.7, 1.0}, {0.0, 0.3}};
+    {0.0, 1.0},   {0.15, 1.0}, {0.0, 0.85},  {0.15, 0.85}, {0.35, 1.0}, {0.0, 0.65},
+    {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65}, {0.7, 1.0},  {0.0, 0.3},
+    {0.4, 0.6},   {0.2, 0.45}, {0.55, 0.8}};
 // A dart keeps its outer end, which comes first.
 constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
@@ -81,7 +82,7 @@ public:
                 progress_.update(std::min(
                     0.95, 1.0 - static_cast<double>(segments_.size()) / std::max(1.0, start)));
             }
-            if (!changed && !is_first_pass_)
+            if (!changed && (!is_first_pass_ || s_.mirror.empty()))
                 break;
         }
         return trials_;
@@ -243,7 +244,7 @@ private:
     bool may_go(std::size_t i) const {
         switch (mode_) {
         case Mode::whole_segments:
-            return is_first_pass_ || may_go_alone(i);
+            return is_first_pass_ || s_.mirror.empty() || may_go_alone(i);
         case Mode::joins:
             return smaller_area(i) <= options_.most_area * s_.mesh.total_area &&
                    is_longest_between(i);

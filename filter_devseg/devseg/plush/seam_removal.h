@@ -24,7 +24,7 @@ struct RemovalOptions {
     int random_seed = 0; // other numbers than 0 change the order a little
     // Of joins: only patches up to this share of the surface are joined to a neighbour, along at
     // least so much of the root of their area.
-    double most_area = 0.12;
+    double most_area = 1.0;
     double least_neck = 0.3;
 };
 
