@@ -161,7 +161,8 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
     const std::vector<Index> image = mirror_vertices(mesh, *plane);
     for (Index v = 0; v < mesh.vertex_count(); ++v)
-        EXPECT_LT((plane->reflect(mesh.points[at(v)]) - mesh.points[at(image[at(v)])]).norm(), 0.05);
+        EXPECT_LT((plane->reflect(mesh.points[at(v)]) - mesh.points[at(image[at(v)])]).norm(),
+                  0.05);
     const std::vector<std::uint8_t> side = sides_of(mesh, *plane);
     const std::vector<Index> faces = mirror_faces(mesh, *plane, side);
     for (Index f = 0; f < mesh.face_count(); ++f)
@@ -293,8 +294,7 @@ TEST(SeamSmoothing, TeethGo) {
     for (Index f = 0; f < mesh.face_count(); ++f) {
         int others = 0;
         for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            others += mesh.twin[at(h)] >= 0 &&
-                      toothed[at(mesh.twin[at(h)] / 3)] != toothed[at(f)];
+            others += mesh.twin[at(h)] >= 0 && toothed[at(mesh.twin[at(h)] / 3)] != toothed[at(f)];
         EXPECT_LT(others, 2);
     }
 }

@@ -60,8 +60,8 @@ std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBord
             continue;
         const std::size_t f = at(h / 3);
         const std::size_t g = at(twin / 3);
-        hard[at(h)] = by_color ? input.color[f] != input.color[g]
-                               : input.selected[f] != input.selected[g];
+        hard[at(h)] =
+            by_color ? input.color[f] != input.color[g] : input.selected[f] != input.selected[g];
     }
     return hard;
 }

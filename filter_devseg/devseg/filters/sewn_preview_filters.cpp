@@ -23,8 +23,7 @@ constexpr const char* preview_help =
     "<b>\"Projective Dynamics: Fusing Constraint Projections for Fast Simulation\"</b><br>"
     "ACM Transactions on Graphics (SIGGRAPH), 2014, doi:10.1145/2601097.2601116";
 
-FilterOutput run_preview(const FilterInput& input, const SewnOptions& options,
-                         Progress& progress) {
+FilterOutput run_preview(const FilterInput& input, const SewnOptions& options, Progress& progress) {
     const Mesh& mesh = input.mesh;
     progress.begin_phase("sewing and stuffing", 1.0);
     const SewnPreview preview = sew_and_inflate(mesh, *input.uv, options, progress);

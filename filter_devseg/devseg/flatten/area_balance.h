@@ -12,9 +12,9 @@ namespace devseg {
 
 /// How much the areas of faces change: in the plane over on the surface.
 struct AreaChange {
-    double least = 1.0;  // smallest ratio of a face
-    double most = 1.0;   // largest ratio of a face
-    double whole = 1.0;  // of the whole map
+    double least = 1.0; // smallest ratio of a face
+    double most = 1.0;  // largest ratio of a face
+    double whole = 1.0; // of the whole map
 
     /// The largest relative change of a face, as it is and with the map scaled to its area on the
     /// surface, whichever of the two areas it is compared with then.

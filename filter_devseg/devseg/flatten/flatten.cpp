@@ -116,8 +116,7 @@ bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double toler
     apply_symmetric_dirichlet(mesh, problem, chart, progress);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     auto near = settle_lpfb(
-        problem,
-        flatten_lpfb(problem, boundary_angles(problem, chart.uv), LpfbOptions{}, progress),
+        problem, flatten_lpfb(problem, boundary_angles(problem, chart.uv), LpfbOptions{}, progress),
         progress);
     if (!near)
         return false;

@@ -47,8 +47,8 @@ std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSur
     if (!keeps_area(problem, polygon_area(boundary.points)))
         return std::nullopt;
     auto map = settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress);
-    if (map && (map->l2_stretch > most_stretch ||
-                !overlapping_pairs(surface, map->uv, tolerance).empty()))
+    if (map &&
+        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
         map.reset();
     return map;
 }

@@ -44,7 +44,8 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
         const Eigen::Matrix2d map = jacobian(problem, x, f);
         Eigen::Matrix4d h = projected_hessian(map);
         if (state_->area_curvature) {
-            const Eigen::Vector4d cofactor(map(1, 1), -map(0, 1), -map(1, 0), map(0, 0)); // ∂ det / ∂ J
+            const Eigen::Vector4d cofactor(map(1, 1), -map(0, 1), -map(1, 0),
+                                           map(0, 0)); // ∂ det / ∂ J
             h += state_->area_curvature(map.determinant()) * cofactor * cofactor.transpose();
         }
         h *= problem.area[f] / problem.total_area;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int rounds = 8; // sweeps over the flipped faces
 constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
-// Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is moved
-// to another place on the grid nearby, which has places for nearly every area.
+// Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
+// moved to another place on the grid nearby, which has places for nearly every area.
 constexpr double kept_area = 0.02;
 constexpr int grid_reach = 8; // units in the last place
 
@@ -70,8 +70,8 @@ public:
         return false;
     }
 
-    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest to
-    // `area` (twice its area).
+    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
+    // to `area` (twice its area).
     void restore_area(Index face, double area) {
         for (const Index v : faces_[at(face)]) {
             const Vec2 home = uv_[at(v)];

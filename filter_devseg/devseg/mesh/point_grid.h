@@ -67,8 +67,8 @@ private:
         Triangle cell{};
         for (int k = 0; k < 3; ++k) {
             const auto i = static_cast<std::size_t>(k);
-            const double x = std::clamp((p[k] - box_.min()[k]) / cell_, 0.0,
-                                        static_cast<double>(count_[i] - 1));
+            const double x =
+                std::clamp((p[k] - box_.min()[k]) / cell_, 0.0, static_cast<double>(count_[i] - 1));
             cell[i] = static_cast<Index>(x);
         }
         return cell;

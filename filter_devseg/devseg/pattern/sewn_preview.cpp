@@ -31,9 +31,7 @@ struct Spring {
 
 std::vector<Spring> make_springs(const Mesh& mesh, const CornerUv& uv, double scale) {
     std::vector<Spring> springs;
-    const auto flat = [&](Index h) {
-        return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
-    };
+    const auto flat = [&](Index h) { return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm(); };
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         const Index twin = mesh.twin[at(h)];
         if (twin < h) // also where there is none

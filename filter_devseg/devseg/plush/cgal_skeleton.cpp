@@ -82,10 +82,10 @@ namespace devseg {
 
 namespace {
 
-constexpr Index enough_faces = 4000;   // a skeleton needs no details
-constexpr Index least_faces = 40;      // below, there is nothing to contract
-constexpr double tolerance = 0.02;     // of the model's size: curves become bones within it
-constexpr double shortest = 0.03;      // of the model's size: shorter curves are no bones
+constexpr Index enough_faces = 4000; // a skeleton needs no details
+constexpr Index least_faces = 40;    // below, there is nothing to contract
+constexpr double tolerance = 0.02;   // of the model's size: curves become bones within it
+constexpr double shortest = 0.03;    // of the model's size: shorter curves are no bones
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
@@ -130,13 +130,14 @@ Surface to_surface(const Mesh& mesh, const std::vector<Index>& label, Index comp
 Curves contract(const Surface& surface, const Progress& progress) {
     Flow flow(surface);
     // The same steps as CGAL's contract_until_convergence, with a look at the user in between.
-    const double enough = flow.area_variation_factor() * CGAL::Polygon_mesh_processing::area(surface);
+    const double enough =
+        flow.area_variation_factor() * CGAL::Polygon_mesh_processing::area(surface);
     double area = 0.0;
     for (std::size_t i = 0; i < flow.max_iterations(); ++i) {
         progress.check();
         flow.contract();
-        const double before = std::exchange(
-            area, CGAL::Polygon_mesh_processing::area(flow.meso_skeleton()));
+        const double before =
+            std::exchange(area, CGAL::Polygon_mesh_processing::area(flow.meso_skeleton()));
         if (i > 0 && std::abs(area - before) < enough)
             break;
     }

@@ -9,15 +9,15 @@ namespace devseg {
 
 namespace {
 
-constexpr int rings = 120;            // by distance from the tip
-constexpr double reach = 0.75;        // of the model's extent: roots are not looked for beyond
-constexpr double least_share = 0.002; // of the surface: smaller ends are no limbs
-constexpr double most_share = 0.35;   // and larger ones no limbs but bodies
+constexpr int rings = 120;              // by distance from the tip
+constexpr double reach = 0.75;          // of the model's extent: roots are not looked for beyond
+constexpr double least_share = 0.002;   // of the surface: smaller ends are no limbs
+constexpr double most_share = 0.35;     // and larger ones no limbs but bodies
 constexpr double least_widening = 1.35; // of the ring behind a root over the ring before it
-constexpr double inner_band = 0.75;   // the cut lies within these shares of the root's distance
+constexpr double inner_band = 0.75;     // the cut lies within these shares of the root's distance
 constexpr double outer_band = 1.3;
-constexpr double concave_gain = 4.0;  // how much cheaper an edge of curvature −1 is than a flat one
-constexpr double same_limb = 0.6;     // common area over the area of both together
+constexpr double concave_gain = 4.0; // how much cheaper an edge of curvature −1 is than a flat one
+constexpr double same_limb = 0.6;    // common area over the area of both together
 
 struct Root {
     double distance = 0.0;
@@ -38,8 +38,8 @@ public:
         double farthest = 0.0;
         for (std::size_t f = 0; f < distance.size(); ++f) {
             const Triangle& t = mesh_.faces[f];
-            distance[f] = (tree.distance[at(t[0])] + tree.distance[at(t[1])] +
-                           tree.distance[at(t[2])]) / 3.0;
+            distance[f] =
+                (tree.distance[at(t[0])] + tree.distance[at(t[1])] + tree.distance[at(t[2])]) / 3.0;
             if (std::isfinite(distance[f]))
                 farthest = std::max(farthest, distance[f]);
         }
@@ -87,14 +87,13 @@ private:
     }
 
     double concavity_cost(Index h) const {
-        const double bend = 0.5 * (curvature_[at(mesh_.origin(h))] +
-                                   curvature_[at(mesh_.target(h))]);
+        const double bend =
+            0.5 * (curvature_[at(mesh_.origin(h))] + curvature_[at(mesh_.target(h))]);
         return mesh_.edge_length(h) / (1.0 + concave_gain * std::max(0.0, -bend)) *
                (1.0 + 0.5 * std::min(4.0, std::max(0.0, bend)));
     }
 
-    std::vector<Index> cut_off(Index tip, const std::vector<double>& distance,
-                               double root) const {
+    std::vector<Index> cut_off(Index tip, const std::vector<double>& distance, double root) const {
         std::vector<CutSide> start(mesh_.faces.size(), CutSide::open);
         for (std::size_t f = 0; f < start.size(); ++f) {
             if (distance[f] < inner_band * root)

@@ -12,7 +12,8 @@ namespace devseg {
 
 namespace {
 
-constexpr double least_part = 0.12; // of the patch's area: smaller parts are not cut off by isolines
+constexpr double least_part =
+    0.12;                          // of the patch's area: smaller parts are not cut off by isolines
 constexpr int patient_rounds = 15; // after them, what is left is cut in halves
 constexpr int most_rounds = 60;
 constexpr int smoothing_rounds = 4; // of isolines
@@ -158,9 +159,9 @@ private:
         if (far < loop.size())
             for (const Index h : trace_path(mesh_, tree, vertex(far)))
                 cuts.push_back(h);
-        cuts.erase(std::remove_if(cuts.begin(), cuts.end(),
-                                  [&](Index h) { return seam_[at(h)] != 0; }),
-                   cuts.end());
+        cuts.erase(
+            std::remove_if(cuts.begin(), cuts.end(), [&](Index h) { return seam_[at(h)] != 0; }),
+            cuts.end());
         return cuts;
     }
 
@@ -168,8 +169,8 @@ private:
         if (h < 0)
             return false;
         return std::binary_search(trial.face.begin(), trial.face.end(), h / 3) ||
-               (mesh_.twin[at(h)] >= 0 && std::binary_search(trial.face.begin(), trial.face.end(),
-                                                             mesh_.twin[at(h)] / 3));
+               (mesh_.twin[at(h)] >= 0 &&
+                std::binary_search(trial.face.begin(), trial.face.end(), mesh_.twin[at(h)] / 3));
     }
 
     Index worst_inner_vertex(const PatchTrial& trial,
@@ -222,7 +223,8 @@ LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
                            const std::vector<double>& weight, double max_area_change,
                            SeamMarks& seam, Progress& progress) {
     LocalSeams result;
-    std::vector<std::uint8_t> settled(mesh.faces.size(), 0); // faces of patches that are developable
+    std::vector<std::uint8_t> settled(mesh.faces.size(),
+                                      0); // faces of patches that are developable
     for (int round = 0; round < most_rounds; ++round) {
         const FaceComponents patches = find_patches(mesh, seam);
         std::vector<std::vector<Index>> faces(at(patches.count));

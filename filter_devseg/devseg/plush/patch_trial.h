@@ -17,9 +17,9 @@ namespace devseg {
 struct PatchTrial {
     bool accepted = false;
     bool is_disk = false;
-    double area_change = 0.0;      // largest of a face; only where the patch has a map
-    std::vector<Index> face;       // of the mesh; with details only
-    std::vector<double> change;    // of each face: area in the plane / on the surface − 1
+    double area_change = 0.0;   // largest of a face; only where the patch has a map
+    std::vector<Index> face;    // of the mesh; with details only
+    std::vector<double> change; // of each face: area in the plane / on the surface − 1
 };
 
 /// The map that 'Charts: Flatten' with LPFB makes of the faces, cut open along the marked edges

@@ -37,8 +37,8 @@ public:
         weigh_edges(std::move(skeleton));
         find_symmetry();
         lay_candidates();
-        const SeamSetting setting{mesh_, hard_, weight_, mirror_, options_.max_area_change,
-                                  options_.max_iterations};
+        const SeamSetting setting{
+            mesh_, hard_, weight_, mirror_, options_.max_area_change, options_.max_iterations};
         remove(setting);
         finish();
         return std::move(result_);
@@ -80,8 +80,7 @@ private:
     void lay_candidates() {
         progress_.begin_phase("laying seams", 0.08);
         add_middle_line(seam_);
-        const std::vector<Limb> limbs =
-            find_limbs(mesh_, graph_, curvature_, extrema_, progress_);
+        const std::vector<Limb> limbs = find_limbs(mesh_, graph_, curvature_, extrema_, progress_);
         result_.limbs = static_cast<Index>(limbs.size());
         add_limb_seams(mesh_, limbs, seam_);
         add_structural_seams(mesh_, graph_, weight_, extrema_, seam_, progress_);
@@ -92,8 +91,7 @@ private:
             mirror_seams();
             result_.all_developable = cut_patches();
         }
-        result_.candidates =
-            static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
+        result_.candidates = static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
     }
 
     void add_middle_line(SeamMarks& seam) const {

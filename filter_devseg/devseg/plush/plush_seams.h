@@ -1,7 +1,8 @@
 // Seams for plush toys: patches that lie flat, with seams where people expect them.
 //
 // References
-//   Plush toy seams: see the filter's help. [Wan08], [BGB08], [TAOZ12]: see the headers of the steps.
+//   Plush toy seams: see the filter's help. [Wan08], [BGB08], [TAOZ12]: see the headers of the
+//   steps.
 #pragma once
 
 #include <string>

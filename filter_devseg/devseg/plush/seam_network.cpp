@@ -25,8 +25,8 @@ public:
             ++degree[at(mesh.origin(h))];
         }
         for (std::size_t v = 0; v < degree.size(); ++v)
-            if (degree[v] != 2 || is_hard_edge(hard, leaving_[v][0]) !=
-                                      is_hard_edge(hard, leaving_[v][1]))
+            if (degree[v] != 2 ||
+                is_hard_edge(hard, leaving_[v][0]) != is_hard_edge(hard, leaving_[v][1]))
                 is_end_[v] = 1;
     }
 

@@ -29,12 +29,11 @@ std::vector<double> seam_weights(const Mesh& mesh, const SeamWeightOptions& opti
             const Vec3 edge = (mesh.points[at(b)] - mesh.points[at(a)]).normalized();
             along = 1.0 - bone.agreement * std::abs(edge.dot(bone.direction));
         }
-        const double curved =
-            1.0 / (1.0 + std::abs(curvature[at(a)]) + std::abs(curvature[at(b)]));
-        weight[at(h)] = std::max(
-            least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
-                              std::pow(std::max(0.0, along), options.skeleton) *
-                              std::pow(curved, options.curvature));
+        const double curved = 1.0 / (1.0 + std::abs(curvature[at(a)]) + std::abs(curvature[at(b)]));
+        weight[at(h)] =
+            std::max(least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
+                                       std::pow(std::max(0.0, along), options.skeleton) *
+                                       std::pow(curved, options.curvature));
     }
     return weight;
 }

@@ -15,7 +15,8 @@ namespace devseg {
 
 namespace {
 
-constexpr std::size_t batch = 6; // trials that run side by side; fixed, for the same result anywhere
+constexpr std::size_t batch =
+    6; // trials that run side by side; fixed, for the same result anywhere
 constexpr double unpaired = 0.1; // of the root of the area
 constexpr double lone = 0.03;    // of the area: patches that may be joined without a mirror image
 
@@ -37,28 +38,27 @@ struct Window {
 };
 
 // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
-constexpr Window join_windows[] = {
-    {0.0, 1.0},   {0.15, 1.0}, {0.0, 0.85},  {0.15, 0.85}, {0.35, 1.0}, {0.0, 0.65},
-    {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65}, {0.7, 1.0},  {0.0, 0.3},
-    {0.4, 0.6},   {0.2, 0.45}, {0.55, 0.8}};
+constexpr Window join_windows[] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85},  {0.15, 0.85},
+                                   {0.35, 1.0}, {0.0, 0.65},  {0.25, 0.75}, {0.55, 1.0},
+                                   {0.0, 0.45}, {0.35, 0.65}, {0.7, 1.0},   {0.0, 0.3},
+                                   {0.4, 0.6},  {0.2, 0.45},  {0.55, 0.8}};
 // A dart keeps its outer end, which comes first.
 constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
 // Segments that go together, or parts of them, and what becomes of the patches beside them.
 struct Removal {
     std::vector<std::size_t> segments;
-    std::vector<std::uint8_t> reversed;          // the mirror image runs the other way
-    std::vector<Window> windows;                 // to be tried, in this order
-    std::vector<Index> patches;                  // that are joined or lose a dart
-    std::vector<Index> half_edges;               // that go; empty = no window was accepted
+    std::vector<std::uint8_t> reversed; // the mirror image runs the other way
+    std::vector<Window> windows;        // to be tried, in this order
+    std::vector<Index> patches;         // that are joined or lose a dart
+    std::vector<Index> half_edges;      // that go; empty = no window was accepted
 };
 
 class Remover {
 public:
-    Remover(const SeamSetting& setting, Mode mode, const RemovalOptions& options,
-            SeamMarks& seam, Progress& progress)
-        : s_(setting), mode_(mode), options_(options), seam_(seam),
-          progress_(progress) {}
+    Remover(const SeamSetting& setting, Mode mode, const RemovalOptions& options, SeamMarks& seam,
+            Progress& progress)
+        : s_(setting), mode_(mode), options_(options), seam_(seam), progress_(progress) {}
 
     Index run() {
         unpaired_ = unpaired * std::sqrt(s_.mesh.total_area);
@@ -79,8 +79,8 @@ public:
                 if (removed)
                     refresh();
                 changed = changed || removed;
-                progress_.update(std::min(
-                    0.95, 1.0 - static_cast<double>(segments_.size()) / std::max(1.0, start)));
+                progress_.update(std::min(0.95, 1.0 - static_cast<double>(segments_.size()) /
+                                                          std::max(1.0, start)));
             }
             if (!changed && (!is_first_pass_ || s_.mirror.empty()))
                 break;
@@ -234,8 +234,7 @@ private:
 
     // Seams of small patches do not show.
     bool may_go_alone(std::size_t i) const {
-        return segments_[i].length <= unpaired_ ||
-               smaller_area(i) <= lone * s_.mesh.total_area;
+        return segments_[i].length <= unpaired_ || smaller_area(i) <= lone * s_.mesh.total_area;
     }
     double smaller_area(std::size_t i) const {
         return std::min(area_[at(left(i))], area_[at(right(i))]);
@@ -265,16 +264,16 @@ private:
     Removal removal_of(std::size_t i) const {
         Removal removal;
         removal.segments = {i};
-        removal.reversed = {static_cast<std::uint8_t>(
-            mode_ == Mode::darts && free_end(i) < 0 ? 1 : 0)};
+        removal.reversed = {
+            static_cast<std::uint8_t>(mode_ == Mode::darts && free_end(i) < 0 ? 1 : 0)};
         const Index image = partner(i);
         const std::size_t other = image >= 0 ? at(image) : i;
         if (other != i && !segments_[other].is_hard && may_go(other) &&
             (is_first_pass_ || !may_go_alone(i))) {
             removal.segments.push_back(other);
-            removal.reversed.push_back(static_cast<std::uint8_t>(
-                mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
-                                     : (is_reversed(i, other) ? 1 : 0)));
+            removal.reversed.push_back(
+                static_cast<std::uint8_t>(mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
+                                                               : (is_reversed(i, other) ? 1 : 0)));
         }
         if (mode_ == Mode::whole_segments) {
             removal.windows = {{0.0, 1.0}};
@@ -283,8 +282,8 @@ private:
         } else {
             const double size = std::min(area_[at(left(i))], area_[at(right(i))]);
             const double least = options_.least_neck * std::sqrt(size) / segments_[i].length;
-            const bool is_own_image = image == static_cast<Index>(i) && !s_.mirror.empty() &&
-                                      is_reversed(i, i);
+            const bool is_own_image =
+                image == static_cast<Index>(i) && !s_.mirror.empty() && is_reversed(i, i);
             for (const Window& w : join_windows)
                 if ((w.from == 0.0 && w.to == 1.0) ||
                     (w.to - w.from >= least && (!is_own_image || w.from == 1.0 - w.to)))
@@ -311,12 +310,11 @@ private:
         std::vector<Index> edges;
         for (std::size_t j = 0; j < removal.segments.size(); ++j) {
             const SeamSegment& segment = segments_[removal.segments[j]];
-            const Window w = removal.reversed[j] != 0 ? Window{1.0 - window.to, 1.0 - window.from}
-                                                      : window;
+            const Window w =
+                removal.reversed[j] != 0 ? Window{1.0 - window.to, 1.0 - window.from} : window;
             double before = 0.0;
             for (const Index h : segment.half_edges) {
-                const double middle =
-                    (before + 0.5 * s_.mesh.edge_length(h)) / segment.length;
+                const double middle = (before + 0.5 * s_.mesh.edge_length(h)) / segment.length;
                 if (middle >= w.from && middle <= w.to)
                     edges.push_back(h);
                 before += s_.mesh.edge_length(h);
@@ -400,10 +398,10 @@ private:
     std::vector<std::vector<Index>> faces_; // of each patch
     std::vector<double> area_;
     std::vector<std::vector<Index>> nearby_; // #V: segments
-    std::vector<Index> degree_;     // #V
+    std::vector<Index> degree_;              // #V
     std::set<Key> failed_;
     bool is_first_pass_ = true; // later, small patches may be joined without their mirror images
-    double unpaired_ = 0.0; // length of segments that may go without a mirror image
+    double unpaired_ = 0.0;     // length of segments that may go without a mirror image
     Index trials_ = 0;
 };
 

@@ -10,10 +10,11 @@ namespace devseg {
 
 namespace {
 
-constexpr int most_rounds = 12;      // of taking teeth away
-constexpr int corridor_rings = 3;    // of vertices beside a segment
-constexpr double worth = 0.97;       // of its cost: what a new path must save
-constexpr double natural_share = 0.3; // of the seam weight in the cost of an edge, beside its length
+constexpr int most_rounds = 12;   // of taking teeth away
+constexpr int corridor_rings = 3; // of vertices beside a segment
+constexpr double worth = 0.97;    // of its cost: what a new path must save
+constexpr double natural_share =
+    0.3; // of the seam weight in the cost of an edge, beside its length
 
 class Straightener {
 public:
@@ -21,14 +22,13 @@ public:
                  Progress& progress)
         : s_(setting), graph_(graph), seam_(seam), progress_(progress), cost_(seam.size()) {
         for (Index h = 0; h < s_.mesh.half_edge_count(); ++h)
-            cost_[at(h)] = s_.mesh.edge_length(h) *
-                           (1.0 - natural_share + natural_share * s_.weight[at(h)]);
+            cost_[at(h)] =
+                s_.mesh.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[at(h)]);
     }
 
     Index run() {
         Index replaced = 0;
-        const std::vector<SeamSegment> segments =
-            find_segments(s_.mesh, seam_, s_.hard, s_.weight);
+        const std::vector<SeamSegment> segments = find_segments(s_.mesh, seam_, s_.hard, s_.weight);
         std::vector<std::vector<Index>> paths(segments.size());
         parallel_for(
             static_cast<int>(segments.size()),

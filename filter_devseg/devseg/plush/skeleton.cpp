@@ -16,7 +16,7 @@ namespace devseg {
 
 namespace {
 
-constexpr std::size_t most_bones = 6;  // that influence one vertex: the others add up to little
+constexpr std::size_t most_bones = 6; // that influence one vertex: the others add up to little
 constexpr double least_weight = 1e-3;
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {

@@ -23,15 +23,16 @@ RestTriangle rest_of(const Mesh& mesh, Index f) {
 }
 
 Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::VectorXd& rhs) {
-    const double amount =
-        shift * matrix.diagonal().sum() / static_cast<double>(std::max<Eigen::Index>(1, rhs.size()));
+    const double amount = shift * matrix.diagonal().sum() /
+                          static_cast<double>(std::max<Eigen::Index>(1, rhs.size()));
     for (Eigen::Index v = 0; v < rhs.size(); ++v)
         matrix.coeffRef(v, v) += amount;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     Eigen::VectorXd solution = solver.solve(rhs);
     if (solver.info() != Eigen::Success || !solution.allFinite())
-        throw NumericalFailure("expected a solvable Laplacian of the surface, found a singular one; "
-                               "remesh or clean the mesh first");
+        throw NumericalFailure(
+            "expected a solvable Laplacian of the surface, found a singular one; "
+            "remesh or clean the mesh first");
     return solution;
 }
 

@@ -12,10 +12,10 @@ namespace devseg {
 
 namespace {
 
-constexpr Index samples = 1500;    // points that are mirrored while a plane is fitted
-constexpr int most_rounds = 30;    // of fitting
-constexpr double trusted = 0.8;    // share of the points, the nearest, that a plane is fitted to
-constexpr double cut_reach = 2.5;  // of the mean edge: how far the middle line may leave the plane
+constexpr Index samples = 1500;   // points that are mirrored while a plane is fitted
+constexpr int most_rounds = 30;   // of fitting
+constexpr double trusted = 0.8;   // share of the points, the nearest, that a plane is fitted to
+constexpr double cut_reach = 2.5; // of the mean edge: how far the middle line may leave the plane
 
 Vec3 reflect_direction(const MirrorPlane& plane, const Vec3& d) {
     return d - 2.0 * plane.normal.dot(d) * plane.normal;
@@ -39,9 +39,8 @@ std::vector<Pairing> pair_up(const Mesh& mesh, const SurfaceSearch& search,
         const Vec3 q = search.on_faces(image, near, [](Index) { return true; }).second;
         pairs.push_back({mesh.points[at(v)], q, (q - image).norm()});
     }
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pairing& a, const Pairing& b) {
-        return a.distance < b.distance;
-    });
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pairing& a, const Pairing& b) { return a.distance < b.distance; });
     return pairs;
 }
 
@@ -123,7 +122,8 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
         for (int round = 0; round < most_rounds; ++round) {
             progress.check();
             const std::vector<Pairing> pairs = pair_up(mesh, search, vertices, plane);
-            const auto count = static_cast<std::size_t>(trusted * static_cast<double>(pairs.size()));
+            const auto count =
+                static_cast<std::size_t>(trusted * static_cast<double>(pairs.size()));
             if (count < 3)
                 break;
             plane.deviation = pairs[pairs.size() * 9 / 10].distance / diagonal;
@@ -160,9 +160,10 @@ std::vector<std::uint8_t> sides_of(const Mesh& mesh, const MirrorPlane& plane) {
         const Index twin = mesh.twin[at(h)];
         if (twin < h)
             continue;
-        const double height =
-            0.5 * (plane.height(mesh.points[at(mesh.origin(h))]) +
-                   plane.height(mesh.points[at(mesh.target(h))])) / reach;
+        const double height = 0.5 *
+                              (plane.height(mesh.points[at(mesh.origin(h))]) +
+                               plane.height(mesh.points[at(mesh.target(h))])) /
+                              reach;
         cut.link(h / 3, twin / 3, mesh.edge_length(h) * (1.0 + 4.0 * height * height));
     }
     const std::vector<CutSide> sides = cut.solve();
