@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t batch =
     6; // trials that run side by side; fixed, for the same result anywhere
-constexpr double unpaired = 0.1; // of the root of the area
-constexpr double lone = 0.03;    // of the area: patches that may be joined without a mirror image
+constexpr double unpaired = 0.05; // of the root of the area
+constexpr double lone = 0.008;    // of the area: patches that may be joined without a mirror image
 
 using Key = std::pair<Index, Index>; // lowest half-edge and number of edges of a segment
 
