@@ -271,7 +271,7 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
         EXPECT_EQ(segment.half_edges.size(), 4U);
     EXPECT_EQ(find_patches(mesh, seam).count, 4);
     // Flat patches need no seam at all.
-    const SeamSetting setting{mesh, {}, weight, {}, 0.15, 2};
+    const SeamSetting setting{mesh, {}, weight, {}, 0.15, 100};
     Progress progress;
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);

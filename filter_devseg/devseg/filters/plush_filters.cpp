@@ -111,7 +111,7 @@ FilterDeclaration plush() {
         .real(&O::curvature_weight, "curvature_weight", "Weight of curvature", 0.0, 10.0,
               "Exponent of the flatness at an edge, without unit. Larger values draw seams to "
               "sharp bends.")
-        .integer(&O::max_extrema, "max_extrema", "Most ends of seams", 0, 100000,
+        .integer(&O::max_extrema, "max_extrema", "Most ends of seams", 0, 1e6,
                  "Tips and saddles between which seams may run, the most prominent ones; a number, "
                  "0 for at most the root of the number of vertices.")
         .text(&O::skeleton_file, "skeleton_file", "Skeleton file",
@@ -124,9 +124,10 @@ FilterDeclaration plush() {
                 "faces. Face colours: between faces of different colours.")
         .boolean(&O::symmetric, "symmetric", "Symmetric seams",
                  "Keep left and right the same where the model is nearly its own mirror image.")
-        .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
-                 "Rounds of taking seams away, joining patches and straightening; they end when "
-                 "nothing changes any more.")
+        .integer(
+            &O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+            "Rounds of trials, of six removals each, in every step that takes seams away; they "
+            "usually end before, when nothing more can go.")
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 takes the least natural seams away first; other numbers change that order a "
                  "little at random. The same number always gives the same seams.")

@@ -8,6 +8,7 @@
 
 #include "devseg/errors.h"
 #include "devseg/mesh/surface_search.h"
+#include "devseg/segment/option_checks.h"
 
 namespace devseg {
 
@@ -114,6 +115,8 @@ void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
 
 SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOptions& options,
                             Progress& progress) {
+    if (options.max_iterations < 1)
+        refuse_option("max_iterations", "a number of at least 1", options.max_iterations);
     const double scale = layout_scale(mesh, charts_from_uv(mesh, uv), uv);
     if (!(scale > 0.0))
         throw InvalidMesh("expected texture coordinates with an area, found none; run "

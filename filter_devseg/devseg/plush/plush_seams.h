@@ -21,7 +21,7 @@ struct PlushOptions {
     int max_extrema = 0;           // ends of structural seams at most; 0: √#V
     bool symmetric = true;         // keep seams symmetric where the model is
     int random_seed = 0;
-    int max_iterations = 2; // rounds of each way of removing seams
+    int max_iterations = 10000; // rounds of trials of each way of removing seams
 };
 
 struct PlushSeams {

@@ -16,7 +16,8 @@ namespace devseg {
 namespace {
 
 constexpr std::size_t batch =
-    6; // trials that run side by side; fixed, for the same result anywhere
+    6;                         // trials that run side by side; fixed, for the same result anywhere
+constexpr int most_passes = 2; // over all segments
 constexpr double unpaired = 0.05; // of the root of the area
 constexpr double lone = 0.008;    // of the area: patches that may be joined without a mirror image
 
@@ -64,11 +65,11 @@ public:
         unpaired_ = unpaired * std::sqrt(s_.mesh.total_area);
         refresh();
         const double start = static_cast<double>(segments_.size());
-        for (int pass = 0; pass < s_.max_passes; ++pass) {
+        for (int pass = 0; pass < most_passes; ++pass) {
             failed_.clear();
             is_first_pass_ = pass == 0;
             bool changed = false;
-            while (true) {
+            for (; rounds_ < s_.max_rounds; ++rounds_) {
                 std::vector<Removal> round = next_round();
                 if (round.empty())
                     break;
@@ -403,6 +404,7 @@ private:
     bool is_first_pass_ = true; // later, small patches may be joined without their mirror images
     double unpaired_ = 0.0;     // length of segments that may go without a mirror image
     Index trials_ = 0;
+    int rounds_ = 0;
 };
 
 } // namespace

@@ -13,7 +13,7 @@ struct SeamSetting {
     const std::vector<double>& weight; // 3 #F
     const std::vector<Index>& mirror;  // #V: the vertex on the other side, −1 = none; or empty
     double max_area_change = 0.15;
-    int max_passes = 2; // over all segments
+    int max_rounds = 10000; // of trials side by side
 };
 
 struct RemovalOptions {
