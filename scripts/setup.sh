@@ -16,7 +16,7 @@ export CCACHE_BASEDIR=$root
 source "$root/scripts/meshlab_headers.sh"
 
 system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev libeigen3-dev
-    libgtest-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
+    libgtest-dev libcgal-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
     python3-dev)
 
 # All messages go to stderr: stdout belongs to the results (devseg run --json).

@@ -74,6 +74,18 @@ inline HostMesh read_host_mesh(MeshModel& model) {
     host.seam_edges = read_face_attribute(model.cm, "seam_edges");
     if (model.hasDataMask(MeshModel::MM_WEDGTEXCOORD))
         host.wedge_uv = read_wedge_uv(model.cm);
+    const bool has_color = model.hasDataMask(MeshModel::MM_FACECOLOR);
+    bool is_any_selected = false;
+    for (const auto& f : model.cm.face) {
+        if (f.IsD())
+            continue;
+        host.face_selected.push_back(f.IsS() ? 1 : 0);
+        is_any_selected = is_any_selected || f.IsS();
+        if (has_color)
+            host.face_color.push_back({f.cC()[0], f.cC()[1], f.cC()[2]});
+    }
+    if (!is_any_selected)
+        host.face_selected.clear();
     return host;
 }
 

@@ -132,8 +132,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--flatten",
         choices=FLATTENINGS,
-        default="symmetric-dirichlet",
-        help="default: symmetric-dirichlet",
+        help="default: symmetric-dirichlet; lpfb with --method plush",
     )
     parser.add_argument(
         "--formats",
@@ -230,8 +229,9 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
     pattern = pattern_parameters(args)
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
+    flattening = args.flatten or method.flatten
     options = RunOptions(
-        args.out, method, segmentation, args.flatten, args.formats, pattern, args.target_faces
+        args.out, method, segmentation, flattening, args.formats, pattern, args.target_faces
     )
     results = []
     for path in args.input:
@@ -308,7 +308,11 @@ def _compare_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> No
     methods = [METHODS[name] for name in args.methods]
     given = {"charts": args.charts, "seed": args.seed}
     segmentation = [
-        {method.options[name]: value for name, value in given.items() if value is not None}
+        {
+            method.options[name]: value
+            for name, value in given.items()
+            if value is not None and name in method.options
+        }
         for method in methods
     ]
     result = compare(args.input, CompareOptions(args.out, methods, segmentation, args.flatten))

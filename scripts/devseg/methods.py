@@ -17,6 +17,7 @@ class Method:
             is not here does not apply to the method.
         deforms: whether the charts are deformed until they can be unfolded exactly.
         preset: of the pattern, unless another one is asked for.
+        flatten: key of FLATTENINGS that `devseg run` takes without --flatten.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Method:
     options: Mapping[str, str]
     deforms: bool = False
     preset: str | None = None
+    flatten: str = "symmetric-dirichlet"
 
 
 # Every segmentation filter has these.
@@ -54,6 +56,12 @@ METHODS = {
             {"charts": "charts_number", "slit_threshold": "slit_threshold", **_COMMON},
             deforms=True,
             preset="papercraft",
+        ),
+        Method(
+            "plush",
+            "compute_segmentation_plush_seams_per_face",
+            {**_COMMON},
+            flatten="lpfb",
         ),
         Method(
             "vsa",

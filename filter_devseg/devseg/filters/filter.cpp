@@ -61,6 +61,16 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bo
     return uv;
 }
 
+// What the host has for each of its faces, for those behind the gate.
+template <class Value>
+std::vector<Value> of_faces(const std::vector<Value>& source, const GatedMesh& gated) {
+    std::vector<Value> values;
+    if (!source.empty())
+        for (const Index f : gated.source_face)
+            values.push_back(source[at(f)]);
+    return values;
+}
+
 // Bits of the source face's cut edges; edges that the gate had to cut are seams as well.
 int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
     int bits = 0;
@@ -138,9 +148,14 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
     const GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
                                                  : gate_mesh(host.geometry, progress);
     progress.check();
-    const FilterInput input{gated.mesh, read_charts(host, gated),
-                            read_uv(host, gated, filter.needs_uv), gated.source_face,
-                            gated.source_vertex};
+    const FilterInput input{gated.mesh,
+                            read_charts(host, gated),
+                            read_uv(host, gated, filter.needs_uv),
+                            gated.source_face,
+                            gated.source_vertex,
+                            of_faces(host.face_selected, gated),
+                            of_faces(host.face_color, gated),
+                            gated.center};
     try {
         return map_back(host, gated, filter.run(input, values, progress));
     } catch (InvalidMesh& error) {

@@ -64,6 +64,13 @@ struct FilterInput {
     const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
     const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
                                              // a vertex that the gate had to split share one
+    std::vector<std::uint8_t> selected;    // #F: 1 for selected faces; empty if none is
+    std::vector<Color> color;              // #F; empty if the mesh has no face colours
+    Vec3 center = Vec3::Zero();            // model coordinates of the mesh's origin
+
+    /// Between internal units and model coordinates.
+    Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
+    Vec3 from_model(const Vec3& p) const { return (p - center) / mesh.unit_length; }
 };
 
 struct FilterOutput {
@@ -99,6 +106,8 @@ struct HostMesh {
     std::vector<double> chart_id;
     std::vector<double> seam_edges; // bits 1, 2, 4
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::vector<std::uint8_t> face_selected; // 1 for selected faces
+    std::vector<Color> face_color;
 };
 
 /// The results for the host's own elements. Vectors are for all faces or empty.

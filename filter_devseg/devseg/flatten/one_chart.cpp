@@ -1,7 +1,3 @@
-// References
-//   [Wang 2008] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
-//   Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
-//   doi:10.1109/TVCG.2007.1067
 #include "devseg/flatten/one_chart.h"
 
 #include <algorithm>
@@ -16,9 +12,11 @@
 #include "devseg/flatten/abf.h"
 #include "devseg/flatten/arap.h"
 #include "devseg/flatten/lpfb.h"
+#include "devseg/flatten/lpfb_map.h"
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/multilevel.h"
+#include "devseg/flatten/needles.h"
 #include "devseg/flatten/overlaps.h"
 #include "devseg/flatten/peaks.h"
 #include "devseg/flatten/push_apart.h"
@@ -31,11 +29,7 @@ namespace devseg {
 
 namespace {
 
-// Least distance of the two sides of a cut, as a share of the root of the model's area: far above
-// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
-// person or a cutter sees (0.015 mm on a sheet of 300 mm).
-constexpr double slit_gap = 5e-5;
-// What readers certainly see.
+// Gap of a slit that readers of texture coordinates certainly see, as a share like slit_gap.
 constexpr double visible_gap = 5e-6;
 
 // A face that keeps less of its area has collapsed.
@@ -46,11 +40,6 @@ constexpr double collapsed = 1e-5;
 constexpr Index most_polished_faces = 120000;
 // Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
 constexpr double coarse_gap = 4e-3;
-
-constexpr double lpfb_area_change = 0.1;
-constexpr double lpfb_stretch = 2.0;
-// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
-constexpr double harmonic_is_enough = 1.02;
 
 using Pairs = std::vector<std::pair<Index, Index>>;
 
@@ -124,52 +113,22 @@ void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& proble
     scale_to_area(problem, chart.uv);
 }
 
-// The LPFB map, with inner vertices moved towards an isometry where the harmonic ones leave
-// much to gain; infinite energy where it has flips.
-std::pair<double, std::vector<Vec2>> polish_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
-                                                 const Progress& progress) {
-    if (lpfb.flips > 0)
-        return {std::numeric_limits<double>::infinity(), {}};
-    double energy = symmetric_dirichlet_energy(problem, lpfb.uv);
-    if (energy > harmonic_is_enough) {
-        SymmetricDirichletOptions options;
-        options.fixed.assign(lpfb.uv.size(), 0);
-        for (const Index v : problem.boundary)
-            options.fixed[at(v)] = 1;
-        SymmetricDirichletResult result =
-            minimise_symmetric_dirichlet(problem, lpfb.uv, options, progress);
-        energy = result.energy;
-        lpfb.uv = std::move(result.uv);
-    }
-    return {energy, std::move(lpfb.uv)};
-}
-
-// [Wang 2008, section 5] takes a flattening that changes the area by at most 10 % and whose L2
-// stretch is at most 2.
-bool is_acceptable(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    return std::abs(map_area(problem, uv) / problem.total_area - 1.0) <= lpfb_area_change &&
-           l2_stretch(problem, uv) <= lpfb_stretch;
-}
-
-// Keeps the lengths of boundary edges. Where the angles on the surface give no acceptable map, or
-// one that lies on itself, those of the nearest isometric map are tried.
+// Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those of
+// the nearest isometric map, whatever the areas.
 bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
                 FlatChart& chart, const Progress& progress) {
-    auto own = polish_lpfb(problem, flatten_lpfb(problem, LpfbOptions{}, progress), progress);
-    if (std::isfinite(own.first) && is_acceptable(problem, own.second) &&
-        overlapping_pairs(chart.surface, own.second, tolerance).empty()) {
-        chart.uv = std::move(own.second);
+    if (auto map = sewing_map(problem, chart.surface, tolerance, SewingMapOptions{}, progress)) {
+        chart.uv = std::move(map->uv);
         return true;
     }
     apply_symmetric_dirichlet(mesh, problem, chart, progress);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    const std::vector<double> angles = boundary_angles(problem, chart.uv);
-    auto near =
-        polish_lpfb(problem, flatten_lpfb(problem, angles, LpfbOptions{}, progress), progress);
-    auto& better = near.first <= own.first ? near : own;
-    if (!std::isfinite(better.first))
+    auto near = settle_lpfb(
+        problem, flatten_lpfb(problem, boundary_angles(problem, chart.uv), LpfbOptions{}, progress),
+        progress);
+    if (!near)
         return false;
-    chart.uv = std::move(better.second);
+    chart.uv = std::move(near->uv);
     return true;
 }
 
@@ -265,6 +224,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
             throw;
         return halve(mesh, chart.surface); // the halves are easier
     }
+    restore_needles(mesh, chart.surface, problem, chart.uv);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);

@@ -17,13 +17,15 @@ constexpr double locked = 1e10; // of the mean diagonal: the step of a vertex th
 struct ProjectedNewton::State {
     const FlatteningProblem& problem;
     std::vector<std::uint8_t> fixed;
+    std::function<double(double)> area_curvature;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
     std::vector<Eigen::Triplet<double>> entries;
     bool analyzed = false;
 };
 
-ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed)
-    : state_(new State{problem, std::move(fixed), {}, {}, false}) {}
+ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
+                                 std::function<double(double)> area_curvature)
+    : state_(new State{problem, std::move(fixed), std::move(area_curvature), {}, {}, false}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
@@ -39,8 +41,14 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
         weight.row(1) = inverse.row(0);
         weight.row(2) = inverse.row(1);
         weight.row(0) = -inverse.row(0) - inverse.row(1);
-        const Eigen::Matrix4d h =
-            (problem.area[f] / problem.total_area) * projected_hessian(jacobian(problem, x, f));
+        const Eigen::Matrix2d map = jacobian(problem, x, f);
+        Eigen::Matrix4d h = projected_hessian(map);
+        if (state_->area_curvature) {
+            const Eigen::Vector4d cofactor(map(1, 1), -map(0, 1), -map(1, 0),
+                                           map(0, 0)); // ∂ det / ∂ J
+            h += state_->area_curvature(map.determinant()) * cofactor * cofactor.transpose();
+        }
+        h *= problem.area[f] / problem.total_area;
         const Triangle& t = problem.faces[f];
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {

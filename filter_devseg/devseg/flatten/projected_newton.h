@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,7 +15,10 @@ namespace devseg {
 class ProjectedNewton {
 public:
     /// Vertices that are marked in `fixed` (#v, may be empty) stay where they are.
-    ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed);
+    /// `area_curvature`, if given, is the second derivative, at least 0, of a further term of each
+    /// face by det J; as all of ψ it is weighted by the face's area.
+    ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
+                    std::function<double(double det)> area_curvature = {});
     ~ProjectedNewton();
 
     /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.

@@ -7,6 +7,11 @@
 
 namespace devseg {
 
+/// Least distance of the two sides of a cut, as a share of the root of the model's area: far above
+/// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
+/// person or a cutter sees (0.015 mm on a sheet of 300 mm).
+constexpr double slit_gap = 5e-5;
+
 /// Where the two sides of a cut inside the chart come to lie closer than `gap` (a length in the
 /// plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture coordinates
 /// tell a cut only by a difference: without one, readers would see a chart with a hole instead of

@@ -13,6 +13,10 @@ namespace {
 
 constexpr int rounds = 8; // sweeps over the flipped faces
 constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
+// Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
+// moved to another place on the grid nearby, which has places for nearly every area.
+constexpr double kept_area = 0.02;
+constexpr int grid_reach = 8; // units in the last place
 
 bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
     const Triangle& t = faces[at(f)];
@@ -66,6 +70,34 @@ public:
         return false;
     }
 
+    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
+    // to `area` (twice its area).
+    void restore_area(Index face, double area) {
+        for (const Index v : faces_[at(face)]) {
+            const Vec2 home = uv_[at(v)];
+            const double unit = unit_in_last_place(home);
+            Vec2 best = home;
+            double least = std::abs(twice_area(face) - area);
+            for (int x = -grid_reach; x <= grid_reach; ++x)
+                for (int y = -grid_reach; y <= grid_reach; ++y) {
+                    const Vec2 moved = home + unit * Vec2(x, y);
+                    uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                    const double off = std::abs(twice_area(face) - area);
+                    if (off < least && flipped_around(v) == 0) {
+                        least = off;
+                        best = uv_[at(v)];
+                    }
+                }
+            uv_[at(v)] = best;
+            if (least <= kept_area * area)
+                return;
+        }
+    }
+    double twice_area(Index face) const {
+        const Triangle& t = faces_[at(face)];
+        return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]);
+    }
+
 private:
     int flipped_around(Index v) const {
         int count = 0;
@@ -102,13 +134,23 @@ private:
 } // namespace
 
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) {
+    const std::vector<Vec2> exact = uv;
     for (Vec2& p : uv)
         p = Vec2(rounded(p.x()), rounded(p.y()));
+    const auto twice_area = [&](const std::vector<Vec2>& points, Index f) {
+        const Triangle& t = faces[at(f)];
+        return orientation(points[at(t[0])], points[at(t[1])], points[at(t[2])]);
+    };
     std::vector<Index> flipped;
-    for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+    std::vector<Index> thin;
+    for (Index f = 0; f < static_cast<Index>(faces.size()); ++f) {
+        const double area = twice_area(exact, f);
         if (!positive(faces, uv, f))
             flipped.push_back(f);
-    if (flipped.empty())
+        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > kept_area * area)
+            thin.push_back(f);
+    }
+    if (flipped.empty() && thin.empty())
         return 0;
     Repair repair(faces, uv);
     for (int round = 0; round < rounds && !flipped.empty(); ++round) {
@@ -121,6 +163,8 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
             if (!positive(faces, uv, f))
                 flipped.push_back(f);
     }
+    for (const Index f : thin)
+        repair.restore_area(f, twice_area(exact, f));
     return static_cast<Index>(flipped.size());
 }
 

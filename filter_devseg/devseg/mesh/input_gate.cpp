@@ -58,9 +58,9 @@ void require_finite(const RawMesh& raw) {
                           bad);
 }
 
-// Centre and scale: afterwards the bounding box is about 1 wide. The factor is a power of two,
+// Centre and scale: afterwards the bounding box is about 1 wide. Returns where its middle was. The factor is a power of two,
 // which changes no digit.
-void normalise(const RawMesh& raw, Mesh& mesh) {
+Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
     Vec3 high = -low;
     for (const Triangle& t : raw.faces)
@@ -80,6 +80,7 @@ void normalise(const RawMesh& raw, Mesh& mesh) {
     mesh.points.resize(raw.points.size());
     for (std::size_t v = 0; v < raw.points.size(); ++v)
         mesh.points[v] = (raw.points[v] - centre) / mesh.unit_length;
+    return centre;
 }
 
 // Items sorted into buckets 0 … bucket_count − 1 (counting sort): bucket b is [begin[b],
@@ -371,7 +372,7 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
 
     GatedMesh gated;
     Mesh& mesh = gated.mesh;
-    normalise(raw, mesh);
+    gated.center = normalise(raw, mesh);
     gated.source_vertex.resize(raw.points.size());
     std::iota(gated.source_vertex.begin(), gated.source_vertex.end(), 0);
 

@@ -26,6 +26,7 @@ struct RawMesh {
 /// neither the position nor the size of a model matters.
 struct GatedMesh {
     Mesh mesh;
+    Vec3 center = Vec3::Zero();        // model coordinates of the mesh's origin
     std::vector<Index> source_face;    // #F: index of the source face
     std::vector<Index> source_vertex;  // #V: index of the source vertex
     std::vector<std::uint8_t> flipped; // #F: 1 where the orientation was turned over

@@ -1,0 +1,121 @@
+#include "devseg/flatten/lpfb_map.h"
+
+#include <cmath>
+#include <utility>
+
+#include "devseg/errors.h"
+#include "devseg/flatten/arap.h"
+#include "devseg/flatten/area_balance.h"
+#include "devseg/flatten/lscm.h"
+#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/symmetric_dirichlet.h"
+#include "devseg/flatten/tutte.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double most_stretch = 2.0;
+// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
+constexpr double harmonic_is_enough = 1.02;
+// The isometric map only gives angles: a few steps are enough.
+constexpr int first_steps = 12;
+constexpr int more_steps = 25;
+
+double polygon_area(const std::vector<Vec2>& points) {
+    double twice = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec2& p = points[i];
+        const Vec2& q = points[i + 1 < points.size() ? i + 1 : 0];
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
+
+bool keeps_area(const FlatteningProblem& problem, double area) {
+    return std::abs(area / problem.total_area - 1.0) <= lpfb_area_change;
+}
+
+// The map with angles near to the targets, if it keeps the conditions.
+std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSurface& surface,
+                                const std::vector<double>& targets, double tolerance,
+                                const Progress& progress) {
+    const LpfbOptions options;
+    const ClosedBoundary boundary =
+        close_boundary(problem.boundary_edge, targets, options, progress);
+    if (!keeps_area(problem, polygon_area(boundary.points)))
+        return std::nullopt;
+    auto map = settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress);
+    if (map &&
+        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
+        map.reset();
+    return map;
+}
+
+// Boundary angles of a nearly isometric map; empty where it is given up.
+std::vector<double> isometric_angles(const FlatteningProblem& problem, double give_up_energy,
+                                     const Progress& progress) {
+    std::vector<Vec2> start = flatten_lscm(problem);
+    if (count_flips(problem, start) > 0)
+        start = flatten_tutte(problem);
+    if (count_flips(problem, start) > 0)
+        return {};
+    scale_to_area(problem, start);
+    ArapOptions options;
+    options.max_rounds = first_steps;
+    ArapResult map = minimise_arap(problem, start, options, progress);
+    if (map.energy > give_up_energy)
+        return {};
+    if (!map.converged) {
+        options.max_rounds = more_steps;
+        map = minimise_arap(problem, map.uv, options, progress);
+    }
+    return boundary_angles(problem, map.uv);
+}
+
+} // namespace
+
+std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
+                                   const Progress& progress) {
+    if (lpfb.flips > 0)
+        return std::nullopt;
+    LpfbMap map;
+    map.uv = std::move(lpfb.uv);
+    if (symmetric_dirichlet_energy(problem, map.uv) > harmonic_is_enough) {
+        SymmetricDirichletOptions options;
+        options.fixed.assign(map.uv.size(), 0);
+        for (const Index v : problem.boundary)
+            options.fixed[at(v)] = 1;
+        map.uv = minimise_symmetric_dirichlet(problem, map.uv, options, progress).uv;
+    }
+    balance_areas(problem, map.uv, progress);
+    map.area_change = measure_area_change(problem, map.uv).largest();
+    map.l2_stretch = l2_stretch(problem, map.uv);
+    return map;
+}
+
+std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
+                                  double tolerance, const SewingMapOptions& options,
+                                  const Progress& progress) {
+    std::optional<LpfbMap> best;
+    try {
+        best = map_near(problem, surface, boundary_angles(problem), tolerance, progress);
+    } catch (const NumericalFailure&) { // the other angles may have a solution
+    }
+    if (best && best->area_change <= options.enough)
+        return best;
+    try {
+        const std::vector<double> angles =
+            isometric_angles(problem, options.give_up_energy, progress);
+        if (!angles.empty()) {
+            auto near = map_near(problem, surface, angles, tolerance, progress);
+            if (near && (!best || near->area_change < best->area_change))
+                best = std::move(near);
+        }
+    } catch (const NumericalFailure&) { // then the first one has to do
+    }
+    return best;
+}
+
+} // namespace devseg

@@ -1,0 +1,58 @@
+// Places on a surface near given points.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "devseg/mesh/angle_defects.h"
+#include "devseg/mesh/point_grid.h"
+
+namespace devseg {
+
+/// Unit normals at vertices, means of the faces' weighted by area. #V.
+std::vector<Vec3> vertex_normals(const Mesh& mesh);
+
+Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Places on the surface near given points.
+class SurfaceSearch {
+public:
+    explicit SurfaceSearch(const Mesh& mesh)
+        : mesh_(mesh), grid_(mesh.points), leaving_(leaving_half_edges(mesh)),
+          normal_(vertex_normals(mesh)) {}
+
+    /// The vertex nearest to p with a normal near to n for which accept(v) holds; −1 = none.
+    template <class Accept>
+    Index vertex(const Vec3& p, const Vec3& n, Accept accept) const {
+        constexpr double facing = 0.2; // least cosine between the normals
+        return grid_.nearest(p, [&](Index v) {
+            return leaving_[at(v)] >= 0 && normal_[at(v)].dot(n) > facing && accept(v);
+        });
+    }
+
+    /// The place on the faces around a vertex that is nearest to p, among those that are accepted.
+    template <class Accept>
+    std::pair<Index, Vec3> on_faces(const Vec3& p, Index v, Accept accept) const {
+        std::pair<Index, Vec3> best{-1, mesh_.points[at(v)]};
+        visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+            if (!accept(h / 3))
+                return;
+            const Triangle& t = mesh_.faces[at(h / 3)];
+            const Vec3 q = nearest_in_triangle(p, mesh_.points[at(t[0])], mesh_.points[at(t[1])],
+                                               mesh_.points[at(t[2])]);
+            if (best.first < 0 || (q - p).squaredNorm() < (best.second - p).squaredNorm())
+                best = {h / 3, q};
+        });
+        return best;
+    }
+    const Vec3& normal(Index v) const { return normal_[at(v)]; }
+    Index leaving(Index v) const { return leaving_[at(v)]; }
+
+private:
+    const Mesh& mesh_;
+    PointGrid grid_;
+    std::vector<Index> leaving_;
+    std::vector<Vec3> normal_;
+};
+
+} // namespace devseg

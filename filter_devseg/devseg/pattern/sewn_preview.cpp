@@ -1,0 +1,170 @@
+#include "devseg/pattern/sewn_preview.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include "devseg/errors.h"
+#include "devseg/mesh/surface_search.h"
+#include "devseg/segment/option_checks.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double smoothing = 0.015; // of the diagonal: details below it are forgotten at the start
+constexpr double inertia = 0.02;    // of a spring's stiffness: steps stay small
+constexpr double settled = 2e-5;    // of the diagonal: the mean step at which the cloth is at rest
+// Stiffness of a net of springs of stiffness 1 along the edges of even triangles, per length.
+constexpr double net_stiffness = 1.1547;
+
+using Solver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+using Points = Eigen::MatrixX3d;
+
+struct Spring {
+    Index a;
+    Index b;
+    double length;
+};
+
+std::vector<Spring> make_springs(const Mesh& mesh, const CornerUv& uv, double scale) {
+    std::vector<Spring> springs;
+    const auto flat = [&](Index h) { return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm(); };
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin < h) // also where there is none
+            springs.push_back({mesh.origin(h), mesh.target(h),
+                               twin < 0 ? flat(h) : 0.5 * (flat(h) + flat(twin))});
+    }
+    return springs;
+}
+
+Eigen::SparseMatrix<double> spring_matrix(Index count, const std::vector<Spring>& springs,
+                                          double weight, double diagonal) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const Spring& s : springs) {
+        entries.emplace_back(s.a, s.a, weight);
+        entries.emplace_back(s.b, s.b, weight);
+        entries.emplace_back(s.a, s.b, -weight);
+        entries.emplace_back(s.b, s.a, -weight);
+    }
+    for (Index v = 0; v < count; ++v)
+        entries.emplace_back(v, v, diagonal);
+    Eigen::SparseMatrix<double> matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+}
+
+Points factor_and_solve(const Eigen::SparseMatrix<double>& matrix, const Points& rhs) {
+    const Solver solver(matrix);
+    if (solver.info() != Eigen::Success)
+        throw NumericalFailure("expected springs that can be solved, found a singular system; "
+                               "remesh or clean the mesh first");
+    return solver.solve(rhs);
+}
+
+// Σ of the pressure on the faces, a third of each to its corners.
+Points pressure_on(const Mesh& mesh, const Points& x, double pressure) {
+    Points force = Points::Zero(x.rows(), 3);
+    for (const Triangle& t : mesh.faces) {
+        const Eigen::RowVector3d p = x.row(t[1]) - x.row(t[0]);
+        const Eigen::RowVector3d q = x.row(t[2]) - x.row(t[0]);
+        const Eigen::RowVector3d share = pressure / 6.0 * p.cross(q);
+        for (const Index v : t)
+            force.row(v) += share;
+    }
+    return force;
+}
+
+// Moves and turns x onto the surface, vertex to vertex.
+void align(const Mesh& mesh, Points& x) {
+    Eigen::Matrix3Xd to(3, x.rows());
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        to.col(v) = mesh.points[at(v)];
+    const Eigen::Matrix4d motion = Eigen::umeyama(Eigen::Matrix3Xd(x.transpose()), to, false);
+    const Eigen::Matrix3d turn = motion.topLeftCorner<3, 3>();
+    const Eigen::RowVector3d shift = motion.topRightCorner<3, 1>().transpose();
+    x = (x * turn.transpose()).rowwise() + shift;
+}
+
+void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
+    const SurfaceSearch search(mesh);
+    result.distance.assign(mesh.points.size(), 0.0);
+    const std::vector<Vec3> normals = vertex_normals(mesh);
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+        if (search.leaving(v) < 0)
+            continue;
+        const Vec3& p = result.points[at(v)];
+        const auto any = [](Index) { return true; };
+        const Index near = search.vertex(p, normals[at(v)], any);
+        if (near >= 0)
+            result.distance[at(v)] = (search.on_faces(p, near, any).second - p).norm();
+        result.largest_distance = std::max(result.largest_distance, result.distance[at(v)]);
+    }
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        result.mean_distance +=
+            mesh.face_areas[at(h / 3)] / 3.0 * result.distance[at(mesh.origin(h))];
+    result.mean_distance /= mesh.total_area * diagonal;
+    result.largest_distance /= diagonal;
+}
+
+} // namespace
+
+SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOptions& options,
+                            Progress& progress) {
+    if (options.max_iterations < 1)
+        refuse_option("max_iterations", "a number of at least 1", options.max_iterations);
+    const double scale = layout_scale(mesh, charts_from_uv(mesh, uv), uv);
+    if (!(scale > 0.0))
+        throw InvalidMesh("expected texture coordinates with an area, found none; run "
+                          "'Charts: Flatten' again");
+    Eigen::AlignedBox3d box;
+    Points x(mesh.vertex_count(), 3);
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+        x.row(v) = mesh.points[at(v)].transpose();
+        box.extend(mesh.points[at(v)]);
+    }
+    const double diagonal = box.diagonal().norm();
+    const std::vector<Spring> springs = make_springs(mesh, uv, scale);
+    const double edge = std::sqrt(mesh.total_area / std::max<Index>(1, mesh.face_count()));
+    const double blur = std::pow(smoothing * diagonal / edge, 2.0);
+    x = factor_and_solve(spring_matrix(mesh.vertex_count(), springs, blur, 1.0), x);
+
+    // In a sphere of the surface's size the pressure stretches the net by `stuffing`.
+    const double radius = std::sqrt(mesh.total_area / (4.0 * pi));
+    const double pressure = 2.0 * options.stuffing * net_stiffness / radius;
+    const Solver solver(spring_matrix(mesh.vertex_count(), springs, 1.0, inertia));
+    if (solver.info() != Eigen::Success)
+        throw NumericalFailure("expected springs that can be solved, found a singular system; "
+                               "remesh or clean the mesh first");
+    SewnPreview result;
+    for (; result.rounds < options.max_iterations && !result.converged; ++result.rounds) {
+        progress.update(static_cast<double>(result.rounds) / options.max_iterations);
+        Points rhs = inertia * x + pressure_on(mesh, x, pressure);
+        for (const Spring& s : springs) {
+            const Eigen::RowVector3d along = x.row(s.a) - x.row(s.b);
+            const double length = along.norm();
+            if (!(length > 0.0))
+                continue;
+            rhs.row(s.a) += s.length / length * along;
+            rhs.row(s.b) -= s.length / length * along;
+        }
+        const Points next = solver.solve(rhs);
+        result.converged = (next - x).rowwise().norm().mean() < settled * diagonal;
+        x = next;
+    }
+    if (!x.allFinite())
+        throw NumericalFailure("expected a cloth that comes to rest, found one that does not; use "
+                               "less stuffing");
+    align(mesh, x);
+    result.points.resize(mesh.points.size());
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        result.points[at(v)] = x.row(v).transpose();
+    measure(mesh, diagonal, result);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,20 @@
+// Further seams where patches are not developable enough yet.
+#pragma once
+
+#include "devseg/plush/seam_paths.h"
+
+namespace devseg {
+
+struct LocalSeams {
+    Index splits = 0; // patches that were split
+    bool all_developable = true;
+};
+
+/// Makes every patch a disk, and splits those that change their area by more than `max_area_change`
+/// along the isoline half way to their worst spot, or where that is too small a part of the patch,
+/// by a path through the worst spot, until all are developable.
+LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
+                           const std::vector<double>& weight, double max_area_change,
+                           SeamMarks& seam, Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,78 @@
+#include "devseg/plush/patch_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/errors.h"
+#include "devseg/flatten/area_balance.h"
+#include "devseg/flatten/lpfb_map.h"
+#include "devseg/flatten/lscm.h"
+#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/slits.h"
+#include "devseg/flatten/tutte.h"
+#include "devseg/metrics/overlap.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double kept = 0.98; // share of the bound that is used: maps are rounded to 32 bits later
+constexpr double most_stretch = 1.02; // L2: what even areas may cost in shear, 12 % in the mean
+// As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
+// length by 8 % in the mean.
+constexpr double hopeless_energy = 0.012;
+
+void describe(const ChartSurface& surface, const FlatteningProblem& problem,
+              const std::vector<Vec2>& uv, PatchTrial& trial) {
+    trial.face = surface.face;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        trial.change.push_back(jacobian(problem, uv, f).determinant() - 1.0);
+}
+
+// A map of a patch that LPFB cannot map, good enough to see where its area changes.
+std::vector<Vec2> any_map(const FlatteningProblem& problem) {
+    std::vector<Vec2> uv = flatten_lscm(problem);
+    if (count_flips(problem, uv) > 0)
+        uv = flatten_tutte(problem);
+    scale_to_area(problem, uv);
+    return uv;
+}
+
+// What is asked of a map once its closed slits are open, as when charts are flattened.
+bool lies_flat(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+               std::vector<Vec2> uv, double bound) {
+    const double size = std::sqrt(mesh.total_area);
+    open_closed_slits(mesh, surface, slit_gap * size, uv);
+    return measure_area_change(problem, uv).largest() <= bound &&
+           overlapping_pairs(surface, uv, layout_tolerance(size)).empty();
+}
+
+} // namespace
+
+PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
+                     const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
+                     const Progress& progress) {
+    PatchTrial trial;
+    const ChartSurface surface = extract_surface(mesh, faces, seam);
+    trial.is_disk = surface.is_disk();
+    if (!trial.is_disk)
+        return trial;
+    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+    const double bound = kept * max_area_change;
+    const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
+                                {bound, hopeless_energy}, progress);
+    if (map) {
+        trial.area_change = map->area_change;
+        // At the scale at which the map has the patch's area.
+        const double l2 =
+            map->l2_stretch * std::sqrt(map_area(problem, map->uv) / problem.total_area);
+        trial.accepted = map->area_change <= bound && l2 <= most_stretch &&
+                         lies_flat(mesh, surface, problem, map->uv, bound);
+    }
+    if (details)
+        describe(surface, problem, map ? map->uv : any_map(problem), trial);
+    return trial;
+}
+
+} // namespace devseg

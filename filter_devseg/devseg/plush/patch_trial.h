@@ -1,0 +1,33 @@
+// Whether a set of faces is developable enough for one piece of cloth.
+//
+// References
+//   [Wan08] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
+//           Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
+//           doi:10.1109/TVCG.2007.1067
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devseg/mesh/charts.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+
+struct PatchTrial {
+    bool accepted = false;
+    bool is_disk = false;
+    double area_change = 0.0;   // largest of a face; only where the patch has a map
+    std::vector<Index> face;    // of the mesh; with details only
+    std::vector<double> change; // of each face: area in the plane / on the surface − 1
+};
+
+/// The map that 'Charts: Flatten' with LPFB makes of the faces, cut open along the marked edges
+/// (`seam`, 3 #F of the mesh, all edges to other faces marked): accepted if it is a disk, keeps
+/// [Wan08]'s conditions, no face changes its area by more than `max_area_change`, and nothing
+/// overlaps. With `details` also the change of each face, for patches that are not accepted too.
+PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
+                     const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
+                     const Progress& progress);
+
+} // namespace devseg

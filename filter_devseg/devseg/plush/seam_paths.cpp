@@ -1,0 +1,105 @@
+#include "devseg/plush/seam_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+
+namespace devseg {
+
+namespace {
+constexpr double least_weight = 1e-4; // so that paths stay short where a term vanishes
+constexpr double shared = 0.25;       // factor of edges that are seams already
+} // namespace
+
+std::vector<double> seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
+                                 const std::vector<double>& curvature, const Skeleton& skeleton,
+                                 const BoneWeights& bones) {
+    double longest = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        longest = std::max(longest, mesh.edge_length(h));
+    std::vector<double> weight(mesh.twin.size());
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index a = std::min(mesh.origin(h), mesh.target(h));
+        const Index b = std::max(mesh.origin(h), mesh.target(h));
+        double along = 1.0;
+        if (!skeleton.empty()) {
+            const BoneDirection bone = bone_direction(skeleton, bones, a, b);
+            const Vec3 edge = (mesh.points[at(b)] - mesh.points[at(a)]).normalized();
+            along = 1.0 - bone.agreement * std::abs(edge.dot(bone.direction));
+        }
+        const double curved = 1.0 / (1.0 + std::abs(curvature[at(a)]) + std::abs(curvature[at(b)]));
+        weight[at(h)] =
+            std::max(least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
+                                       std::pow(std::max(0.0, along), options.skeleton) *
+                                       std::pow(curved, options.curvature));
+    }
+    return weight;
+}
+
+PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
+                        const std::vector<Index>& sources,
+                        const std::vector<std::uint8_t>& may_enter,
+                        const std::vector<std::uint8_t>& is_goal) {
+    const std::size_t count = graph.begin.size() - 1;
+    PathTree tree;
+    tree.distance.assign(count, std::numeric_limits<double>::infinity());
+    tree.half_edge.assign(count, -1);
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+    for (const Index v : sources) {
+        tree.distance[at(v)] = 0.0;
+        queue.emplace(0.0, v);
+    }
+    while (!queue.empty()) {
+        const auto [distance, v] = queue.top();
+        queue.pop();
+        if (distance > tree.distance[at(v)] ||
+            (distance > 0.0 && !is_goal.empty() && is_goal[at(v)] != 0))
+            continue;
+        for (Index i = graph.begin[at(v)]; i < graph.begin[at(v) + 1]; ++i) {
+            const Index u = graph.vertex[at(i)];
+            const double next = distance + weight[at(graph.half_edge[at(i)])];
+            if (!(next < tree.distance[at(u)]) || (!may_enter.empty() && may_enter[at(u)] == 0))
+                continue;
+            tree.distance[at(u)] = next;
+            tree.half_edge[at(u)] = graph.half_edge[at(i)];
+            queue.emplace(next, u);
+        }
+    }
+    return tree;
+}
+
+std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Index vertex) {
+    std::vector<Index> path;
+    while (tree.half_edge[at(vertex)] >= 0 && tree.distance[at(vertex)] > 0.0) {
+        const Index h = tree.half_edge[at(vertex)];
+        path.push_back(h);
+        vertex = mesh.origin(h) == vertex ? mesh.target(h) : mesh.origin(h);
+    }
+    return path;
+}
+
+void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
+                          const std::vector<double>& weight, const std::vector<Index>& ends,
+                          SeamMarks& seam, Progress& progress) {
+    std::vector<double> cost = weight;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (seam[at(h)] != 0)
+            cost[at(h)] *= shared;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(ends.size()));
+        const PathTree tree = shortest_paths(graph, cost, {ends[i]});
+        for (std::size_t j = i + 1; j < ends.size(); ++j)
+            for (const Index h : trace_path(mesh, tree, ends[j])) {
+                if (seam[at(h)] == 0)
+                    for (const Index side : {h, mesh.twin[at(h)]})
+                        if (side >= 0)
+                            cost[at(side)] = shared * weight[at(side)];
+                mark(mesh, h, 1, seam);
+            }
+    }
+}
+
+} // namespace devseg

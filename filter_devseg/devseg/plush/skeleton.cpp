@@ -1,0 +1,161 @@
+#include "devseg/plush/skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include <Eigen/SparseCholesky>
+
+#include "devseg/errors.h"
+#include "devseg/plush/surface_fields.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr std::size_t most_bones = 6; // that influence one vertex: the others add up to little
+constexpr double least_weight = 1e-3;
+
+double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
+    const Vec3 edge = b - a;
+    const double length2 = edge.squaredNorm();
+    const double t = length2 > 0.0 ? std::clamp((p - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
+    return (a + t * edge - p).squaredNorm();
+}
+
+[[noreturn]] void refuse_line(const std::string& path, int line, const std::string& found) {
+    throw InvalidParameter("skeleton_file: expected lines 'v X Y Z' and 'l I J' with joints "
+                           "counted from 1, found '" +
+                           found + "' in line " + std::to_string(line) + " of " + path);
+}
+
+void read_bones(std::istringstream& words, Skeleton& skeleton, bool& is_valid) {
+    Index previous = -1;
+    for (long joint = 0; words >> joint; previous = static_cast<Index>(joint - 1)) {
+        is_valid = is_valid && joint >= 1 && joint <= static_cast<long>(skeleton.joints.size());
+        if (!is_valid)
+            return;
+        if (previous >= 0 && previous != joint - 1)
+            skeleton.bones.push_back({previous, static_cast<Index>(joint - 1)});
+    }
+    is_valid = is_valid && previous >= 0 && words.eof();
+}
+
+} // namespace
+
+Skeleton read_skeleton(const std::string& path, const std::function<Vec3(const Vec3&)>& to_mesh) {
+    std::ifstream file(path);
+    if (!file)
+        throw FileError("skeleton_file: expected a file of joints and bones, but " + path +
+                        " cannot be read");
+    Skeleton skeleton;
+    std::string text;
+    for (int line = 1; std::getline(file, text); ++line) {
+        std::istringstream words(text);
+        words.imbue(std::locale::classic());
+        std::string key;
+        if (!(words >> key) || key[0] == '#')
+            continue;
+        bool is_valid = true;
+        if (key == "v") {
+            Vec3 p;
+            is_valid = static_cast<bool>(words >> p.x() >> p.y() >> p.z()) && p.allFinite();
+            skeleton.joints.push_back(is_valid ? to_mesh(p) : p);
+        } else if (key == "l") {
+            read_bones(words, skeleton, is_valid);
+        } else {
+            is_valid = key == "o" || key == "g" || key == "s";
+        }
+        if (!is_valid)
+            refuse_line(path, line, text);
+    }
+    if (skeleton.empty())
+        throw InvalidParameter("skeleton_file: expected at least one bone (a line 'l I J'), found "
+                               "none in " +
+                               path);
+    return skeleton;
+}
+
+BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progress& progress) {
+    const std::vector<double> areas = vertex_areas(mesh);
+    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
+    std::vector<Index> nearest(mesh.points.size(), 0);
+    std::vector<double> heat(mesh.points.size());
+    const double floor = 1e-6 * mesh.total_area;
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+            const auto& [i, j] = skeleton.bones[b];
+            const double d = squared_distance(mesh.points[at(v)], skeleton.joints[at(i)],
+                                              skeleton.joints[at(j)]);
+            if (d < least) {
+                least = d;
+                nearest[at(v)] = static_cast<Index>(b);
+            }
+        }
+        heat[at(v)] = std::max(areas[at(v)], 1e-12 * mesh.total_area) / std::max(least, floor);
+        matrix.coeffRef(v, v) += heat[at(v)];
+    }
+    progress.check();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    BoneWeights weights(mesh.points.size());
+    if (solver.info() != Eigen::Success)
+        throw NumericalFailure("expected a solvable heat equation on the surface, found a singular "
+                               "one; remesh or clean the mesh first");
+    for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+        progress.check();
+        Eigen::VectorXd source = Eigen::VectorXd::Zero(mesh.vertex_count());
+        for (Index v = 0; v < mesh.vertex_count(); ++v)
+            if (nearest[at(v)] == static_cast<Index>(b))
+                source[v] = heat[at(v)];
+        const Eigen::VectorXd share = solver.solve(source);
+        for (Index v = 0; v < mesh.vertex_count(); ++v)
+            if (share[v] > least_weight)
+                weights[at(v)].emplace_back(static_cast<Index>(b), share[v]);
+    }
+    for (auto& row : weights) {
+        std::stable_sort(row.begin(), row.end(),
+                         [](const auto& a, const auto& b) { return a.second > b.second; });
+        row.resize(std::min(row.size(), most_bones));
+        double sum = 0.0;
+        for (const auto& entry : row)
+            sum += entry.second;
+        for (auto& entry : row)
+            entry.second /= sum;
+    }
+    return weights;
+}
+
+BoneDirection bone_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
+                             Index b) {
+    // Bones have no sign: each is turned to agree with the strongest one.
+    Vec3 sum = Vec3::Zero();
+    std::vector<std::pair<Vec3, double>> parts;
+    for (const Index v : {a, b})
+        for (const auto& [bone, weight] : weights[at(v)]) {
+            const auto& [i, j] = skeleton.bones[at(bone)];
+            const Vec3 edge = (skeleton.joints[at(j)] - skeleton.joints[at(i)]).normalized();
+            parts.emplace_back(edge, 0.5 * weight);
+        }
+    if (parts.empty())
+        return {};
+    const Vec3 reference = parts.front().first;
+    for (auto& [direction, weight] : parts) {
+        if (direction.dot(reference) < 0.0)
+            direction = -direction;
+        sum += weight * direction;
+    }
+    BoneDirection result;
+    if (!(sum.norm() > 0.0))
+        return result;
+    result.direction = sum.normalized();
+    for (const auto& [direction, weight] : parts)
+        result.agreement += weight * std::abs(direction.dot(result.direction));
+    result.agreement = std::min(1.0, result.agreement);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,39 @@
+// Left and right: the plane in which a surface is its own mirror image, nearly.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
+
+namespace devseg {
+
+struct MirrorPlane {
+    Vec3 normal = Vec3::UnitX(); // unit
+    double offset = 0.0;         // of the plane's points along the normal, internal units
+    double deviation = 0.0;      // distance of the mirror image that 9 of 10 points keep / diagonal
+
+    double height(const Vec3& p) const { return normal.dot(p) - offset; }
+    Vec3 reflect(const Vec3& p) const { return p - 2.0 * height(p) * normal; }
+};
+
+/// The best plane that is found from the principal and coordinate axes by fitting the surface to
+/// its mirror image; nothing where more than a tenth of the surface is farther from its mirror
+/// image than `tolerance` times the diagonal.
+std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
+                                             const Progress& progress);
+
+/// Both sides of the plane: 0 where the height is below 0 and 1 above, along a short line (a
+/// minimum cut within a few edges of the plane). #F.
+std::vector<std::uint8_t> sides_of(const Mesh& mesh, const MirrorPlane& plane);
+
+/// The face that lies where each face's centre is mirrored to, of those on the other side; #F.
+std::vector<Index> mirror_faces(const Mesh& mesh, const MirrorPlane& plane,
+                                const std::vector<std::uint8_t>& side);
+
+/// The nearest vertex to each mirrored vertex; #V.
+std::vector<Index> mirror_vertices(const Mesh& mesh, const MirrorPlane& plane);
+
+} // namespace devseg

@@ -1,0 +1,118 @@
+"""Plush seams on public models: patches, area change, symmetry, direction and the sewn preview.
+
+    bench_plush.py DATA/public [NAME...]
+
+Symmetric: share of the seam length whose mirror image is within 2 % of the diagonal of a seam, in
+the best of the three planes through the middle of the box. Guided: share of the seam length within
+30 degrees of the axis of the body part around it (the direction in which the normals within a tenth
+of the diagonal point least), on edges that bend by more than 15 degrees, or on concave ones.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+from scipy.spatial import cKDTree
+
+import devseg
+
+PLUSH = "compute_segmentation_plush_seams_per_face"
+FLATTEN = "compute_texcoord_parametrization_charts_per_wedge"
+NAMES = ("teddy", "penguin", "triceratops", "horse", "cheburashka", "bull")
+
+
+def seam_edges(mesh: Any) -> np.ndarray:
+    """Vertex pairs of all cut edges, each once."""
+    faces = mesh.face_matrix()
+    bits = mesh.face_custom_scalar_attribute_array("seam_edges").astype(int)
+    pairs = [faces[(bits >> k) & 1 == 1][:, [k, (k + 1) % 3]] for k in range(3)]
+    return np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
+
+
+def symmetric_share(points: np.ndarray, edges: np.ndarray) -> float:
+    """Share of the seam length that has a mirror image, in the best plane."""
+    low, high = points.min(0), points.max(0)
+    ends = points[edges]
+    steps = np.linspace(0.0, 1.0, 6)[:, None, None]
+    samples = (ends[:, 0] * (1 - steps) + ends[:, 1] * steps).reshape(-1, 3)
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    tree = cKDTree(samples)
+    best = 0.0
+    for axis in range(3):
+        image = ends.mean(1)
+        image[:, axis] = low[axis] + high[axis] - image[:, axis]
+        near = tree.query(image)[0] < 0.02 * np.linalg.norm(high - low)
+        best = max(best, float(length[near].sum() / length.sum()))
+    return best
+
+
+def guided_share(points: np.ndarray, faces: np.ndarray, edges: np.ndarray) -> float:
+    """Share of the seam length along the body's local axis, along creases or in concave places."""
+    size = np.linalg.norm(points.max(0) - points.min(0))
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1)
+    normals /= np.maximum(area, 1e-300)[:, None]
+    sides: dict[tuple[int, int], list[int]] = {}
+    for f, face in enumerate(faces):
+        for k in range(3):
+            a, b = sorted((int(face[k]), int(face[(k + 1) % 3])))
+            sides.setdefault((a, b), []).append(f)
+    centers = corners.mean(1)
+    tree = cKDTree(centers)
+    guided = total = 0.0
+    for a, b in edges:
+        along = points[b] - points[a]
+        length = float(np.linalg.norm(along))
+        total += length
+        pair = sides[(int(a), int(b))]
+        bend = 0.0
+        if len(pair) == 2:
+            f, g = pair
+            bend = float(np.degrees(np.arccos(np.clip(normals[f] @ normals[g], -1, 1))))
+            if normals[f] @ (centers[g] - centers[f]) > 0.02 * np.linalg.norm(
+                centers[g] - centers[f]
+            ):
+                guided += length
+                continue
+        near = tree.query_ball_point(points[a], 0.1 * size)
+        # The axis of a limb is where the normals around it do not point.
+        spread = (normals[near] * area[near, None]).T @ normals[near]
+        axis = np.linalg.eigh(spread)[1][:, 0]
+        if bend > 15.0 or abs(along @ axis) > np.cos(np.radians(30.0)) * length:
+            guided += length
+    return guided / total
+
+
+def main() -> None:
+    devseg.load_plugins()
+    folder = Path(sys.argv[1])
+    print("model patches darts area symmetric guided preview seconds", flush=True)
+    for name in sys.argv[2:] or NAMES:
+        path = next(p for p in sorted(folder.iterdir()) if p.name.startswith(name))
+        meshes = pymeshlab.MeshSet()
+        meshes.load_new_mesh(str(path))
+        start = time.perf_counter()
+        found = meshes.apply_filter(PLUSH)
+        seconds = time.perf_counter() - start
+        mesh = meshes.current_mesh()
+        points, faces, edges = mesh.vertex_matrix(), mesh.face_matrix(), seam_edges(mesh)
+        meshes.apply_filter(FLATTEN, method="LPFB")
+        measures = meshes.apply_filter("get_parametrization_measures")
+        preview = meshes.apply_filter("generate_sewn_preview")
+        print(
+            f"{name} {found['charts_number']} {found['darts_number']} "
+            f"{measures['max_area_change']:.3f} {symmetric_share(points, edges):.2f} "
+            f"{guided_share(points, faces, edges):.2f} {preview['mean_distance_share']:.4f} "
+            f"{seconds:.1f}",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,303 @@
+#include "devseg/plush/plush_seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "devseg/flatten/flatten.h"
+#include "devseg/parallel.h"
+#include "devseg/plush/limbs.h"
+#include "devseg/plush/patch_trial.h"
+#include "devseg/plush/seam_smoothing.h"
+#include "devseg/plush/symmetry.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+#include "unit/temporary_folder.h"
+
+namespace devseg {
+namespace {
+
+// Two balls on one axis with a waist between them, like a doll without arms.
+RawMesh doll(Index around = 32) {
+    std::vector<Vec2> profile;
+    for (int i = 0; i <= 40; ++i) {
+        const double t = shapes::pi * i / 40.0;
+        const double z = -2.0 * std::cos(t);
+        profile.emplace_back(i == 0 || i == 40 ? 0.0 : std::sin(t) * (0.6 + 0.4 * z * z / 2.0), z);
+    }
+    return shapes::revolve(profile, around);
+}
+
+PlushSeams segment(const Mesh& mesh, const PlushOptions& options,
+                   const std::vector<std::uint8_t>& hard = {}) {
+    Progress progress;
+    return segment_plush_seams(mesh, options, {}, hard, progress);
+}
+
+void expect_promises(const Mesh& mesh, const PlushOptions& options, const PlushSeams& seams) {
+    EXPECT_TRUE(checks::is_valid(mesh, seams.charts));
+    for (Index c = 0; c < seams.charts.count; ++c) {
+        const checks::Topology topology = checks::topology(mesh, seams.charts, c);
+        EXPECT_EQ(topology.euler, 1);
+        EXPECT_EQ(topology.loops, 1);
+    }
+    EXPECT_TRUE(seams.all_developable);
+    // 'Charts: Flatten' makes the maps that were accepted.
+    Progress progress;
+    const FlattenResult flat = flatten_charts(mesh, seams.charts, FlattenMethod::lpfb, progress);
+    EXPECT_EQ(flat.cuts, 0);
+    EXPECT_EQ(flat.charts.count, seams.charts.count);
+    for (const FlatChart& chart : flat.flat) {
+        const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+        EXPECT_EQ(checks::count_flips(problem.faces, chart.uv), 0);
+        double plane = 0.0;
+        std::vector<double> ratio;
+        for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+            const Triangle& t = problem.faces[f];
+            const Vec2 p = chart.uv[at(t[1])] - chart.uv[at(t[0])];
+            const Vec2 q = chart.uv[at(t[2])] - chart.uv[at(t[0])];
+            ratio.push_back(0.5 * (p.x() * q.y() - p.y() * q.x()) / problem.area[f]);
+            plane += ratio.back() * problem.area[f];
+        }
+        for (const double r : ratio) {
+            EXPECT_NEAR(r, 1.0, options.max_area_change);
+            EXPECT_NEAR(r * problem.total_area / plane, 1.0, options.max_area_change);
+        }
+        // Seams keep their length.
+        for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
+            const std::size_t n = (i + 1) % problem.boundary.size();
+            const double length =
+                (chart.uv[at(problem.boundary[n])] - chart.uv[at(problem.boundary[i])]).norm();
+            EXPECT_NEAR(length, problem.boundary_edge[i], 2e-3 * problem.boundary_edge[i] + 2e-4);
+        }
+    }
+}
+
+TEST(PlushSeams, PatchesOfBallAndDollLieFlat) {
+    for (const RawMesh& raw : {shapes::sphere(3), doll()}) {
+        const Mesh mesh = checks::gated(raw);
+        const PlushOptions options;
+        const PlushSeams seams = segment(mesh, options);
+        expect_promises(mesh, options, seams);
+        EXPECT_LE(seams.charts.count, 12);
+        EXPECT_GE(seams.charts.count, 2);
+        EXPECT_LT(seams.charts.count, seams.candidates);
+        EXPECT_LE(seams.max_area_change, options.max_area_change);
+    }
+}
+
+TEST(PlushSeams, SmallerBoundsTakeMoreSeam) {
+    const Mesh mesh = checks::gated(doll());
+    PlushOptions options;
+    options.max_area_change = 0.3;
+    const PlushSeams loose = segment(mesh, options);
+    options.max_area_change = 0.06;
+    const PlushSeams tight = segment(mesh, options);
+    expect_promises(mesh, options, tight);
+    EXPECT_GT(tight.charts.count + tight.darts, loose.charts.count + loose.darts);
+}
+
+TEST(PlushSeams, DevelopableSurfaceIsOnePatch) {
+    const Mesh mesh = checks::gated(shapes::cylinder_tube(24, 12));
+    const PlushSeams seams = segment(mesh, PlushOptions{});
+    EXPECT_EQ(seams.charts.count, 1);
+    expect_promises(mesh, PlushOptions{}, seams);
+}
+
+TEST(PlushSeams, MaterialBordersStay) {
+    const Mesh mesh = checks::gated(shapes::cylinder_tube(24, 12));
+    std::vector<std::uint8_t> hard(mesh.twin.size(), 0);
+    Index count = 0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin < 0)
+            continue;
+        const bool above = mesh.face_centers[at(h / 3)].z() > 0.0;
+        hard[at(h)] = above != (mesh.face_centers[at(twin / 3)].z() > 0.0) ? 1 : 0;
+        count += hard[at(h)];
+    }
+    ASSERT_EQ(count, 2 * 24);
+    const PlushSeams seams = segment(mesh, PlushOptions{}, hard);
+    EXPECT_EQ(seams.charts.count, 2);
+    for (std::size_t h = 0; h < hard.size(); ++h)
+        EXPECT_GE(seams.charts.seam[h], hard[h]);
+}
+
+TEST(PlushSeams, ResultDoesNotDependOnThreads) {
+    const Mesh mesh = checks::gated(doll());
+    set_thread_limit(1);
+    const PlushSeams one = segment(mesh, PlushOptions{});
+    set_thread_limit(0);
+    const PlushSeams all = segment(mesh, PlushOptions{});
+    EXPECT_EQ(one.charts.seam, all.charts.seam);
+    EXPECT_EQ(one.area_change, all.area_change);
+}
+
+TEST(PlushSeams, RefusesAndCancels) {
+    const Mesh mesh = checks::gated(doll());
+    PlushOptions options;
+    options.max_area_change = 0.0;
+    checks::error_of<InvalidParameter>([&] { segment(mesh, options); });
+    options = {};
+    options.max_extrema = -1;
+    checks::error_of<InvalidParameter>([&] { segment(mesh, options); });
+    for (const double when : {0.02, 0.3, 0.6}) {
+        Progress progress([&](double fraction, const char*) { return fraction < when; });
+        EXPECT_THROW(segment_plush_seams(mesh, PlushOptions{}, {}, {}, progress), Cancelled);
+    }
+}
+
+TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
+    RawMesh raw = shapes::torus(40, 20);
+    for (Vec3& p : raw.points)
+        p.x() += 0.3 * p.y() * p.y(); // bent: left and right stay, front and back differ
+    const Mesh mesh = checks::gated(raw);
+    const auto plane = find_mirror_plane(mesh, 0.02, Progress{});
+    ASSERT_TRUE(plane.has_value());
+    EXPECT_LT(plane->deviation, 1e-3);
+    EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
+    const std::vector<Index> image = mirror_vertices(mesh, *plane);
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        EXPECT_LT((plane->reflect(mesh.points[at(v)]) - mesh.points[at(image[at(v)])]).norm(),
+                  0.05);
+    const std::vector<std::uint8_t> side = sides_of(mesh, *plane);
+    const std::vector<Index> faces = mirror_faces(mesh, *plane, side);
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        EXPECT_NE(side[at(f)], side[at(faces[at(f)])]);
+}
+
+TEST(Symmetry, NoPlaneWhereThereIsNone) {
+    RawMesh raw = shapes::sphere(3);
+    for (Vec3& p : raw.points)
+        p += 0.5 * Vec3(std::sin(2.0 * p.y() + p.z()), std::sin(3.0 * p.z() + 1.0), p.x() * p.y());
+    EXPECT_FALSE(find_mirror_plane(checks::gated(raw), 0.01, Progress{}).has_value());
+}
+
+TEST(Skeleton, BonesOfCapsuleLieAlongItsAxis) {
+    const Mesh mesh = checks::gated(shapes::capped_cylinder(24, 60, 0.3, 4.0));
+    const Skeleton skeleton = extract_skeleton(mesh, Progress{});
+    ASSERT_FALSE(skeleton.empty());
+    for (const auto& [a, b] : skeleton.bones) {
+        const Vec3 bone = skeleton.joints[at(b)] - skeleton.joints[at(a)];
+        EXPECT_GT(std::abs(bone.normalized().z()), 0.95);
+    }
+    const BoneWeights weights = bone_weights(mesh, skeleton, Progress{});
+    for (const auto& row : weights) {
+        double sum = 0.0;
+        for (const auto& entry : row)
+            sum += entry.second;
+        EXPECT_NEAR(sum, 1.0, 1e-9);
+    }
+    EXPECT_TRUE(extract_skeleton(checks::gated(shapes::cylinder_tube(12, 6)), Progress{}).empty());
+}
+
+TEST(Skeleton, FilesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("bones.obj");
+    const auto write = [&](const char* text) { std::ofstream(path) << text; };
+    const auto read = [&] {
+        return read_skeleton(path, [](const Vec3& p) { return Vec3(0.5 * p); });
+    };
+    write("# bones\nv 0 0 0\nv 0 0 2\nv 0 1 2\nl 1 2 3\n");
+    const Skeleton skeleton = read();
+    EXPECT_EQ(skeleton.bones.size(), 2U);
+    EXPECT_EQ(skeleton.joints[1], Vec3(0.0, 0.0, 1.0));
+    write("v 0 0 0\nl 1 2\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "line 2"));
+    write("v 0 0\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "line 1"));
+    write("v 0 0 0\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "bone"));
+    std::remove(path.c_str());
+    EXPECT_TRUE(checks::contains(checks::error_of<FileError>(read), "cannot be read"));
+}
+
+TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
+    std::vector<Vec2> profile{{0.0, 3.0}};
+    for (int i = 0; i <= 20; ++i)
+        profile.emplace_back(0.25, 2.95 - 0.1 * i); // the finger, down to the ball
+    for (int i = 1; i < 30; ++i) {
+        const double t = 0.25 + (shapes::pi - 0.25) * i / 30.0;
+        profile.emplace_back(std::sin(t), std::cos(t));
+    }
+    profile.emplace_back(0.0, -1.0);
+    std::reverse(profile.begin(), profile.end());
+    const RawMesh raw = shapes::revolve(profile, 32);
+    const Mesh mesh = checks::gated(raw);
+    Index tip = 0;
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        if (mesh.points[at(v)].z() > mesh.points[at(tip)].z())
+            tip = v;
+    const auto limbs =
+        find_limbs(mesh, build_vertex_graph(mesh), mean_curvature(mesh), {tip}, Progress{});
+    ASSERT_EQ(limbs.size(), 1U);
+    SeamMarks seam(mesh.twin.size(), 0);
+    add_limb_seams(mesh, limbs, seam);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (seam[at(h)] != 0) {
+            const double z = mesh.points[at(mesh.origin(h))].z() * mesh.unit_length + 1.0;
+            EXPECT_NEAR(z, 0.95, 0.25); // in the model, where the finger meets the ball
+        }
+}
+
+TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
+    const auto accepted = [](const RawMesh& raw) {
+        const checks::Disk disk(raw);
+        return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, 0.15, false, Progress{})
+            .accepted;
+    };
+    EXPECT_TRUE(accepted(shapes::cylinder_tube(24, 8)));
+    EXPECT_TRUE(accepted(shapes::grid(6, 6)));
+    EXPECT_FALSE(accepted(shapes::hemisphere(32, 12)));
+}
+
+TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
+    const Mesh mesh = checks::gated(shapes::grid(8, 8));
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Vec3& a = mesh.points[at(mesh.origin(h))];
+        const Vec3& b = mesh.points[at(mesh.target(h))];
+        if ((std::abs(a.x()) < 1e-9 && std::abs(b.x()) < 1e-9) ||
+            (std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9))
+            mark(mesh, h, 1, seam);
+    }
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    const auto segments = find_segments(mesh, seam, {}, weight);
+    EXPECT_EQ(segments.size(), 4U);
+    for (const SeamSegment& segment : segments)
+        EXPECT_EQ(segment.half_edges.size(), 4U);
+    EXPECT_EQ(find_patches(mesh, seam).count, 4);
+    // Flat patches need no seam at all.
+    const SeamSetting setting{mesh, {}, weight, {}, 0.15, 100};
+    Progress progress;
+    remove_seams(setting, RemovalOptions{}, seam, progress);
+    EXPECT_EQ(find_patches(mesh, seam).count, 1);
+    EXPECT_EQ(find_segments(mesh, seam, {}, weight).size(), 0U);
+}
+
+TEST(SeamSmoothing, TeethGo) {
+    const Mesh mesh = checks::gated(shapes::grid(10, 10));
+    std::vector<Index> label(mesh.faces.size());
+    for (std::size_t f = 0; f < label.size(); ++f)
+        label[f] = mesh.face_centers[f].x() > 0.0 ? 1 : 0;
+    std::vector<Index> toothed = label;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+            if (mesh.twin[at(h)] >= 0 && label[at(f)] == 0 && f % 4 == 0 &&
+                label[at(mesh.twin[at(h)] / 3)] == 1)
+                toothed[at(f)] = 1;
+    EXPECT_NE(toothed, label);
+    remove_teeth(mesh, toothed);
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        int others = 0;
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+            others += mesh.twin[at(h)] >= 0 && toothed[at(mesh.twin[at(h)] / 3)] != toothed[at(f)];
+        EXPECT_LT(others, 2);
+    }
+}
+
+} // namespace
+} // namespace devseg
