@@ -82,5 +82,5 @@ def test_command_line_flattens_plush_with_lpfb(meshset: Callable, tmp_path: Path
     out = tmp_path / "out"
     assert main(["run", str(file), "-o", str(out), "--method", "plush", "--formats", "ply"]) == 0
     result = json.loads((out / "toy.json").read_text())
-    assert result["parameters"][FLATTEN]["method"] == "LPFB"
+    assert result["parameters"][FLATTEN]["method"] == 4  # LPFB
     assert result["parametrization"]["max_area_change"] <= 0.15

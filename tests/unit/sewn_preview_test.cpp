@@ -75,7 +75,6 @@ TEST(SewnPreview, LargerPiecesAreMissedByMore) {
 TEST(SewnPreview, Cancels) {
     const Mesh mesh = checks::gated(shapes::sphere(3));
     Progress progress([](double, const char*) { return false; });
-    progress.begin_phase("sewing", 1.0);
     EXPECT_THROW(sew_and_inflate(mesh, loose_faces(mesh, 1.0), {}, progress), Cancelled);
 }
 

@@ -26,7 +26,7 @@ constexpr double lpfb_area_change = 0.1;
 
 struct SewingMapOptions {
     // A map in which no face changes its area by more is good enough: no other one is tried.
-    double enough = 0.1;
+    double enough = 0.005;
     // As-rigid-as-possible energy of a nearly isometric map above which the chart is given up.
     double give_up_energy = std::numeric_limits<double>::infinity();
 };
