@@ -12,7 +12,8 @@ namespace devseg {
 
 namespace {
 
-constexpr double sheet_margin = 10.0; // mm around the pieces where no page says otherwise
+constexpr double most_pages_across = 200.0; // of one piece: more is a wrong scale
+constexpr double sheet_margin = 10.0;       // mm around the pieces where no page says otherwise
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
 constexpr double piece_gap = 3.0;  // mm
@@ -115,6 +116,11 @@ void nest_tiles(PatternLayout& layout, const std::vector<std::size_t>& large, bo
     double widest = 0.0;
     for (const std::size_t i : large)
         widest = std::max(widest, layout.pieces[i].box().sizes().norm() + piece_gap);
+    if (widest > most_pages_across * page.step().minCoeff())
+        throw InvalidParameter("mm_per_unit: expected pieces of at most " +
+                               number_text(most_pages_across, 0) + " pages, found one of " +
+                               number_text(widest / 1000.0, 1) +
+                               " m; give a smaller mm_per_unit or height_mm, or a larger page");
     const Index most = pages_along(widest, page.step().x());
     std::vector<SheetPiece> best;
     PatternSheet best_sheet;

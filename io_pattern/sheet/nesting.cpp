@@ -151,6 +151,10 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     std::size_t done = 0;
     for (const std::size_t i : order) {
         progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
+        // A piece longer than the sheet's diagonal fits in no pose; it may be far longer.
+        if (!grows &&
+            pieces[i]->box().sizes().maxCoeff() > std::hypot(options.width, options.height))
+            continue;
         const std::vector<ChartCells> poses = poses_of(*pieces[i], options, cell);
         for (std::size_t b = 0; b <= boards.size() && nesting.sheet[i] < 0; ++b) {
             Board fresh(cells(options.width), grows ? 0 : cells(options.height), grows);

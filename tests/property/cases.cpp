@@ -189,7 +189,8 @@ ParameterValues random_values(const FilterDeclaration& filter, Index faces,
             values[parameter.name] = random_real(parameter, random);
             break;
         default:
-            values[parameter.name] = random_text(random);
+            if (parameter.name != "skeleton_file") // no file of that name
+                values[parameter.name] = random_text(random);
         }
     }
     return values;
@@ -216,6 +217,9 @@ std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMes
         EXPECT_TRUE(may_refuse) << "refused: " << error.what();
     } catch (const InvalidParameter& error) {
         EXPECT_TRUE(may_refuse) << "refused: " << error.what();
+    } catch (const NumericalFailure& error) {
+        // Exact developability may be out of reach; everything else must find an answer.
+        EXPECT_NE(filter.menu_name.find("Deform"), std::string::npos) << error.what();
     } catch (const std::exception& error) {
         ADD_FAILURE() << error.what();
     }

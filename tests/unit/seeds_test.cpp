@@ -70,7 +70,7 @@ TEST(Seeds, AllFacesWhenAsManyAreAskedFor) {
 }
 
 TEST(Seeds, FacesThatCoincideAreStillDistinct) {
-    // Two fins of four equal faces each: most centroids coincide.
+    // Four equal faces beside a square: most centroids coincide.
     RawMesh raw;
     raw.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     for (int i = 0; i < 4; ++i) {
@@ -79,9 +79,11 @@ TEST(Seeds, FacesThatCoincideAreStillDistinct) {
         raw.faces.push_back({n, n + 1, n + 2});
     }
     raw.faces.push_back({0, 1, 3});
+    raw.faces.push_back({0, 3, 2});
     const Mesh mesh = checks::gated(raw);
-    const std::vector<Index> seeds = seeds_of(mesh, 5);
-    EXPECT_EQ(std::set<Index>(seeds.begin(), seeds.end()).size(), 5U);
+    ASSERT_EQ(mesh.face_count(), 6);
+    const std::vector<Index> seeds = seeds_of(mesh, 6);
+    EXPECT_EQ(std::set<Index>(seeds.begin(), seeds.end()).size(), 6U);
 }
 
 TEST(Seeds, EveryComponentGetsOneBeforeAnyGetsTwo) {

@@ -165,7 +165,9 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     }
     for (const Index f : thin)
         repair.restore_area(f, twice_area(exact, f));
-    return static_cast<Index>(flipped.size());
+    const auto lost = std::count_if(flipped.begin(), flipped.end(),
+                                    [&](Index f) { return !positive(faces, uv, f); });
+    return static_cast<Index>(lost);
 }
 
 } // namespace devseg
