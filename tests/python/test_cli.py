@@ -130,7 +130,8 @@ def test_every_shape_works_or_fails_in_one_line(
         assert error.startswith("devseg: error: ") and error.count("\n") == 1
         assert not out.exists()
     else:
-        assert error == ""
+        assert all(line.startswith("devseg: warning: ") for line in error.splitlines())
+        assert (error != "") == (name in ("three fins", "moebius"))  # what was worked around
         files = sorted(p.name for p in out.iterdir())
         assert files == [f"{name}.{e}" for e in ("json", "ply", "png", "svg")]
         flat = json.loads((out / f"{name}.json").read_text())["parametrization"]
