@@ -229,10 +229,16 @@ def test_charts_get_colors_and_their_pattern_is_exported(
 def test_every_filter_is_found_explains_itself_and_runs(
     window: MeshLabWindow, flavour: str, tmp_path: Path
 ) -> None:
-    for step in hosts.prepared(hosts.declarations()[0])[:2]:
+    steps = hosts.prepared(hosts.declarations()[0])[:2]
+    for step in steps:
         run_filter(window, step, tmp_path)
-    # Those that make a layer come last: they make it the one that filters work on.
+    # Those that make a layer come last: they make it the one that filters work on, and the next one
+    # needs charts there.
     table = hosts.declarations()
+    on_new_layer = False
     for filter_ in sorted(table, key=reference.makes_layer):
+        for step in steps if on_new_layer else ():
+            run_filter(window, step, tmp_path)
         run_filter(window, filter_, tmp_path)
+        on_new_layer = reference.makes_layer(filter_)
         hosts.record(f"window-{flavour}", filter_["menu_name"], "found, as declared, runs")
