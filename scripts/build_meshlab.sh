@@ -11,7 +11,7 @@ build_meshlab() {
     local version=2025.07 target=$devseg_cache/meshlab-2025.07-window part jobs
     [[ -x $target/meshlab ]] && return
     mkdir -p "$devseg_cache"
-    part=$(mktemp -d "$devseg_cache/part.XXXXXX") || return 1
+    part=$(mktemp -d -p "$devseg_cache") || return 1
     say "fetching the MeshLab $version sources"
     fetch_tree "$version" "$part/tree" all || {
         rm -rf "$part"

@@ -136,7 +136,7 @@ cached_headers() {
     mkdir -p "$devseg_cache" || return 1
     say "fetching the MeshLab $version headers (once, 5 to 12 MB)"
     # Filled beside its final place and renamed: an interrupted run leaves no half tree behind.
-    part=$(mktemp -d "$devseg_cache/part.XXXXXX") || return 1
+    part=$(mktemp -d -p "$devseg_cache") || return 1
     if fetch_tree "$version" "$part/tree"; then
         rm -rf "$headers_dir"
         # Where another run was faster, its tree is as good as ours.

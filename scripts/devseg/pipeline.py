@@ -81,11 +81,7 @@ class Session:
 
         The host drops texts from results, but logs them.
         """
-        self.meshes.set_verbosity(True)
-        try:
-            results = self.apply(name, **parameters)
-        finally:
-            self.meshes.set_verbosity(False)
+        results = self.apply(name, **parameters)
         values = tuple(f"{result}: " for result in results)
         self.warnings += [
             note.rstrip()
@@ -108,6 +104,9 @@ class Session:
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
         errors = (host.pymeshlab().PyMeshLabException, RuntimeError, MemoryError)
+        # A host that is not verbose swallows what is printed, and where a filter fails it goes on so
+        # for all meshes to come.
+        self.meshes.set_verbosity(True)
         try:
             with host.captured() as chatter:
                 result = function(*args, **parameters)
@@ -115,6 +114,8 @@ class Session:
             return result
         except errors as error:
             raise DevsegError(f"{self.path}: {host_message(error)}") from error
+        finally:
+            self.meshes.set_verbosity(False)
 
 
 def versions() -> dict[str, str]:

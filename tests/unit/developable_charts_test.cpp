@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/cut/border_path.h"
 #include "devseg/cut/disks.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/metrics/segmentation.h"

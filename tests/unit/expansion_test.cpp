@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/cut/border_path.h"
 #include "devseg/segment/fragments.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"

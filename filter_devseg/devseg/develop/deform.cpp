@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <sstream>
 #include <utility>
 
+#include "devseg/cut/border_path.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/develop/projection.h"
 #include "devseg/errors.h"
@@ -47,39 +46,6 @@ std::vector<Index> inner_vertices(const Mesh& mesh, const std::vector<std::uint8
 }
 
 namespace {
-
-// Cuts along the shortest path from the vertex to the border of its chart; false where it has none.
-bool cut_to_border(const Mesh& mesh, const std::vector<Index>& leaving, Index start,
-                   std::vector<std::uint8_t>& on_border, std::vector<std::uint8_t>& seam) {
-    std::vector<double> distance(mesh.points.size(), std::numeric_limits<double>::infinity());
-    std::vector<Index> from(mesh.points.size(), -1); // half-edge that arrives
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    distance[at(start)] = 0.0;
-    queue.emplace(0.0, start);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[at(v)])
-            continue;
-        if (on_border[at(v)] != 0) {
-            for (Index u = v; u != start; u = mesh.origin(from[at(u)])) {
-                on_border[at(mesh.origin(from[at(u)]))] = 1;
-                seam[at(from[at(u)])] = seam[at(mesh.twin[at(from[at(u)])])] = 1;
-            }
-            return true;
-        }
-        visit_star(mesh, leaving[at(v)], [&, d = d](Index h) {
-            const double through = d + mesh.edge_length(h);
-            if (through < distance[at(mesh.target(h))]) {
-                distance[at(mesh.target(h))] = through;
-                from[at(mesh.target(h))] = h;
-                queue.emplace(through, mesh.target(h));
-            }
-        });
-    }
-    return false;
-}
 
 class Deformation {
 public:
@@ -277,8 +243,7 @@ private:
         std::vector<std::uint8_t> relieved(mesh_.points.size(), 0);
         bool any = false;
         for (const auto& [size, v] : worst) {
-            if (on_border[at(v)] != 0 || relieved[at(v)] != 0 ||
-                !cut_to_border(mesh_, leaving_, v, on_border, result_.charts.seam))
+            if (on_border[at(v)] != 0 || relieved[at(v)] != 0 || !cut_to_border(v, on_border))
                 continue;
             ++result_.added_slits;
             any = true;
@@ -289,6 +254,20 @@ private:
         if (any)
             constrain_all();
         return any;
+    }
+
+    // False where the vertex has no way to the border of its chart.
+    bool cut_to_border(Index v, std::vector<std::uint8_t>& on_border) {
+        const std::vector<Index>& chart = result_.charts.chart;
+        std::vector<Index> faces;
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            if (chart[at(f)] == chart[at(leaving_[at(v)] / 3)])
+                faces.push_back(f);
+        const std::vector<Index> path = path_to_border(mesh_, faces, result_.charts.seam, v);
+        mark_cuts(mesh_, path, result_.charts.seam);
+        for (const Index h : path)
+            on_border[at(mesh_.origin(h))] = on_border[at(mesh_.target(h))] = 1;
+        return !path.empty();
     }
 
     const Mesh& mesh_;

@@ -7,7 +7,6 @@
 #include "devseg/cut/disks.h"
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/reattach.h"
-#include "devseg/flatten/slivers.h"
 #include "devseg/metrics/overlap.h"
 #include "devseg/parallel.h"
 

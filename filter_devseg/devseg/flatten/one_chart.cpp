@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "devseg/develop/unfold.h"
 #include "devseg/errors.h"
 #include "devseg/flatten/abf.h"
 #include "devseg/flatten/arap.h"
@@ -23,6 +22,7 @@
 #include "devseg/flatten/slits.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
+#include "devseg/flatten/unfold.h"
 #include "devseg/metrics/overlap.h"
 
 namespace devseg {

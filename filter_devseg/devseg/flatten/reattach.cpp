@@ -3,48 +3,53 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <utility>
 
-#include "devseg/develop/unfold.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/rest_shape.h"
+#include "devseg/flatten/unfold.h"
 
 namespace devseg {
 
 namespace {
 
+constexpr double sliver_share = 0.01; // of the mesh's area: smaller parts are slivers
+// What a joined map may lose: excess of its energy, as a share of the mesh's area, and the stretch
+// of its worst face, which may in any case be as high as that of the parts.
+constexpr double allowed_excess = 2e-4;
+constexpr double allowed_stretch = 1.5;
 constexpr double least_hinge = 0.3; // length of the edge over the root of the part's area
 
+// Joins charts. Labels of charts that are joined to others fall out of use until `renumber`.
 class Reattachment {
 public:
     Reattachment(const Mesh& mesh, double tolerance, FlattenResult& result)
         : mesh_(mesh), tolerance_(tolerance), result_(result) {}
 
-    int run(Progress& progress) {
-        std::vector<Index> parts(result_.flat.size());
-        std::iota(parts.begin(), parts.end(), 0);
-        std::vector<double> area(parts.size(), 0.0);
-        for (std::size_t c = 0; c < parts.size(); ++c)
-            for (const Index f : result_.flat[c].surface.face)
-                area[c] += mesh_.face_areas[at(f)];
-        std::stable_sort(parts.begin(), parts.end(),
-                         [&](Index a, Index b) { return area[at(a)] < area[at(b)]; });
-        int number = 0;
-        for (const Index part : parts) {
-            progress.update(0.0);
-            if (result_.flat[at(part)].cut_off && result_.flat[at(part)].developed)
-                number += attach(part, least_hinge * std::sqrt(area[at(part)])) ? 1 : 0;
-        }
-        if (number > 0)
-            renumber();
-        return number;
+    // Parts that were cut off: (area, chart), the smallest first.
+    std::vector<std::pair<double, Index>> parts() const {
+        std::vector<std::pair<double, Index>> parts;
+        for (std::size_t c = 0; c < result_.flat.size(); ++c)
+            if (result_.flat[c].cut_off)
+                parts.emplace_back(area_of(mesh_, result_.flat[c].surface), static_cast<Index>(c));
+        std::sort(parts.begin(), parts.end());
+        return parts;
     }
 
-private:
-    bool attach(Index part, double least) {
+    bool glue(Index part, FlattenMethod method, Progress& progress) {
+        const std::vector<Index> others =
+            neighbour_labels(mesh_, result_.charts.chart, flat(part).surface);
+        return std::any_of(others.begin(), others.end(), [&](Index other) {
+            progress.check();
+            return try_to_glue(part, other, method, progress);
+        });
+    }
+
+    bool hinge(Index part, double least) {
         std::vector<std::pair<double, Index>> hinges;
-        for (const Index f : result_.flat[at(part)].surface.face)
+        for (const Index f : flat(part).surface.face)
             for (Index h = 3 * f; h < 3 * f + 3; ++h) {
                 const Index twin = mesh_.twin[at(h)];
                 if (twin >= 0 && result_.charts.chart[at(twin / 3)] != part &&
@@ -53,18 +58,58 @@ private:
             }
         std::sort(hinges.begin(), hinges.end(), std::greater<>());
         return std::any_of(hinges.begin(), hinges.end(),
-                           [&](const auto& hinge) { return try_hinge(part, hinge.second); });
+                           [&](const auto& edge) { return try_hinge(part, edge.second); });
     }
 
+    // Numbers in the order of first faces, as everywhere.
+    void renumber() {
+        std::vector<FlatChart> flat;
+        const std::vector<Index> old = result_.charts.chart;
+        result_.charts = make_chart_map(mesh_, old, result_.charts.seam, false);
+        for (const ChartSurface& surface : extract_charts(mesh_, result_.charts))
+            flat.push_back(std::move(result_.flat[at(old[at(surface.face.front())])]));
+        result_.flat = std::move(flat);
+    }
+
+private:
+    FlatChart& flat(Index chart) { return result_.flat[at(chart)]; }
+
+    // Along the whole common border: the map of both is made anew.
+    bool try_to_glue(Index part, Index other, FlattenMethod method, Progress& progress) {
+        const FlatChart& small = flat(part);
+        const FlatChart& large = flat(other);
+        std::vector<std::uint8_t> seam = result_.charts.seam;
+        FlatChart joined;
+        joined.surface = join_surfaces(mesh_, small.surface, large.surface, seam);
+        if (!joined.surface.is_disk())
+            return false;
+        // What can be folded of paper stays so.
+        if ((small.developed || large.developed) &&
+            !unfold(make_flattening_problem(mesh_, joined.surface), joined.surface.twin))
+            return false;
+        if (!flatten_one(mesh_, method, tolerance_, joined, progress).empty())
+            return false;
+        const double before = excess_of(small) + excess_of(large);
+        const double worst =
+            std::max({allowed_stretch, largest_stretch(small), largest_stretch(large)});
+        if (excess_of(joined) > before + allowed_excess * mesh_.total_area ||
+            largest_stretch(joined) > worst)
+            return false;
+        result_.charts.seam = std::move(seam);
+        replace(part, other, std::move(joined));
+        return true;
+    }
+
+    // Across one edge: an exact development stays one.
     bool try_hinge(Index part, Index h) {
         const Index twin = mesh_.twin[at(h)];
         const Index other = result_.charts.chart[at(twin / 3)];
-        if (!result_.flat[at(other)].developed)
+        if (!flat(other).developed)
             return false;
         std::vector<std::uint8_t>& seam = result_.charts.seam;
         seam[at(h)] = seam[at(twin)] = 0;
-        std::vector<Index> faces = result_.flat[at(other)].surface.face;
-        const std::vector<Index>& added = result_.flat[at(part)].surface.face;
+        std::vector<Index> faces = flat(other).surface.face;
+        const std::vector<Index>& added = flat(part).surface.face;
         faces.insert(faces.end(), added.begin(), added.end());
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
@@ -73,10 +118,8 @@ private:
             seam[at(h)] = seam[at(twin)] = 1;
             return false;
         }
-        joined.cut_off = result_.flat[at(other)].cut_off;
-        for (const Index f : added)
-            result_.charts.chart[at(f)] = other;
-        result_.flat[at(other)] = std::move(joined);
+        joined.cut_off = flat(other).cut_off;
+        replace(part, other, std::move(joined));
         return true;
     }
 
@@ -92,14 +135,22 @@ private:
         return overlapping_pairs(chart.surface, chart.uv, tolerance_).empty();
     }
 
-    // Numbers in the order of first faces, as everywhere.
-    void renumber() {
-        std::vector<FlatChart> flat;
-        const std::vector<Index> old = result_.charts.chart;
-        result_.charts = make_chart_map(mesh_, old, result_.charts.seam, false);
-        for (const ChartSurface& surface : extract_charts(mesh_, result_.charts))
-            flat.push_back(std::move(result_.flat[at(old[at(surface.face.front())])]));
-        result_.flat = std::move(flat);
+    void replace(Index part, Index other, FlatChart joined) {
+        for (const Index f : flat(part).surface.face)
+            result_.charts.chart[at(f)] = other;
+        flat(other) = std::move(joined);
+    }
+
+    double excess_of(const FlatChart& chart) const {
+        return (chart.energy - 1.0) * area_of(mesh_, chart.surface);
+    }
+
+    double largest_stretch(const FlatChart& chart) const {
+        const FlatteningProblem problem = make_flattening_problem(mesh_, chart.surface);
+        double largest = 1.0;
+        for (std::size_t f = 0; f < problem.faces.size(); ++f)
+            largest = std::max(largest, face_stretch(problem, chart.uv, f));
+        return largest;
     }
 
     const Mesh& mesh_;
@@ -109,8 +160,29 @@ private:
 
 } // namespace
 
+void hand_over_slivers(const Mesh& mesh, FlattenMethod method, double tolerance,
+                       FlattenResult& result, Progress& progress) {
+    Reattachment reattachment(mesh, tolerance, result);
+    bool joined = false;
+    for (const auto& [area, part] : reattachment.parts())
+        if (area < sliver_share * mesh.total_area)
+            joined = reattachment.glue(part, method, progress) || joined;
+    if (joined)
+        reattachment.renumber();
+}
+
 int reattach_parts(const Mesh& mesh, double tolerance, FlattenResult& result, Progress& progress) {
-    return Reattachment(mesh, tolerance, result).run(progress);
+    Reattachment reattachment(mesh, tolerance, result);
+    int number = 0;
+    for (const auto& [area, part] : reattachment.parts()) {
+        progress.update(0.0);
+        if (result.flat[at(part)].developed &&
+            reattachment.hinge(part, least_hinge * std::sqrt(area)))
+            ++number;
+    }
+    if (number > 0)
+        reattachment.renumber();
+    return number;
 }
 
 } // namespace devseg

@@ -1,6 +1,10 @@
 #include "devseg/mesh/charts.h"
 
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace devseg {
 
@@ -128,6 +132,63 @@ std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& chart
                                     groups.faces.begin() + groups.begin[at(c) + 1]},
                                    charts.seam, local_face));
     return surfaces;
+}
+
+std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
+                                  std::vector<std::uint8_t> seam) {
+    std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
+    for (const Index f : faces)
+        inside[at(f)] = 1;
+    for (const Index f : faces)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = mesh.twin[at(h)];
+            if (twin >= 0 && inside[at(twin / 3)] == 0)
+                seam[at(h)] = seam[at(twin)] = 1;
+        }
+    return seam;
+}
+
+ChartSurface join_surfaces(const Mesh& mesh, const ChartSurface& a, const ChartSurface& b,
+                           std::vector<std::uint8_t>& seam) {
+    std::vector<std::uint8_t> in_b(mesh.faces.size(), 0);
+    for (const Index f : b.face)
+        in_b[at(f)] = 1;
+    for (const Index f : a.face)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = mesh.twin[at(h)];
+            if (twin >= 0 && in_b[at(twin / 3)] != 0)
+                seam[at(h)] = seam[at(twin)] = 0;
+        }
+    std::vector<Index> faces;
+    std::merge(a.face.begin(), a.face.end(), b.face.begin(), b.face.end(),
+               std::back_inserter(faces));
+    return extract_surface(mesh, std::move(faces), seam);
+}
+
+double area_of(const Mesh& mesh, const ChartSurface& surface) {
+    double area = 0.0;
+    for (const Index f : surface.face)
+        area += mesh.face_areas[at(f)];
+    return area;
+}
+
+std::vector<Index> neighbour_labels(const Mesh& mesh, const std::vector<Index>& label,
+                                    const ChartSurface& chart) {
+    std::map<Index, double> border;
+    for (const Index f : chart.face)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index twin = mesh.twin[at(h)];
+            if (twin >= 0 && label[at(twin / 3)] != label[at(f)])
+                border[label[at(twin / 3)]] += mesh.edge_length(h);
+        }
+    std::vector<std::pair<double, Index>> order;
+    for (const auto& [other, length] : border)
+        order.emplace_back(-length, other);
+    std::sort(order.begin(), order.end());
+    std::vector<Index> labels;
+    for (const auto& entry : order)
+        labels.push_back(entry.second);
+    return labels;
 }
 
 Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {

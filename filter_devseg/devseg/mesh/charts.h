@@ -55,7 +55,23 @@ struct ChartSurface {
 ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
                              const std::vector<std::uint8_t>& seam);
 
-/// The same for each chart, in order of their labels.
+/// `seam` with the edges between the faces and others marked as well.
+std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
+                                  std::vector<std::uint8_t> seam);
+
+/// The faces of two charts as one: the edges between them are no cuts any more, in `seam` (3 #F)
+/// either.
+ChartSurface join_surfaces(const Mesh& mesh, const ChartSurface& a, const ChartSurface& b,
+                           std::vector<std::uint8_t>& seam);
+
+/// Area of the faces, internal units squared.
+double area_of(const Mesh& mesh, const ChartSurface& surface);
+
+/// Other labels (#F) beside the faces of a chart, those with the longest common border first.
+std::vector<Index> neighbour_labels(const Mesh& mesh, const std::vector<Index>& label,
+                                    const ChartSurface& chart);
+
+/// The same as extract_surface for each chart, in order of their labels.
 std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts);
 
 /// The surface as a mesh of its own, cut open along its seams; faces and vertices keep their order.

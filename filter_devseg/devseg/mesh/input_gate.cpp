@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "devseg/errors.h"
+#include "devseg/mesh/weld.h"
 
 namespace devseg {
 
@@ -58,8 +59,8 @@ void require_finite(const RawMesh& raw) {
                           bad);
 }
 
-// Centre and scale: afterwards the bounding box is about 1 wide. Returns where its middle was. The factor is a power of two,
-// which changes no digit.
+// Centre and scale: afterwards the bounding box is about 1 wide. Returns where its middle was. The
+// factor is a power of two, which changes no digit.
 Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
     Vec3 high = -low;
@@ -107,37 +108,6 @@ Buckets<Item> sort_into_buckets(Index item_count, Index bucket_count, BucketOf b
         std::sort(result.items.begin() + result.begin[at(b)],
                   result.items.begin() + result.begin[at(b) + 1]);
     return result;
-}
-
-// Files such as STL hold separate triangles: where no two faces share a vertex, those with the same
-// coordinates are one. Returns how many there are less, 0 for any other mesh.
-Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
-    std::vector<std::uint8_t> used(raw.points.size(), 0);
-    std::vector<Index> corners;
-    for (const Triangle& t : faces)
-        for (const Index v : t) {
-            if (used[at(v)]++ != 0)
-                return 0;
-            corners.push_back(v);
-        }
-    const auto key = [&](Index v) {
-        const Vec3& p = raw.points[at(v)];
-        return std::make_tuple(p.x(), p.y(), p.z());
-    };
-    std::sort(corners.begin(), corners.end(), [&](Index a, Index b) {
-        return std::make_pair(key(a), a) < std::make_pair(key(b), b);
-    });
-    std::vector<Index> first(raw.points.size(), -1);
-    Index less = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const bool same = i > 0 && key(corners[i]) == key(corners[i - 1]);
-        first[at(corners[i])] = same ? first[at(corners[i - 1])] : corners[i];
-        less += same ? 1 : 0;
-    }
-    for (Triangle& t : faces)
-        for (Index& v : t)
-            v = first[at(v)];
-    return less;
 }
 
 struct FaceSelection {

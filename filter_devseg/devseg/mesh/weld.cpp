@@ -74,6 +74,35 @@ std::size_t count_duplicates(const std::vector<Triangle>& faces) {
 
 } // namespace
 
+Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
+    std::vector<std::uint8_t> used(raw.points.size(), 0);
+    std::vector<Index> corners;
+    for (const Triangle& t : faces)
+        for (const Index v : t) {
+            if (used[at(v)]++ != 0)
+                return 0;
+            corners.push_back(v);
+        }
+    const auto key = [&](Index v) {
+        const Vec3& p = raw.points[at(v)];
+        return std::make_tuple(p.x(), p.y(), p.z());
+    };
+    std::sort(corners.begin(), corners.end(), [&](Index a, Index b) {
+        return std::make_pair(key(a), a) < std::make_pair(key(b), b);
+    });
+    std::vector<Index> first(raw.points.size(), -1);
+    Index less = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const bool same = i > 0 && key(corners[i]) == key(corners[i - 1]);
+        first[at(corners[i])] = same ? first[at(corners[i - 1])] : corners[i];
+        less += same ? 1 : 0;
+    }
+    for (Triangle& t : faces)
+        for (Index& v : t)
+            v = first[at(v)];
+    return less;
+}
+
 WeldedMesh weld_borders(const RawMesh& raw) {
     const auto place = [&](Index v) -> const Vec3& { return raw.points[at(v)]; };
     std::vector<Edge> edges = border_edges(raw);

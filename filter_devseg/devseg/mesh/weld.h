@@ -1,9 +1,14 @@
-// Borders that lie on each other, joined.
+// Vertices at the same place, joined.
 #pragma once
 
 #include "devseg/mesh/input_gate.h"
 
 namespace devseg {
+
+/// Files such as STL hold separate triangles: where no two faces share a vertex, those with the
+/// same coordinates become one in `faces`. Returns how many there are less, 0 for any other mesh.
+/// Indices must be in range.
+Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces);
 
 /// Faces of the mesh with new vertex indices: files that give every vertex one place in the texture
 /// are cut along all seams, and the two sides of a cut have the same coordinates to the last bit.

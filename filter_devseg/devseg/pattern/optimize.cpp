@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numeric>
 
 #include "devseg/errors.h"
@@ -93,13 +92,6 @@ bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
     return true;
 }
 
-double area_of(const Mesh& mesh, const ChartSurface& surface) {
-    double area = 0.0;
-    for (const Index f : surface.face)
-        area += mesh.face_areas[at(f)];
-    return area;
-}
-
 // Mean fitting error of the small chart's faces with the proxy of both charts together.
 double joint_error(const Mesh& mesh, const ChartSurface& small, const ChartSurface& neighbour) {
     NormalMoments moments;
@@ -133,19 +125,9 @@ public:
     // Joins the chart to the first neighbour that takes it; `done` is the share of the work so far.
     bool join(std::size_t c, double done) {
         done_ = done;
-        const FlatChart& small = layout_.flat[c];
-        std::map<Index, double> border; // length, by neighbour
-        for (const Index f : small.surface.face)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && label_[at(twin / 3)] != static_cast<Index>(c))
-                    border[label_[at(twin / 3)]] += mesh_.edge_length(h);
-            }
-        std::vector<std::pair<Index, double>> order(border.begin(), border.end());
-        std::stable_sort(order.begin(), order.end(),
-                         [](const auto& a, const auto& b) { return a.second > b.second; });
+        const std::vector<Index> order = neighbour_labels(mesh_, label_, layout_.flat[c].surface);
         return std::any_of(order.begin(), order.end(),
-                           [&](const auto& neighbour) { return join(c, at(neighbour.first)); });
+                           [&](Index neighbour) { return join(c, at(neighbour)); });
     }
 
 private:
@@ -155,18 +137,8 @@ private:
         if (joint_error(mesh_, small.surface, neighbour.surface) > options_.merge_threshold)
             return false;
         std::vector<std::uint8_t> seam = layout_.charts.seam;
-        for (const Index f : small.surface.face)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && label_[at(twin / 3)] == static_cast<Index>(n))
-                    seam[at(h)] = seam[at(twin)] = 0;
-            }
-        std::vector<Index> faces;
-        std::merge(small.surface.face.begin(), small.surface.face.end(),
-                   neighbour.surface.face.begin(), neighbour.surface.face.end(),
-                   std::back_inserter(faces));
         FlatChart both;
-        both.surface = extract_surface(mesh_, std::move(faces), seam);
+        both.surface = join_surfaces(mesh_, small.surface, neighbour.surface, seam);
         const double limit =
             std::max(energy_of(mesh_, small), energy_of(mesh_, neighbour)) + energy_increase;
         if (!both.surface.is_disk() ||

@@ -96,6 +96,29 @@ std::vector<Index> seam_degrees(const Mesh& mesh, const SeamMarks& seam) {
     return degree;
 }
 
+std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& seam,
+                                           const std::vector<Index>& faces) {
+    std::vector<std::vector<Index>> patches;
+    std::vector<std::uint8_t> seen(mesh.faces.size(), 0);
+    for (const Index start : faces) {
+        if (seen[at(start)] != 0)
+            continue;
+        std::vector<Index> patch{start};
+        seen[at(start)] = 1;
+        for (std::size_t k = 0; k < patch.size(); ++k)
+            for (Index h = 3 * patch[k]; h < 3 * patch[k] + 3; ++h) {
+                const Index twin = mesh.twin[at(h)];
+                if (twin >= 0 && seam[at(h)] == 0 && seen[at(twin / 3)] == 0) {
+                    seen[at(twin / 3)] = 1;
+                    patch.push_back(twin / 3);
+                }
+            }
+        std::sort(patch.begin(), patch.end());
+        patches.push_back(std::move(patch));
+    }
+    return patches;
+}
+
 FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam) {
     return face_components(mesh, [&](Index h) { return seam[at(h)] == 0; });
 }

@@ -31,6 +31,10 @@ std::vector<SeamSegment> find_segments(const Mesh& mesh, const SeamMarks& seam,
 /// Seam edges at each vertex, #V; the mesh's own boundary edges count too.
 std::vector<Index> seam_degrees(const Mesh& mesh, const SeamMarks& seam);
 
+/// The patches that hold the given faces, each with its faces in ascending order.
+std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& seam,
+                                           const std::vector<Index>& faces);
+
 /// The labels of the patches, #F: the components of the faces over edges that are no seam.
 FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam);
 

@@ -330,25 +330,7 @@ private:
         for (const Index p : removal.patches)
             open.insert(open.end(), faces_[at(p)].begin(), faces_[at(p)].end());
         std::sort(open.begin(), open.end());
-        std::vector<std::vector<Index>> parts;
-        std::vector<std::uint8_t> seen(s_.mesh.faces.size(), 0);
-        for (const Index start : open) {
-            if (seen[at(start)] != 0)
-                continue;
-            std::vector<Index> part{start};
-            seen[at(start)] = 1;
-            for (std::size_t k = 0; k < part.size(); ++k)
-                for (Index h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
-                    const Index twin = s_.mesh.twin[at(h)];
-                    if (twin >= 0 && marks[at(h)] == 0 && seen[at(twin / 3)] == 0) {
-                        seen[at(twin / 3)] = 1;
-                        part.push_back(twin / 3);
-                    }
-                }
-            std::sort(part.begin(), part.end());
-            parts.push_back(std::move(part));
-        }
-        return parts;
+        return patches_of(s_.mesh, marks, open);
     }
 
     void try_windows(Removal& removal) const {

@@ -124,24 +124,7 @@ private:
         for (const Index h : path)
             for (const Index side : {h, s_.mesh.twin[at(h)]})
                 start.push_back(side / 3);
-        std::vector<std::vector<Index>> parts;
-        std::vector<std::uint8_t> seen(s_.mesh.faces.size(), 0);
-        for (const Index f : start) {
-            if (seen[at(f)] != 0)
-                continue;
-            std::vector<Index> part{f};
-            seen[at(f)] = 1;
-            for (std::size_t k = 0; k < part.size(); ++k)
-                for (Index h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
-                    const Index twin = s_.mesh.twin[at(h)];
-                    if (twin >= 0 && marks[at(h)] == 0 && seen[at(twin / 3)] == 0) {
-                        seen[at(twin / 3)] = 1;
-                        part.push_back(twin / 3);
-                    }
-                }
-            std::sort(part.begin(), part.end());
-            parts.push_back(std::move(part));
-        }
+        const std::vector<std::vector<Index>> parts = patches_of(s_.mesh, marks, start);
         std::vector<std::uint8_t> fits(parts.size(), 0);
         parallel_for(
             static_cast<int>(parts.size()),

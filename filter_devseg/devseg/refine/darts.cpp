@@ -6,9 +6,8 @@
 #include <queue>
 #include <utility>
 
-#include "devseg/cut/join_loops.h"
+#include "devseg/cut/border_path.h"
 #include "devseg/parallel.h"
-#include "devseg/segment/expansion.h"
 
 namespace devseg {
 
@@ -23,11 +22,6 @@ struct Dart {
     TrialMap map;            // of the chart with the dart
     double length = 0.0;
 };
-
-void mark(const Mesh& mesh, const std::vector<Index>& path, std::vector<std::uint8_t>& seam) {
-    for (const Index h : path)
-        seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
-}
 
 // The corner of a face around which the surface bends most: where a cone's tip would be.
 Index sharpest_corner(const Mesh& mesh, Index face) {
@@ -66,7 +60,7 @@ public:
             Dart best = find_best();
             if (best.path.empty())
                 break;
-            mark(mesh_, best.path, seam_);
+            mark_cuts(mesh_, best.path, seam_);
             map_ = best.map;
             darts.push_back(std::move(best));
         }
@@ -86,7 +80,7 @@ private:
             for (const Index h : dart.path)
                 dart.length += mesh_.edge_length(h);
             std::vector<std::uint8_t> seam = seam_;
-            mark(mesh_, dart.path, seam);
+            mark_cuts(mesh_, dart.path, seam);
             TrialEffort effort;
             effort.wanted_l2 = options_.chart.l2;
             dart.map = try_chart(mesh_, faces_, seam, effort, progress_);
@@ -140,58 +134,12 @@ Index cut_darts(const Mesh& mesh, const DartOptions& options, Draft& draft, Prog
     Index count = 0;
     for (std::size_t c = 0; c < darts.size(); ++c)
         for (const Dart& dart : darts[c]) {
-            mark(mesh, dart.path, draft.seam);
+            mark_cuts(mesh, dart.path, draft.seam);
             draft.tips.push_back(dart.tip);
             draft.map[c] = dart.map;
             ++count;
         }
     return count;
-}
-
-std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
-                                  const std::vector<std::uint8_t>& seam, Index vertex) {
-    const ChartSurface s = extract_surface(mesh, faces, enclose(mesh, faces, seam));
-    std::vector<std::uint8_t> goal(s.vertex.size(), 0);
-    for (const std::vector<Index>& loop : s.loops)
-        for (const Index h : loop)
-            goal[at(s.origin(h))] = 1;
-    const auto found = std::find(s.vertex.begin(), s.vertex.end(), vertex);
-    if (found == s.vertex.end() || goal[at(static_cast<Index>(found - s.vertex.begin()))] != 0)
-        return {};
-    const Index start = static_cast<Index>(found - s.vertex.begin());
-
-    const VertexEdges edges(s);
-    std::vector<double> distance(s.vertex.size(), std::numeric_limits<double>::infinity());
-    std::vector<Index> arrival(s.vertex.size(), -1);
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    distance[at(start)] = 0.0;
-    queue.emplace(0.0, start);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[at(v)])
-            continue;
-        if (goal[at(v)] != 0) {
-            std::vector<Index> path;
-            for (Index u = v; u != start; u = s.origin(arrival[at(u)]))
-                path.push_back(s.mesh_half_edge(arrival[at(u)]));
-            return path;
-        }
-        for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
-            if (s.twin[at(*e)] < 0)
-                continue;
-            const Index h = s.mesh_half_edge(*e);
-            const Index w = s.target(*e);
-            const double through = d + crease_factor(mesh, h) * mesh.edge_length(h);
-            if (through < distance[at(w)]) {
-                distance[at(w)] = through;
-                arrival[at(w)] = *e;
-                queue.emplace(through, w);
-            }
-        }
-    }
-    return {};
 }
 
 Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
@@ -209,7 +157,7 @@ Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
             if (chart[at(f)] == label)
                 faces.push_back(f);
         const std::vector<Index> path = path_to_border(mesh, faces, seam, tip);
-        mark(mesh, path, seam);
+        mark_cuts(mesh, path, seam);
         cuts += path.empty() ? 0 : 1;
     }
     return cuts;

@@ -21,11 +21,6 @@ struct DartOptions {
 /// Returns the number of darts.
 Index cut_darts(const Mesh& mesh, const DartOptions& options, Draft& draft, Progress& progress);
 
-/// The half-edges of the shortest path within the faces from a vertex to their border or to a cut;
-/// creases count less. Empty where the vertex is on the border, or not among the faces.
-std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
-                                  const std::vector<std::uint8_t>& seam, Index vertex);
-
 /// Cuts from each of the vertices, in order, to the border of its chart or to an earlier cut; a
 /// vertex on a border needs none. `seam` is 3 #F. Returns the number of cuts.
 Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,

@@ -88,20 +88,6 @@ std::vector<double> measure_stretch(const FlatteningProblem& problem, const std:
     return stretch;
 }
 
-std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
-                                  std::vector<std::uint8_t> seam) {
-    std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
-    for (const Index f : faces)
-        inside[at(f)] = 1;
-    for (const Index f : faces)
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = mesh.twin[at(h)];
-            if (twin >= 0 && inside[at(twin / 3)] == 0)
-                seam[at(h)] = seam[at(twin)] = 1;
-        }
-    return seam;
-}
-
 TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
                    const Progress& progress) {

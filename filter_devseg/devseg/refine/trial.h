@@ -45,8 +45,4 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
 std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
                                     TrialMap& map);
 
-/// `seam` with the edges between the faces and others marked as well.
-std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& faces,
-                                  std::vector<std::uint8_t> seam);
-
 } // namespace devseg

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/cut/border_path.h"
 #include "devseg/cut/min_cut.h"
 
 namespace devseg {
@@ -14,7 +15,6 @@ namespace {
 constexpr double excess_weight = 20.0;
 // A chart is offered faces up to this multiple of F_max; beyond it they cannot be worth it.
 constexpr double reach = 1.5;
-constexpr double least_crease_factor = 0.1;
 constexpr double settled_share = 2e-3; // of the faces: fewer changes in a round end it
 
 class Expansion {
@@ -152,12 +152,6 @@ private:
 };
 
 } // namespace
-
-double crease_factor(const Mesh& mesh, Index h) {
-    const double cosine =
-        mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(mesh.twin[at(h)] / 3)]);
-    return std::max(least_crease_factor, cosine);
-}
 
 void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
                           const ExpansionOptions& options, std::vector<Index>& chart,

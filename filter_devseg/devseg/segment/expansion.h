@@ -29,8 +29,4 @@ void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
                           const ExpansionOptions& options, std::vector<Index>& chart,
                           Progress& progress);
 
-/// Factor of an edge's length: 1 on a smooth surface, down to 0.1 on a right-angled crease, where
-/// a cut is not seen and does not cost shape.
-double crease_factor(const Mesh& mesh, Index half_edge);
-
 } // namespace devseg

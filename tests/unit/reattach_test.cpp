@@ -1,4 +1,4 @@
-#include "devseg/flatten/slivers.h"
+#include "devseg/flatten/reattach.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "devseg/develop/unfold.h"
+#include "devseg/flatten/unfold.h"
 
 #include <cmath>
 #include <queue>
