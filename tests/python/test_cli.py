@@ -142,6 +142,15 @@ def test_every_shape_works_or_fails_in_one_line(
         assert code == 0
 
 
+def test_a_failed_filter_swallows_no_later_warning(
+    obj: Callable, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    cube, fins = obj(meshes.cube(), "cube"), obj(meshes.three_fins(), "fins")
+    assert main(["run", str(cube), "-o", str(tmp_path / "a"), "--charts", "999"]) == 1
+    assert main(["run", str(fins), "-o", str(tmp_path / "b"), "--charts", "3"]) == 0
+    assert "devseg: warning: " in capfd.readouterr().err
+
+
 def test_result_is_the_same_every_time(obj: Callable, tmp_path: Path) -> None:
     path = obj(meshes.sphere())
     for name in ("a", "b"):

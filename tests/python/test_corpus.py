@@ -31,6 +31,9 @@ MOST_FACES = 14000  # of a file that takes part where time is short
 # that there is nothing to repair and nothing to tell.
 APART = {"real_elephant_holes.off", "real_wallhole.obj"}
 
+# What a deformation or a simulation looks for, and does not find on every mesh.
+UNREACHED = ("angle sums of 2 pi", "a surface that does not run through", "a cloth that comes to")
+
 # Filters that others rely on come first; those that are not here follow in the order of the table.
 FIRST = [
     "get_segmentation_measures",
@@ -141,6 +144,11 @@ def manifest(data: Path) -> dict[str, dict[str, Any]]:
     return {entry["file"]: entry for entry in entries}
 
 
+def is_answer(error: str) -> bool:
+    """Whether a step gives up what cannot be computed for this mesh, and says so."""
+    return any(f"expected {what}" in error for what in UNREACHED)
+
+
 def is_taken(entry: dict[str, Any]) -> bool:
     return FULL or (entry["welded"] or {"F": 0})["F"] <= MOST_FACES
 
@@ -158,12 +166,16 @@ def problems_of_file(expected: str, steps: list[dict[str, Any]]) -> list[str]:
         accepted = [s["end"] for s in commands if s["status"] == 0 and not warns(s)]
         problems += [f"{command}: accepted a mesh to be refused" for command in accepted]
         return problems
-    problems += [f"{s['end']}: {s['stderr'].strip()}" for s in commands if s["status"] != 0]
+    problems += [
+        f"{step['end']}: {step['stderr'].strip()}"
+        for step in commands
+        if step["status"] != 0 and not is_answer(step["stderr"])
+    ]
     has_uv = False
     for step in steps:
         # Before the flattening there may be no coordinates, or such that lay nothing out.
         needs_uv = "'Charts: Flatten'" in step.get("error", "")
-        if "error" in step and not (needs_uv and not has_uv):
+        if "error" in step and not (needs_uv and not has_uv) and not is_answer(step["error"]):
             problems.append(f"{step['end']}: {step['error']}")
         has_uv = has_uv or step["end"] == FIRST[-1]
     if expected == "repair+warn":

@@ -197,23 +197,31 @@ std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
 
 } // namespace
 
+bool develop(const Mesh& mesh, FlatChart& chart) {
+    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    auto development = unfold(problem, chart.surface.twin);
+    if (!development)
+        return false;
+    chart.uv = std::move(*development);
+    scale_to_area(problem, chart.uv);
+    // Slits are opened only where the chart would not be seen as a disk.
+    const double size = std::sqrt(mesh.total_area);
+    if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * size, chart.uv))
+        open_closed_slits(mesh, chart.surface, slit_gap * size, chart.uv);
+    chart.developed = true;
+    chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+    return true;
+}
+
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress) {
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    if (auto development = unfold(problem, chart.surface.twin)) {
-        // What every method looks for, exactly. It stays as it is: parts are not pushed apart, and
-        // slits are opened only where the chart would not be seen as a disk.
-        chart.uv = std::move(*development);
-        scale_to_area(problem, chart.uv);
-        const double size = std::sqrt(mesh.total_area);
-        if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * size, chart.uv))
-            open_closed_slits(mesh, chart.surface, slit_gap * size, chart.uv);
-        chart.developed = true;
-        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+    if (develop(mesh, chart)) {
+        // It stays as it is: its parts are not pushed apart.
         const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
         return pairs.empty() ? std::vector<Index>{}
                              : on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
     }
+    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
     try {
         if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
             chart.mended = true;

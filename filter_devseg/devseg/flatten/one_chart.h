@@ -13,4 +13,8 @@ namespace devseg {
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress);
 
+/// The chart's exact development, which every method looks for; false where it has none. Parts may
+/// lie on each other.
+bool develop(const Mesh& mesh, FlatChart& chart);
+
 } // namespace devseg

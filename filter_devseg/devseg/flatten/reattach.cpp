@@ -114,25 +114,14 @@ private:
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
         joined.surface = extract_surface(mesh_, std::move(faces), seam);
-        if (!develop(joined)) {
+        if (!develop(mesh_, joined) ||
+            !overlapping_pairs(joined.surface, joined.uv, tolerance_).empty()) {
             seam[at(h)] = seam[at(twin)] = 1;
             return false;
         }
         joined.cut_off = flat(other).cut_off;
         replace(part, other, std::move(joined));
         return true;
-    }
-
-    bool develop(FlatChart& chart) const {
-        const FlatteningProblem problem = make_flattening_problem(mesh_, chart.surface);
-        auto development = unfold(problem, chart.surface.twin);
-        if (!development)
-            return false;
-        chart.uv = std::move(*development);
-        scale_to_area(problem, chart.uv);
-        chart.developed = true;
-        chart.energy = 1.0;
-        return overlapping_pairs(chart.surface, chart.uv, tolerance_).empty();
     }
 
     void replace(Index part, Index other, FlatChart joined) {
