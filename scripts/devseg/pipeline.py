@@ -104,8 +104,8 @@ class Session:
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
         errors = (host.pymeshlab().PyMeshLabException, RuntimeError, MemoryError)
-        # A host that is not verbose swallows what is printed, and where a filter fails it goes on so
-        # for all meshes to come.
+        # A host that is not verbose swallows what is printed, and where a filter fails it goes on
+        # so for all meshes to come.
         self.meshes.set_verbosity(True)
         try:
             with host.captured() as chatter:
