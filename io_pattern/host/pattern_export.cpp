@@ -1,6 +1,7 @@
 #include "host/pattern_export.h"
 
 #include <algorithm>
+#include <array>
 
 #include "filters/export_filter.h"
 #include "host/host_errors.h"
@@ -11,21 +12,31 @@ namespace devseg {
 
 namespace {
 
+// Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
+// and does not scroll, and a screen has no room for all.
+constexpr std::array<const char*, 8> left_to_the_filter = {
+    "max_piece_mm", "curves",      "curve_mm",     "simplify_mm",
+    "corner_style", "match_seams", "tab_depth_mm", "dxf_kind",
+};
+
 // The file's name is asked for by the host itself.
-FilterDeclaration without_file() {
+FilterDeclaration saving() {
     FilterDeclaration filter = export_filter();
     std::vector<Parameter>& parameters = filter.parameters;
-    parameters.erase(
-        std::remove_if(parameters.begin(), parameters.end(),
-                       [](const Parameter& p) { return p.kind == ParameterKind::output_file; }),
-        parameters.end());
+    const auto is_left_out = [](const Parameter& p) {
+        return p.kind == ParameterKind::output_file ||
+               std::find(left_to_the_filter.begin(), left_to_the_filter.end(), p.name) !=
+                   left_to_the_filter.end();
+    };
+    parameters.erase(std::remove_if(parameters.begin(), parameters.end(), is_left_out),
+                     parameters.end());
     return filter;
 }
 
 } // namespace
 
 RichParameterList pattern_parameters() {
-    return rich_parameters(without_file());
+    return rich_parameters(saving());
 }
 
 std::vector<std::string> save_pattern(const std::string& file_name, MeshModel& model,
@@ -35,7 +46,7 @@ std::vector<std::string> save_pattern(const std::string& file_name, MeshModel& m
         return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
     });
     return with_host_errors(model, [&] {
-        ParameterValues values = parameter_values(without_file(), parameters);
+        ParameterValues values = parameter_values(saving(), parameters);
         values["output_file"] = file_name;
         HostMesh host = read_host_mesh(model);
         host.wedge_uv = read_layout_uv(model);

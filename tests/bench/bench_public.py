@@ -84,7 +84,7 @@ def main() -> int:
         for option, parameter in method.options.items()
         if getattr(args, option) is not None
     }
-    options = RunOptions(Path(), method, segmentation, args.flatten, ("svg",), {})
+    options = RunOptions(Path(), method, segmentation, args.flatten or method.flatten, ("svg",), {})
     evaluator = load_evaluator()
     load_plugins()
     heads = ["mesh", "faces", *(head for head, _, _ in COLUMNS)]

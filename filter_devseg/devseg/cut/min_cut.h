@@ -31,21 +31,22 @@ public:
 private:
     struct Arc {
         Index to;
+        Index partner; // the arc back
         double capacity;
     };
-    void build();
+    void sort_new_arcs();
     bool rank_nodes();
     void push(Index source);
 
     std::vector<CutSide> sides_;
-    std::vector<Arc> arcs_;    // arc i and arc i ^ 1 are a pair
-    std::vector<Index> begin_; // arcs of node v: order_[begin_[v]] …
-    std::vector<Index> order_;
+    std::vector<Arc> added_;   // since the last call of solve; arcs i and i ^ 1 are a pair
+    std::vector<Arc> arcs_;    // of node v: begin_[v] … begin_[v + 1] − 1
+    std::vector<Index> begin_; // #nodes + 1
+    std::vector<Index> arc_;   // of each link
     std::vector<Index> rank_;
     std::vector<Index> cursor_;
     std::vector<Index> path_; // arcs of the path at hand
-    bool built_ = false;
-    double saturated_ = 0.0; // a rest of capacity below this is rounding
+    double saturated_ = 0.0;  // a rest of capacity below this is rounding
 };
 
 } // namespace devseg

@@ -62,7 +62,28 @@ public:
         if (solver_.info() != Eigen::Success)
             throw NumericalFailure("expected a positive definite Laplacian, found a singular one");
     }
-    Positions solve(const Positions& rhs) const { return solver_.solve(rhs); }
+
+    // Eigen reads the factor anew for each column; here it is read once for both.
+    Positions solve(const Positions& rhs) const {
+        const Eigen::SparseMatrix<double>& lower = solver_.matrixL().nestedExpression();
+        const Index* begin = lower.outerIndexPtr();
+        const Index* row = lower.innerIndexPtr();
+        const double* value = lower.valuePtr();
+        Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> x = solver_.permutationP() * rhs;
+        for (Eigen::Index j = 0; j < x.rows(); ++j) {
+            const Eigen::RowVector2d known = x.row(j);
+            for (Index k = begin[j]; k < begin[j + 1]; ++k)
+                x.row(row[k]) -= value[k] * known;
+        }
+        x.array().colwise() /= solver_.vectorD().array();
+        for (Eigen::Index j = x.rows(); j-- > 0;) {
+            Eigen::RowVector2d sum = x.row(j);
+            for (Index k = begin[j]; k < begin[j + 1]; ++k)
+                sum -= value[k] * x.row(row[k]);
+            x.row(j) = sum;
+        }
+        return solver_.permutationPinv() * x;
+    }
 
 private:
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;

@@ -13,7 +13,7 @@ namespace devseg {
 
 struct SymmetricDirichletOptions {
     int max_iterations = 300;         // quasi-Newton steps at most
-    double relative_tolerance = 1e-7; // stop when ten steps gain less than this share of the energy
+    double relative_tolerance = 1e-6; // stop when ten steps gain less than this share of the energy
     // Stop as soon as the energy will clearly not fall below this.
     double give_up_energy = std::numeric_limits<double>::infinity();
     std::vector<std::uint8_t> fixed; // #v: 1 for vertices that stay; empty = all are free

@@ -19,6 +19,7 @@ constexpr double boundary_weight = 10.0; // of planes that stand on boundary edg
 constexpr double least_turn = 0.3;   // cosine of the angle that a face may turn in one collapse
 constexpr double least_shape = 0.05; // of a new triangle; 1 is equilateral, 0 is a needle
 constexpr Index check_every = 1 << 14;
+constexpr std::size_t most_neighbours = 64; // of a vertex that may be removed, or kept by another
 
 // Σ area (n·x + d)² over planes, as a symmetric form.
 struct Quadric {
@@ -168,38 +169,58 @@ private:
         }
     }
 
+    // Legality is dearer than the cost: it is asked for in the order of costs.
     Candidate cheapest_collapse(Index v) const {
-        Candidate best;
-        const auto consider = [&](Index h) {
-            const Vec3& p = points_[at(target(h))];
-            Candidate c;
-            c.half_edge = h;
-            c.cost = std::max(0.0, quadric_[at(v)](p) + quadric_[at(target(h))](p)) +
-                     length_weight * quadric_[at(v)].area * (p - points_[at(v)]).squaredNorm();
-            if ((best.half_edge < 0 || c.cost < best.cost) && is_legal(h))
-                best = c;
-        };
-        const bool on_boundary = !visit_star(s_.twin, outgoing_[at(v)], [](Index) {});
+        std::array<Candidate, most_neighbours> candidates;
+        std::size_t count = 0;
+        Ring around_v;
+        const bool inner = gather_ring(v, around_v);
         visit_star(s_.twin, outgoing_[at(v)], [&](Index h) {
-            if (!on_boundary || s_.twin[at(h)] < 0)
-                consider(h);
+            if (count == candidates.size() || (!inner && s_.twin[at(h)] >= 0))
+                return;
+            const Vec3& p = points_[at(target(h))];
+            candidates[count].half_edge = h;
+            candidates[count++].cost =
+                std::max(0.0, quadric_[at(v)](p) + quadric_[at(target(h))](p)) +
+                length_weight * quadric_[at(v)].area * (p - points_[at(v)]).squaredNorm();
         });
-        return best;
+        for (auto end = candidates.begin() + static_cast<std::ptrdiff_t>(count);
+             end != candidates.begin(); --end) {
+            const auto least = std::min_element(
+                candidates.begin(), end,
+                [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+            if (is_legal(least->half_edge, around_v, inner))
+                return *least;
+            std::move(least + 1, end, least); // in their order, as ties go to the first
+        }
+        return {};
     }
 
-    bool is_legal(Index h) const { return keeps_topology(h) && keeps_shape(h); }
+    struct Ring {
+        std::array<Index, most_neighbours> vertex;
+        std::size_t size = 0;
+        void add(Index v) {
+            if (size < vertex.size())
+                vertex[size++] = v;
+        }
+    };
+    bool is_legal(Index h) const {
+        Ring around_v;
+        const bool inner_v = gather_ring(origin(h), around_v);
+        return is_legal(h, around_v, inner_v);
+    }
+    bool is_legal(Index h, const Ring& around_v, bool inner_v) const {
+        return keeps_topology(h, around_v, inner_v) && keeps_shape(h);
+    }
 
     // The link condition: the ends of the edge have no common neighbours but the two opposite
     // vertices, which must keep three faces (a boundary vertex, one).
-    bool keeps_topology(Index h) const {
-        const Index v = origin(h);
+    bool keeps_topology(Index h, const Ring& around_v, bool inner_v) const {
         const Index w = target(h);
         const Index twin = s_.twin[at(h)];
         if (!keeps_apex(h) || (twin >= 0 && !keeps_apex(twin)))
             return false;
-        Ring around_v;
         Ring around_w;
-        const bool inner_v = gather_ring(v, around_v);
         const bool inner_w = gather_ring(w, around_w);
         if (!inner_v && !inner_w && twin >= 0)
             return false; // an edge through the inside that joins two boundary vertices
@@ -211,14 +232,6 @@ private:
                 common += around_v.vertex[i] == around_w.vertex[k] ? 1 : 0;
         return common == (twin >= 0 ? 2 : 1);
     }
-    struct Ring {
-        std::array<Index, 64> vertex;
-        std::size_t size = 0;
-        void add(Index v) {
-            if (size < vertex.size())
-                vertex[size++] = v;
-        }
-    };
     bool gather_ring(Index u, Ring& ring) const {
         return visit_star(s_.twin, outgoing_[at(u)], [&](Index k) {
             ring.add(target(k));

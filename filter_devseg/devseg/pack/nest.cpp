@@ -31,8 +31,8 @@ constexpr double next_step = 0.01;            // then again in steps from this o
 constexpr double next_work = 0.8e9;           // for the layouts that are worth it
 constexpr double most_work_factor = 2.0;      // more for many charts, up to this factor,
 constexpr double many_crowd = 10.0;           // from this multiple of the usual number on
-// Less for few charts: from a quarter of the work at 10 to all of it at 16.
-constexpr double least_work_factor = 0.25;
+// Less for few charts, for which fewer places come into question: by the square of their number.
+constexpr double least_work_factor = 0.12;
 constexpr double few_work_factor = 0.1; // few charts are tried in many frames
 constexpr int no_failure_limit = 1000;  // beyond what the work allows
 constexpr SeparationOptions usual_moves{0, 8, 100};
@@ -63,7 +63,7 @@ double work_factor(std::size_t charts) {
     if (charts <= few_charts)
         return few_work_factor;
     const double n = static_cast<double>(charts);
-    return charts <= many_charts ? std::clamp((n - 8.0) / 8.0, least_work_factor, 1.0)
+    return charts <= many_charts ? std::clamp(std::pow((n - 5.0) / 15.0, 2), least_work_factor, 1.0)
                                  : std::clamp(crowd_of(charts) / many_crowd, 1.0, most_work_factor);
 }
 
