@@ -153,6 +153,45 @@ TEST(DevelopableCharts, DartsLowerTheWorstSpot) {
     EXPECT_NEAR(again.linf, draft.map.front().linf, 1e-9);
 }
 
+// The convex hull of two unit circles through each other's centres: one developable piece with two
+// curved creases.
+Mesh oloid(int steps, int along) {
+    const double end = 2.0 * std::acos(-1.0) / 3.0;
+    const auto point = [&](int i, int j, double side) -> Vec3 {
+        const double a = end * i / steps;
+        const double c = std::cos(a);
+        const double square = std::abs(i) == steps ? 0.0 : std::max(0.0, 1.0 + 2.0 * c);
+        const Vec3 on_first(std::sin(a), -0.5 - c, 0.0);
+        const Vec3 on_second(0.0, 0.5 - c / (1.0 + c), side * std::sqrt(square) / (1.0 + c));
+        const double m = static_cast<double>(j) / along;
+        return j == along ? on_second : (1.0 - m) * on_first + m * on_second;
+    };
+    RawMesh soup; // both halves of the second circle's arc lie on each other: the gate joins them
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+        const Index first = static_cast<Index>(soup.points.size());
+        soup.points.insert(soup.points.end(), {a, b, c});
+        soup.faces.push_back({first, first + 1, first + 2});
+    };
+    for (const double side : {1.0, -1.0})
+        for (int i = -steps; i < steps; ++i)
+            for (int j = 0; j < along; ++j) {
+                const Vec3 p[] = {point(i, j, side), point(i + 1, j, side),
+                                  point(i + 1, j + 1, side), point(i, j + 1, side)};
+                add(p[0], p[1], p[2]);
+                add(p[0], p[2], p[3]);
+            }
+    return gate_mesh(soup).mesh;
+}
+
+TEST(DevelopableCharts, OneSeedDoesNotMakeMoreChartsThanManySeeds) {
+    const Mesh mesh = oloid(40, 12);
+    DevelopableChartsOptions options = charts(1);
+    options.merge_threshold = 0.05;
+    const FlattenResult flat = flatten(mesh, design(mesh, options));
+    EXPECT_LE(flat.charts.count, 3);
+    EXPECT_LT(stretch(mesh, flat), 1.001);
+}
+
 TEST(DevelopableCharts, PathToBorderIsTheShortestOne) {
     const Mesh mesh = checks::gated(shapes::grid(10, 10, 10.0, 10.0));
     std::vector<Index> faces(mesh.faces.size());

@@ -32,6 +32,8 @@ constexpr double sharp_cosine = 0.5;  // of 60 degrees
 constexpr double sharp_share = 0.6;   // of the bent edges
 constexpr double least_creases = 1.0; // over the root of the area
 
+constexpr int few_seeds = 3;
+constexpr int more_seeds = 6;       // where so few give more charts than were asked for
 constexpr int automatic_seeds = 10; // where the number of charts is to be found
 constexpr int most_splits = 200;
 constexpr double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
@@ -123,10 +125,34 @@ private:
             return finish(make_untried_draft(working_.mesh(), patch_), Straightening::smooth);
         Aim aim;
         aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
+        Draft draft = try_patches(aim);
+        if (options_.merge_charts && options_.charts_number <= few_seeds &&
+            draft.charts_number() > options_.charts_number)
+            begin_with_more(aim, draft);
+        return finish(draft, Straightening::smooth);
+    }
+
+    Draft try_patches(const Aim& aim) {
         progress_.begin_phase("trying charts", 0.05);
         Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
         improve(aim, draft);
-        return finish(draft, Straightening::smooth);
+        return draft;
+    }
+
+    // What few seeds do not reach becomes charts of its own, of any shape: charts of more seeds may
+    // be joined to fewer.
+    void begin_with_more(const Aim& aim, Draft& draft) {
+        const std::vector<Index> patch = patch_;
+        const DevelopableCharts result = result_;
+        growing_.charts_number = std::min(more_seeds, working_.mesh().face_count());
+        grow_patches();
+        Draft other = try_patches(aim);
+        if (other.charts_number() < draft.charts_number()) {
+            draft = std::move(other);
+        } else {
+            patch_ = patch;
+            result_ = result;
+        }
     }
 
     void improve(const Aim& aim, Draft& draft) {
