@@ -144,9 +144,11 @@ FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& opti
         draft.seam = seam;
         bool changed = false;
         for (std::size_t c = 0; c < reached.linf.size(); ++c)
-            if (reached.linf[c] > linf)
-                changed |=
-                    split_chart(full_, options, linf, static_cast<Index>(c), draft, progress);
+            if (reached.linf[c] > linf) {
+                const Index worst = static_cast<Index>(c);
+                changed |= split_chart(full_, options, linf, worst, draft, progress) ||
+                           halve_chart(full_, linf, worst, draft, progress);
+            }
         if (!changed)
             break;
         seam = draft.seam;

@@ -12,4 +12,8 @@ namespace devseg {
 bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
                  Draft& draft, Progress& progress);
 
+/// The same with the two parts that two planes fit best, where one cone fits all of the chart but
+/// for a few faces.
+bool halve_chart(const Mesh& mesh, double wanted_l2, Index chart, Draft& draft, Progress& progress);
+
 } // namespace devseg
