@@ -8,16 +8,9 @@ namespace devseg {
 namespace {
 
 constexpr const char* help =
-    "Writes the pattern of a model with texture coordinates, whoever made them, as a file to sew, "
-    "cut or fold: SVG and DXF for cutters and drawing programs, PDF for printers, DXF for apparel "
-    "CAD (ASTM D6673). Charts, darts and slits are read from the texture coordinates. All lengths "
-    "are in millimetres and true.<br>"
-    "<b>Presets</b> switch on what a craft needs. <b>Sewing</b>: seam allowance, sew line, "
-    "notches, grain line and seam numbers. <b>Papercraft</b>: glue tabs, mountain and valley folds "
-    "and seam numbers. <b>Laser</b>: one layer to cut, one to engrave.<br>"
-    "See:<br><i>ASTM International</i><br>"
-    "<b>\"Standard Practice for Sewn Products Pattern Data Interchange - Data Format\"</b><br>"
-    "ASTM D6673-10, 2010, doi:10.1520/D6673-10";
+    "Writes the pattern of any model with texture coordinates, true to scale: SVG and DXF for "
+    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673).<br>"
+    "A <b>preset</b> switches on what sewing, papercraft or a laser needs.";
 
 using O = ExportOptions;
 
@@ -35,12 +28,11 @@ Declare<O> with_scale(Declare<O> filter) {
                 "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
         .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
               "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
-        .choice(&O::curves, "curves", "Curves", {"Polylines", "Beziers"},
-                "How outlines are written. Polylines: by their points; Beziers: as smooth cubic "
-                "curves of the same lengths (splines in DXF for cutters, fine polylines in DXF for "
-                "apparel CAD).")
-        .real(&O::curve_mm, "curve_mm", "Tolerance of curves (mm)", 1e-3, 1e3,
-              "Largest distance of the Bezier curves from the outlines in millimetres.")
+        .real(
+            &O::curve_mm, "curve_mm", "Curves within (mm)", 0.0, 1e3,
+            "Outlines are written as smooth cubic curves of the same lengths that stay within this "
+            "distance, in millimetres (splines in DXF for cutters, fine polylines in DXF for "
+            "apparel CAD). 0 = straight lines between their points.")
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
               "moves it by less than this, in millimetres. 0 keeps all vertices.");

@@ -10,8 +10,6 @@ namespace devseg {
 
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
-/// How outlines are written: by the points they have, or as cubic Bézier curves (curve_mm).
-enum class CurveKind { polylines, beziers };
 enum class DxfKind { automatic, cutter, apparel };
 
 struct ExportOptions : PatternOptions {
@@ -32,7 +30,6 @@ struct ExportOptions : PatternOptions {
     double page_margin_mm = 10.0;
     bool tiling = true; // pieces larger than a page go on several
     bool cover = true;  // PDF: picture of the model, list of the pieces, overview
-    CurveKind curves = CurveKind::polylines;
     DxfKind dxf_kind = DxfKind::automatic;
 
     AllowanceWidths allowance() const {

@@ -241,7 +241,7 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
                                    number_text(piece.box.sizes().maxCoeff(), 6) +
                                    " mm; check the scale (mm_per_unit, height_mm)");
     }
-    if (options.curves == CurveKind::beziers)
+    if (options.curve_mm > 0.0)
         add_curves(piece, outlines, options, result);
     if (options.fold_lines)
         add_folds(piece, result);

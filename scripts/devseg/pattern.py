@@ -13,7 +13,6 @@ PATTERN_FORMATS = ("svg", "pdf", "dxf")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
-CURVES = {"polylines": "Polylines", "beziers": "Beziers"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -64,10 +63,7 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--simplify-mm", type=length(), metavar="T", help="of outlines; default: 0.1"
     )
     group.add_argument(
-        "--curves", choices=CURVES, help="how outlines are written; default: polylines"
-    )
-    group.add_argument(
-        "--curve-mm", type=length(1e-3), metavar="T", help="tolerance of curves; default: 0.1"
+        "--curve-mm", type=length(), metavar="T", help="outlines as curves within T; default: 0, none"
     )
     group.add_argument(
         "--corner-style", choices=CORNERS, help="corners of the allowance; default: miter"
@@ -116,7 +112,7 @@ _PARAMETERS = (
     "labels",
 )
 
-_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "curves": CURVES, "corner_style": CORNERS}
+_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:

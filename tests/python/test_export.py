@@ -98,7 +98,7 @@ def test_curves_are_as_long_as_the_lines_they_replace(
     options = {"preset": preset, "mm_per_unit": 50.0, "dxf_kind": "Cutter"}
     name = "sew" if preset == "Sewing" else "cut"
     lines = files.read_svg(export(flattened, "svg", **options))[name].parts
-    options |= {"curves": "Beziers", "curve_mm": 0.2}
+    options |= {"curve_mm": 0.2}
     path = export(flattened, "svg", **options)
     assert " C " in path.read_text() and files.renders(path)
     readers = {"svg": files.read_svg, "pdf": files.read_pdf, "dxf": files.read_dxf}
@@ -248,7 +248,7 @@ def test_same_bytes_again(flattened: Any, export: Callable) -> None:
         ("x.pdf", {"page": "a4", "tiling": False, "mm_per_unit": 500.0}, "page: expected pieces"),
         ("x.svg", {"seam_allowance_mm": -1.0}, "seam_allowance_mm: expected"),
         ("x.svg", {"hem_allowance_mm": -2.0}, "hem_allowance_mm: expected"),
-        ("x.svg", {"curve_mm": 0.0}, "curve_mm: expected"),
+        ("x.svg", {"curve_mm": -0.1}, "curve_mm: expected"),
         ("x.svg", {"seam_allowance_mm": 5.0, "glue_tabs": True}, "glue_tabs: expected"),
     ],
 )

@@ -84,11 +84,14 @@ TEST(Outlines, DiskHasNoCorners) {
     Cloth cloth;
     cloth.add(shapes::annulus(120, 4, 20.0, 100.0),
               [](const Vec3& p, const Vec3&) { return samples::flat(p); });
-    const PatternPiece piece = cloth.pattern().pieces[0];
+    PatternOptions options;
+    options.curve_mm = 0.1;
+    const PatternPiece piece = cloth.pattern(options).pieces[0];
     ASSERT_EQ(piece.holes.size(), 1U);
     for (const PiecePath* path : {&piece.outer, &piece.holes[0]}) {
         for (const std::uint8_t corner : path->corner)
             EXPECT_EQ(corner, 0);
+        EXPECT_FALSE(path->curves.empty());
         EXPECT_LE(path->curves.size(), 12U);
         for (const OutlineCurve& curve : path->curves)
             EXPECT_FALSE(curve.is_line);
@@ -143,7 +146,9 @@ TEST(Curves, StraightStretchesAreLines) {
 }
 
 TEST(Curves, CoverTheOutlineInOrder) {
-    const Pattern pattern = samples::unfinished().pattern();
+    PatternOptions options;
+    options.curve_mm = 0.1;
+    const Pattern pattern = samples::unfinished().pattern(options);
     for (const PatternPiece& piece : pattern.pieces)
         for (Index l = 0; l < piece.path_count(); ++l) {
             const PiecePath& path = piece.path(l);

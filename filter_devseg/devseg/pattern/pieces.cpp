@@ -433,7 +433,8 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     set_seams(pattern, chains);
     set_notches(pattern, options.notch_spacing_mm);
     mark_corners(pattern.pieces, chains, options.corner_angle * degree);
-    fit_curves(pattern.pieces, chains, options.curve_mm);
+    if (options.curve_mm > 0.0)
+        fit_curves(pattern.pieces, chains, options.curve_mm);
     describe_pieces(mesh, uv, split.charts, options, mm, pattern, progress);
     note_folds(pattern, areas);
     note_scale_errors(pattern);

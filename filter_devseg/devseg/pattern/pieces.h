@@ -20,7 +20,7 @@ struct PatternOptions {
     // smaller than 100 mm have less, in proportion to their size. 0 keeps all vertices.
     double simplify_mm = 0.1;
     double corner_angle = 40.0;     // degrees: an outline that turns by more has a corner
-    double curve_mm = 0.1;          // largest distance of the curves from the outline
+    double curve_mm = 0.0;          // largest distance of curves from the outline; 0: none
     bool match_seams = true;        // make both sides of each seam equally long
     double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none
     double fold_angle = 22.5;       // degrees: flatter edges are no folds
