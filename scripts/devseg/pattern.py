@@ -63,7 +63,10 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--simplify-mm", type=length(), metavar="T", help="of outlines; default: 0.1"
     )
     group.add_argument(
-        "--curve-mm", type=length(), metavar="T", help="outlines as curves within T; default: 0, none"
+        "--curve-mm",
+        type=length(),
+        metavar="T",
+        help="outlines as curves; default: 0, none",
     )
     group.add_argument(
         "--corner-style", choices=CORNERS, help="corners of the allowance; default: miter"
