@@ -104,6 +104,9 @@ TEST(Outlines, CrossingIsExact) {
     EXPECT_FALSE(crosses_itself(piece));
     piece.outer.points[3].y() = -1e-12;
     EXPECT_TRUE(crosses_itself(piece));
+    EXPECT_FALSE(crosses_itself(piece, 0.01));
+    piece.outer.points[3].y() = -0.02;
+    EXPECT_TRUE(crosses_itself(piece, 0.01));
 }
 
 Vec2 evaluate(const OutlineCurve& curve, double t) {

@@ -18,6 +18,7 @@ namespace devseg {
 
 namespace {
 
+constexpr double rounding_depth = 0.01; // mm: crossings that are less deep do not count
 constexpr double pi = 3.14159265358979323846;
 
 // What nobody notices in sewing.
@@ -290,7 +291,9 @@ bool close_path(PiecePath& path, std::vector<double> lengths, Closing how,
 // All ways in turn; the first outline that does not cross itself is taken.
 bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& targets,
                  const Progress& progress) {
-    const bool crossed = crosses_itself(piece);
+    // Parts that lie side by side may cross by rounding: that is no licence to cross more.
+    const double depth = crosses_itself(piece) ? rounding_depth : 0.0;
+    const bool crossed = crosses_itself(piece, depth);
     for (const Closing how :
          {Closing::by_angles, Closing::by_positions, Closing::without_crossing}) {
         PatternPiece changed = piece;
@@ -298,7 +301,7 @@ bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& ta
         for (Index l = 0; l < piece.path_count() && closed; ++l)
             closed = targets[at(l)].empty() ||
                      close_path(changed.path(l), targets[at(l)], how, progress);
-        if (!closed || (crosses_itself(changed) && !crossed))
+        if (!closed || (crosses_itself(changed, depth) && !crossed))
             continue;
         piece = std::move(changed);
         return true;

@@ -137,6 +137,19 @@ std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
     return segments;
 }
 
+double distance_to_line(const Vec2& p, const OutlineSegment& s) {
+    const Vec2 along = s.to - s.from;
+    const Vec2 to_p = p - s.from;
+    return std::abs(along.x() * to_p.y() - along.y() * to_p.x()) / along.norm();
+}
+
+// Two edges that cross.
+bool is_deep(const OutlineSegment& a, const OutlineSegment& b, double depth) {
+    return depth == 0.0 ||
+           std::min({distance_to_line(a.from, b), distance_to_line(a.to, b),
+                     distance_to_line(b.from, a), distance_to_line(b.to, a)}) > depth;
+}
+
 } // namespace
 
 std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
@@ -219,12 +232,13 @@ void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& ch
     }
 }
 
-bool crosses_itself(const PatternPiece& piece) {
+bool crosses_itself(const PatternPiece& piece, double depth) {
     const std::vector<OutlineSegment> segments = segments_of(piece);
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (std::size_t j = i + 1; j < segments.size() && segments[j].left <= segments[i].right;
              ++j)
-            if (edges_cross(segments[i].from, segments[i].to, segments[j].from, segments[j].to))
+            if (edges_cross(segments[i].from, segments[i].to, segments[j].from, segments[j].to) &&
+                is_deep(segments[i], segments[j], depth))
                 return true;
     return false;
 }

@@ -36,7 +36,8 @@ void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
 void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
                        double tolerance);
 
-/// Whether two edges of the piece's outlines cross in their insides.
-bool crosses_itself(const PatternPiece& piece);
+/// Whether two edges of the piece's outlines cross in their insides, and all their ends are farther
+/// than `depth` mm from the other edge.
+bool crosses_itself(const PatternPiece& piece, double depth = 0.0);
 
 } // namespace devseg
