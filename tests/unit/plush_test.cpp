@@ -9,10 +9,11 @@
 
 #include "devseg/flatten/flatten.h"
 #include "devseg/parallel.h"
+#include "devseg/plush/carry_seams.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_smoothing.h"
-#include "devseg/plush/symmetry.h"
+#include "devseg/plush/working_surface.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 #include "unit/temporary_folder.h"
@@ -83,10 +84,93 @@ TEST(PlushSeams, PatchesOfBallAndDollLieFlat) {
         const PlushSeams seams = segment(mesh, options);
         expect_promises(mesh, options, seams);
         EXPECT_LE(seams.charts.count, 12);
-        EXPECT_GE(seams.charts.count, 2);
+        EXPECT_GE(seams.charts.count + seams.darts, 2);
         EXPECT_LT(seams.charts.count, seams.candidates);
         EXPECT_LE(seams.max_area_change, options.max_area_change);
     }
+}
+
+// A body with two arms and two legs, the same on both sides of the plane x = 0 only; the mesh is
+// not symmetric.
+RawMesh animal() {
+    RawMesh raw = shapes::sphere(4);
+    const std::vector<std::pair<Vec3, double>> limbs = {
+        {{0.8, 0.5, 0.33}, 1.1}, {{0.6, -0.75, 0.2}, 0.9}, {{0.0, 0.9, -0.43}, 0.5}};
+    for (Vec3& p : raw.points) {
+        const Vec3 folded(std::abs(p.x()), p.y(), p.z());
+        double radius = 1.0;
+        for (const auto& [direction, length] : limbs)
+            radius += length * std::exp(14.0 * (folded.dot(direction.normalized()) - 1.0));
+        p = radius * p.cwiseProduct(Vec3(1.0, 1.4, 0.9));
+    }
+    return raw;
+}
+
+// The share of the seam length that has its mirror image within 2 % of the diagonal.
+double mirrored_share(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : mesh.points)
+        box.extend(p);
+    std::vector<std::pair<Vec3, double>> edges;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (seam[at(h)] != 0 && mesh.twin[at(h)] > h)
+            edges.emplace_back(
+                0.5 * (mesh.points[at(mesh.origin(h))] + mesh.points[at(mesh.target(h))]),
+                mesh.edge_length(h));
+    double total = 0.0;
+    double mirrored = 0.0;
+    for (const auto& [middle, length] : edges) {
+        const Vec3 image(2.0 * box.center().x() - middle.x(), middle.y(), middle.z());
+        total += length;
+        for (const auto& [other, unused] : edges)
+            if ((other - image).norm() < 0.02 * box.diagonal().norm()) {
+                mirrored += length;
+                break;
+            }
+    }
+    return mirrored / total;
+}
+
+TEST(PlushSeams, SeamsOfASymmetricBodyAreSymmetric) {
+    const Mesh mesh = checks::gated(animal());
+    PlushOptions options;
+    const PlushSeams seams = segment(mesh, options);
+    expect_promises(mesh, options, seams);
+    EXPECT_TRUE(seams.is_symmetric);
+    EXPECT_GE(mirrored_share(mesh, seams.charts.seam), 0.95);
+    EXPECT_LE(seams.charts.count, 14);
+    options.symmetric = false;
+    const PlushSeams free = segment(mesh, options);
+    EXPECT_FALSE(free.is_symmetric);
+    EXPECT_LT(mirrored_share(mesh, free.charts.seam), 0.9);
+}
+
+TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
+    const Mesh coarse = checks::gated(shapes::cylinder_tube(12, 6));
+    const Mesh fine = checks::gated(shapes::cylinder_tube(48, 24));
+    SeamMarks seam(coarse.twin.size(), 0);
+    for (Index h = 0; h < coarse.half_edge_count(); ++h) // a ring in the middle, and a cut along it
+        if ((std::abs(coarse.points[at(coarse.origin(h))].z()) < 1e-9 &&
+             std::abs(coarse.points[at(coarse.target(h))].z()) < 1e-9) ||
+            (coarse.points[at(coarse.origin(h))].head<2>() - coarse.points[at(0)].head<2>())
+                        .norm() +
+                    (coarse.points[at(coarse.target(h))].head<2>() - coarse.points[at(0)].head<2>())
+                        .norm() <
+                1e-9)
+            mark(coarse, h, 1, seam);
+    const FaceComponents before = find_patches(coarse, seam);
+    Progress progress;
+    progress.begin_phase("carrying", 1.0);
+    SeamMarks carried = carry_seams(coarse, seam, fine, build_vertex_graph(fine), progress);
+    cut_corners(fine, carried);
+    EXPECT_EQ(before.count, 2);
+    EXPECT_EQ(find_patches(fine, carried).count, before.count);
+    const std::vector<double> even(carried.size(), 1.0);
+    double length = 0.0;
+    for (const SeamSegment& segment : find_segments(fine, carried, {}, even))
+        length += segment.length;
+    const double size = 1.0 / fine.unit_length;
+    EXPECT_NEAR(length, (2.0 * shapes::pi + 2.0) * size, 0.2 * size);
 }
 
 TEST(PlushSeams, SmallerBoundsTakeMoreSeam) {
@@ -159,14 +243,26 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     ASSERT_TRUE(plane.has_value());
     EXPECT_LT(plane->deviation, 1e-3);
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
-    const std::vector<Index> image = mirror_vertices(mesh, *plane);
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        EXPECT_LT((plane->reflect(mesh.points[at(v)]) - mesh.points[at(image[at(v)])]).norm(),
-                  0.05);
-    const std::vector<std::uint8_t> side = sides_of(mesh, *plane);
-    const std::vector<Index> faces = mirror_faces(mesh, *plane, side);
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        EXPECT_NE(side[at(f)], side[at(faces[at(f)])]);
+    for (const Index most : {20000, 600}) {
+        const auto surface = mirrored_working_surface(mesh, *plane, most, Progress{});
+        ASSERT_TRUE(surface.has_value());
+        const Mesh& half = surface->mesh;
+        EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));
+        EXPECT_NEAR(half.total_area, mesh.total_area, 0.05 * mesh.total_area);
+        Index on_plane = 0;
+        for (Index h = 0; h < half.half_edge_count(); ++h) {
+            const Index image = surface->image[at(h)];
+            EXPECT_EQ(surface->image[at(image)], h);
+            EXPECT_LT((plane->reflect(half.points[at(half.origin(h))]) -
+                       half.points[at(half.target(image))])
+                          .norm(),
+                      1e-9);
+            ASSERT_GE(half.twin[at(h)], 0); // the torus stays closed
+            EXPECT_EQ(surface->image[at(half.twin[at(h)])], half.twin[at(image)]);
+            on_plane += surface->is_on_plane(h) ? 1 : 0;
+        }
+        EXPECT_GT(on_plane, 0);
+    }
 }
 
 TEST(Symmetry, NoPlaneWhereThereIsNone) {
@@ -271,7 +367,9 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
         EXPECT_EQ(segment.half_edges.size(), 4U);
     EXPECT_EQ(find_patches(mesh, seam).count, 4);
     // Flat patches need no seam at all.
-    const SeamSetting setting{mesh, {}, weight, {}, 0.15, 100};
+    const WorkingSurface surface{mesh, {}};
+    PatchTester tester(surface, 0.15);
+    const SeamSetting setting{surface, {}, weight, tester, 100};
     Progress progress;
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);

@@ -9,6 +9,7 @@
 #include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/overlaps.h"
+#include "devseg/flatten/seam_lengths.h"
 #include "devseg/flatten/symmetric_dirichlet.h"
 #include "devseg/flatten/tutte.h"
 
@@ -22,6 +23,7 @@ constexpr double harmonic_is_enough = 1.02;
 // The isometric map only gives angles: a few steps are enough.
 constexpr int first_steps = 12;
 constexpr int more_steps = 25;
+constexpr double stiffness = 20.0; // of the boundary then
 
 double polygon_area(const std::vector<Vec2>& points) {
     double twice = 0.0;
@@ -37,6 +39,15 @@ bool keeps_area(const FlatteningProblem& problem, double area) {
     return std::abs(area / problem.total_area - 1.0) <= lpfb_area_change;
 }
 
+// The map, if it keeps the conditions.
+std::optional<LpfbMap> keeping(const ChartSurface& surface, std::optional<LpfbMap> map,
+                               double tolerance) {
+    if (map &&
+        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
+        map.reset();
+    return map;
+}
+
 // The map with angles near to the targets, if it keeps the conditions.
 std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSurface& surface,
                                 const std::vector<double>& targets, double tolerance,
@@ -46,16 +57,14 @@ std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSur
         close_boundary(problem.boundary_edge, targets, options, progress);
     if (!keeps_area(problem, polygon_area(boundary.points)))
         return std::nullopt;
-    auto map = settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress);
-    if (map &&
-        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
-        map.reset();
-    return map;
+    return keeping(
+        surface, settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress),
+        tolerance);
 }
 
-// Boundary angles of a nearly isometric map; empty where it is given up.
-std::vector<double> isometric_angles(const FlatteningProblem& problem, double give_up_energy,
-                                     const Progress& progress) {
+// A nearly isometric map; empty where it is given up.
+std::vector<Vec2> isometric_map(const FlatteningProblem& problem, double give_up_energy,
+                                const Progress& progress) {
     std::vector<Vec2> start = flatten_lscm(problem);
     if (count_flips(problem, start) > 0)
         start = flatten_tutte(problem);
@@ -67,11 +76,24 @@ std::vector<double> isometric_angles(const FlatteningProblem& problem, double gi
     ArapResult map = minimise_arap(problem, start, options, progress);
     if (map.energy > give_up_energy)
         return {};
-    if (!map.converged) {
-        options.max_rounds = more_steps;
-        map = minimise_arap(problem, map.uv, options, progress);
-    }
-    return boundary_angles(problem, map.uv);
+    // Faces give way to the lengths of the boundary as it moves.
+    options.max_rounds = more_steps;
+    options.boundary_stiffness = stiffness;
+    return minimise_arap(problem, map.uv, options, progress).uv;
+}
+
+// The map with the boundary's lengths nearest to a nearly isometric one, if it keeps the
+// conditions.
+std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartSurface& surface,
+                                  const std::vector<Vec2>& isometric, double tolerance,
+                                  const Progress& progress) {
+    auto uv = restore_seam_lengths(problem, isometric, progress);
+    if (!uv || !keeps_area(problem, map_area(problem, *uv)))
+        return std::nullopt;
+    LpfbResult lpfb;
+    lpfb.flips = count_flips(problem, *uv);
+    lpfb.uv = std::move(*uv);
+    return keeping(surface, settle_lpfb(problem, std::move(lpfb), progress), tolerance);
 }
 
 } // namespace
@@ -106,10 +128,13 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
     if (best && best->area_change <= options.enough)
         return best;
     try {
-        const std::vector<double> angles =
-            isometric_angles(problem, options.give_up_energy, progress);
-        if (!angles.empty()) {
-            auto near = map_near(problem, surface, angles, tolerance, progress);
+        const std::vector<Vec2> isometric =
+            isometric_map(problem, options.give_up_energy, progress);
+        if (!isometric.empty()) {
+            auto near = map_beside(problem, surface, isometric, tolerance, progress);
+            if (!near)
+                near = map_near(problem, surface, boundary_angles(problem, isometric), tolerance,
+                                progress);
             if (near && (!best || near->area_change < best->area_change))
                 best = std::move(near);
         }

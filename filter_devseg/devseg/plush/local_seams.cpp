@@ -217,23 +217,33 @@ private:
     const SeamMarks& seam_;
 };
 
+// The patches that are not settled yet, one of each two mirror images.
+std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, const SeamMarks& seam,
+                                             const std::vector<std::uint8_t>& settled) {
+    const FaceComponents patches = find_patches(surface.mesh, seam);
+    std::vector<std::vector<Index>> faces(at(patches.count));
+    for (Index f = 0; f < surface.mesh.face_count(); ++f) {
+        const Index own = patches.label[at(f)];
+        if (settled[at(f)] == 0 &&
+            (!surface.is_symmetric() || own <= patches.label[at(surface.face_image(f))]))
+            faces[at(own)].push_back(f);
+    }
+    faces.erase(std::remove_if(faces.begin(), faces.end(),
+                               [](const std::vector<Index>& f) { return f.empty(); }),
+                faces.end());
+    return faces;
+}
+
 } // namespace
 
-LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
+LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
                            const std::vector<double>& weight, double max_area_change,
-                           SeamMarks& seam, Progress& progress) {
+                           std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress) {
+    const Mesh& mesh = surface.mesh;
     LocalSeams result;
-    std::vector<std::uint8_t> settled(mesh.faces.size(),
-                                      0); // faces of patches that are developable
+    settled.resize(mesh.faces.size(), 0);
     for (int round = 0; round < most_rounds; ++round) {
-        const FaceComponents patches = find_patches(mesh, seam);
-        std::vector<std::vector<Index>> faces(at(patches.count));
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            if (settled[at(f)] == 0)
-                faces[at(patches.label[at(f)])].push_back(f);
-        faces.erase(std::remove_if(faces.begin(), faces.end(),
-                                   [](const std::vector<Index>& f) { return f.empty(); }),
-                    faces.end());
+        const std::vector<std::vector<Index>> faces = open_patches(surface, seam, settled);
         if (faces.empty())
             return result;
         const Splitter splitter(mesh, graph, weight, max_area_change, seam);
@@ -248,12 +258,18 @@ LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
         for (std::size_t i = 0; i < splits.size(); ++i) {
             result.splits += splits[i].is_needed ? 1 : 0;
             if (!splits[i].is_needed || splits[i].cuts.empty())
-                for (const Index f : faces[i])
+                for (const Index f : faces[i]) {
                     settled[at(f)] = 1;
+                    if (surface.is_symmetric())
+                        settled[at(surface.face_image(f))] = 1;
+                }
             result.all_developable =
                 result.all_developable && !(splits[i].is_needed && splits[i].cuts.empty());
-            for (const Index h : splits[i].cuts)
+            for (const Index h : splits[i].cuts) {
                 mark(mesh, h, 1, seam);
+                if (surface.is_symmetric())
+                    mark(mesh, surface.image[at(h)], 1, seam);
+            }
         }
     }
     result.all_developable = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "devseg/plush/seam_paths.h"
+#include "devseg/plush/working_surface.h"
 
 namespace devseg {
 
@@ -12,9 +13,10 @@ struct LocalSeams {
 
 /// Makes every patch a disk, and splits those that change their area by more than `max_area_change`
 /// along the isoline half way to their worst spot, or where that is too small a part of the patch,
-/// by a path through the worst spot, until all are developable.
-LocalSeams add_local_seams(const Mesh& mesh, const VertexGraph& graph,
+/// by a path through the worst spot, until all are developable. Marks stay symmetric where the
+/// surface is. `settled`: 1 for faces of patches that are developable (#F), or empty.
+LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
                            const std::vector<double>& weight, double max_area_change,
-                           SeamMarks& seam, Progress& progress);
+                           std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg

@@ -7,9 +7,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/plush/working_surface.h"
 #include "devseg/progress.h"
 
 namespace devseg {
@@ -29,5 +32,27 @@ struct PatchTrial {
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
                      const Progress& progress);
+
+/// Trials on one surface. None is made twice: a patch and its mirror image are one. Threads may
+/// share it.
+class PatchTester {
+public:
+    PatchTester(const WorkingSurface& surface, double max_area_change)
+        : surface_(surface), max_area_change_(max_area_change) {}
+
+    /// Whether the patch is developable. `seam` as for try_patch, symmetric where the surface is.
+    bool accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
+                 const Progress& progress);
+    bool accepts_all(const std::vector<std::vector<Index>>& patches,
+                     const std::vector<std::uint8_t>& seam, const Progress& progress);
+
+    Index trials() const { return static_cast<Index>(known_.size()); }
+
+private:
+    const WorkingSurface& surface_;
+    const double max_area_change_;
+    std::mutex mutex_;
+    std::map<std::vector<Index>, bool> known_; // 8 f + marks of its edges
+};
 
 } // namespace devseg

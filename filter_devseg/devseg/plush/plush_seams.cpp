@@ -5,13 +5,15 @@
 #include <optional>
 #include <utility>
 
+#include "devseg/mesh/surface_search.h"
 #include "devseg/parallel.h"
+#include "devseg/plush/carry_seams.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/local_seams.h"
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_removal.h"
 #include "devseg/plush/seam_smoothing.h"
-#include "devseg/plush/symmetry.h"
+#include "devseg/plush/working_surface.h"
 #include "devseg/segment/fragments.h"
 #include "devseg/segment/option_checks.h"
 
@@ -21,28 +23,62 @@ namespace {
 
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
+constexpr Index decision_faces = 6000;    // of the surface on which seams are decided
+// Of the bound: what is used of it on another surface than the model, at first, and in each round
+// of deciding again.
+constexpr double margin = 0.85;
+constexpr double tighter = 0.88;
+constexpr int second_thoughts = 4;
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
 
-// The steps of the method on one surface, with what they share.
+// Material borders are edges of the model: then seams are decided on the model itself.
+WorkingSurface make_working_surface(const Mesh& mesh, const PlushOptions& options,
+                                    const SeamMarks& hard, Progress& progress) {
+    progress.begin_phase("finding symmetry", 0.06);
+    if (!hard.empty())
+        return {mesh, {}};
+    if (options.symmetric)
+        if (const auto plane = find_mirror_plane(mesh, symmetric_enough, progress))
+            if (auto surface = mirrored_working_surface(mesh, *plane, decision_faces, progress))
+                return std::move(*surface);
+    return plain_working_surface(mesh, decision_faces, progress);
+}
+
+// A part of a surface where seams are still to be decided.
+struct OpenPart {
+    std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
+    SeamMarks seam;                  // 3 #F: seams so far; or empty
+
+    bool is_open(Index f) const { return faces.empty() || faces[at(f)] != 0; }
+};
+
+// The steps of the method on one surface, with what they share. `hard` has all seams that are not
+// inside the open part.
 class PlushSegmentation {
 public:
-    PlushSegmentation(const Mesh& mesh, const PlushOptions& options, const SeamMarks& hard,
-                      Progress& progress)
-        : mesh_(mesh), options_(options), hard_(hard), progress_(progress),
-          graph_(build_vertex_graph(mesh)), seam_(mesh.twin.size(), 0) {}
-
-    PlushSeams run(Skeleton skeleton) {
-        weigh_edges(std::move(skeleton));
-        find_symmetry();
-        lay_candidates();
-        const SeamSetting setting{
-            mesh_, hard_, weight_, mirror_, options_.max_area_change, options_.max_iterations};
-        remove(setting);
-        finish();
-        return std::move(result_);
+    PlushSegmentation(const WorkingSurface& surface, const PlushOptions& options,
+                      const Skeleton& skeleton, PlushSeams& result, Progress& progress)
+        : surface_(surface), mesh_(surface.mesh), options_(options), result_(result),
+          progress_(progress), graph_(build_vertex_graph(mesh_)) {
+        weigh_edges(skeleton);
     }
+
+    /// Seams of the open part, with those that there are elsewhere.
+    SeamMarks decide(const OpenPart& open, const SeamMarks& hard, double max_area_change) {
+        open_ = open;
+        hard_ = hard;
+        max_area_change_ = max_area_change;
+        seam_ = open.seam;
+        seam_.resize(mesh_.twin.size(), 0);
+        lay_candidates();
+        remove();
+        return seam_;
+    }
+
+    const Mesh& mesh() const { return mesh_; }
+    const WorkingSurface& surface() const { return surface_; }
 
 private:
     void weigh_edges(Skeleton skeleton) {
@@ -52,134 +88,235 @@ private:
         BoneWeights bones;
         if (!skeleton.empty())
             bones = bone_weights(mesh_, skeleton, progress_);
-        result_.bones = static_cast<Index>(skeleton.bones.size());
+        result_.bones = std::max(result_.bones, static_cast<Index>(skeleton.bones.size()));
         curvature_ = mean_curvature(mesh_);
         weight_ = seam_weights(
             mesh_, {options_.geodesic_weight, options_.skeleton_weight, options_.curvature_weight},
             curvature_, skeleton, bones);
+        for (std::size_t h = 0; h < surface_.image.size() / 2; ++h) {
+            double& image = weight_[at(surface_.image[h])];
+            weight_[h] = image = 0.5 * (weight_[h] + image);
+        }
         progress_.update(1.0);
         const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh_.points.size())));
         extrema_ = find_extrema(graph_, conformal_factor(mesh_),
                                 options_.max_extrema > 0 ? options_.max_extrema : most);
-        result_.extrema = static_cast<Index>(extrema_.size());
+        result_.extrema = std::max(result_.extrema, static_cast<Index>(extrema_.size()));
     }
 
-    void find_symmetry() {
-        progress_.begin_phase("finding symmetry", 0.04);
-        const auto plane = options_.symmetric
-                               ? find_mirror_plane(mesh_, symmetric_enough, progress_)
-                               : std::nullopt;
-        result_.is_symmetric = plane.has_value();
-        if (!plane)
-            return;
-        side_ = sides_of(mesh_, *plane);
-        image_ = mirror_faces(mesh_, *plane, side_);
-        mirror_ = mirror_vertices(mesh_, *plane);
+    // Those in the open part; those on the mirror image are left to it.
+    std::vector<Index> limb_tips() const {
+        std::vector<std::uint8_t> is_left_out(mesh_.points.size(), 0);
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (!open_.is_open(h / 3))
+                is_left_out[at(mesh_.origin(h))] = 1;
+        for (Index h = mesh_.half_edge_count() / 2;
+             h < mesh_.half_edge_count() && surface_.is_symmetric(); ++h)
+            if (!surface_.starts_on_plane(h))
+                is_left_out[at(mesh_.origin(h))] = 1;
+        std::vector<Index> first;
+        for (const Index v : extrema_)
+            if (is_left_out[at(v)] == 0)
+                first.push_back(v);
+        return first;
     }
 
     void lay_candidates() {
         progress_.begin_phase("laying seams", 0.08);
-        add_middle_line(seam_);
-        const std::vector<Limb> limbs = find_limbs(mesh_, graph_, curvature_, extrema_, progress_);
-        result_.limbs = static_cast<Index>(limbs.size());
+        mark_plane();
+        const std::vector<Limb> limbs =
+            find_limbs(mesh_, graph_, curvature_, limb_tips(), progress_);
+        result_.limbs = std::max(result_.limbs, static_cast<Index>(limbs.size()));
         add_limb_seams(mesh_, limbs, seam_);
         add_structural_seams(mesh_, graph_, weight_, extrema_, seam_, progress_);
-        mirror_seams();
-        progress_.begin_phase("cutting patches", 0.2);
-        result_.all_developable = cut_patches();
-        if (result_.is_symmetric) {
-            mirror_seams();
-            result_.all_developable = cut_patches();
-        }
-        result_.candidates = static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
+        clean_patches();
+        progress_.begin_phase("cutting patches", 0.15);
+        std::vector<std::uint8_t> settled(mesh_.faces.size(), 0);
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            settled[at(f)] = open_.is_open(f) ? 0 : 1;
+        add_local_seams(surface_, graph_, weight_, max_area_change_, settled, seam_, progress_);
+        result_.candidates +=
+            static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
     }
 
-    void add_middle_line(SeamMarks& seam) const {
-        for (Index h = 0; h < mesh_.half_edge_count() && !side_.empty(); ++h)
-            if (mesh_.twin[at(h)] >= 0 && side_[at(h / 3)] != side_[at(mesh_.twin[at(h)] / 3)])
-                seam[at(h)] = 1;
+    void mark_plane() {
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (surface_.is_on_plane(h))
+                mark(mesh_, h, 1, seam_);
     }
 
-    bool cut_patches() {
-        return add_local_seams(mesh_, graph_, weight_, options_.max_area_change, seam_, progress_)
-            .all_developable;
-    }
-
-    // Patches without teeth, those of one side mirrored to the other; seams inside patches go.
-    void mirror_seams() {
-        add_middle_line(seam_);
-        const FaceComponents patches = find_patches(mesh_, seam_);
-        std::vector<Index> label = patches.label;
-        for (std::size_t f = 0; f < side_.size(); ++f)
-            if (side_[f] != 0)
-                label[f] = patches.count + patches.label[at(image_[f])];
-        label = absorb_fragments(mesh_, label, fragment);
+    // Patches without teeth, the same on both sides; seams inside patches go.
+    void clean_patches() {
+        mirror_marks(surface_, seam_);
+        std::vector<Index> label =
+            absorb_fragments(mesh_, find_patches(mesh_, seam_).label, fragment);
         remove_teeth(mesh_, label);
         seam_ = make_chart_map(mesh_, label, {}, false).seam;
-        for (std::size_t h = 0; h < hard_.size(); ++h)
-            if (hard_[h] != 0)
-                seam_[h] = 1;
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (!hard_.empty() && (hard_[at(h)] != 0 || !is_inside(h)))
+                seam_[at(h)] = hard_[at(h)];
+        mark_plane();
+        mirror_marks(surface_, seam_);
     }
 
-    void remove(const SeamSetting& setting) {
-        progress_.begin_phase("removing seams", 0.25);
+    // Whether new seams may run along the edge.
+    bool is_inside(Index h) const {
+        const Index twin = mesh_.twin[at(h)];
+        return open_.is_open(h / 3) && (twin < 0 || open_.is_open(twin / 3));
+    }
+
+    void remove() {
+        PatchTester tester(surface_, max_area_change_);
+        const SeamSetting setting{surface_, hard_, weight_, tester, options_.max_iterations};
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
-        result_.trials += remove_seams(setting, removal, seam_, progress_);
+        progress_.begin_phase("removing seams", 0.25);
+        remove_seams(setting, removal, seam_, progress_);
         progress_.begin_phase("joining patches", 0.15);
-        result_.trials += join_patches(setting, removal, seam_, progress_);
-        progress_.begin_phase("straightening seams", 0.1);
+        join_patches(setting, removal, seam_, progress_);
+        progress_.begin_phase("straightening seams", 0.06);
         straighten_seams(setting, graph_, seam_, progress_);
         progress_.begin_phase("joining patches", 0.05);
         removal.most_area = small_patch;
         removal.least_neck = narrow_neck;
-        result_.trials += join_patches(setting, removal, seam_, progress_);
-        progress_.begin_phase("shortening darts", 0.03);
-        result_.trials += shorten_darts(setting, seam_, progress_);
-        // Nothing should be left to cut here; noise can make a patch fail that was accepted before.
-        result_.all_developable = cut_patches();
+        join_patches(setting, removal, seam_, progress_);
+        progress_.begin_phase("shortening darts", 0.02);
+        shorten_darts(setting, seam_, progress_);
+        result_.trials += tester.trials();
     }
 
-    // The charts, and the change of area in the maps that were accepted.
-    void finish() {
-        progress_.begin_phase("measuring patches", 0.02);
-        result_.charts = make_chart_map(mesh_, find_patches(mesh_, seam_).label, seam_, false);
-        const ChartFaces groups = group_faces(result_.charts);
-        std::vector<PatchTrial> trials(at(result_.charts.count));
-        parallel_for(
-            result_.charts.count,
-            [&](int c) {
-                const std::vector<Index> faces{groups.faces.begin() + groups.begin[at(c)],
-                                               groups.faces.begin() + groups.begin[at(c) + 1]};
-                trials[at(c)] =
-                    try_patch(mesh_, faces, seam_, options_.max_area_change, true, progress_);
-            },
-            progress_);
-        result_.area_change.assign(mesh_.faces.size(), 0.0);
-        for (const PatchTrial& trial : trials) {
-            result_.max_area_change = std::max(result_.max_area_change, trial.area_change);
-            result_.all_developable = result_.all_developable && trial.accepted;
-            for (std::size_t i = 0; i < trial.change.size(); ++i)
-                result_.area_change[at(trial.face[i])] = std::abs(trial.change[i]);
-        }
-        for (const Index degree : seam_degrees(mesh_, seam_))
-            result_.darts += degree == 1 ? 1 : 0;
-    }
-
+    const WorkingSurface& surface_;
     const Mesh& mesh_;
     const PlushOptions& options_;
-    const SeamMarks& hard_;
+    PlushSeams& result_;
     Progress& progress_;
     const VertexGraph graph_;
     std::vector<double> curvature_; // #V
     std::vector<double> weight_;    // 3 #F
     std::vector<Index> extrema_;
-    std::vector<std::uint8_t> side_; // #F; empty without symmetry, as the next two
-    std::vector<Index> image_;       // #F
-    std::vector<Index> mirror_;      // #V
+    OpenPart open_;
+    SeamMarks hard_; // 3 #F or empty
+    double max_area_change_ = 0.0;
     SeamMarks seam_;
-    PlushSeams result_;
 };
+
+// The charts, and the change of area in the maps that are accepted.
+void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_change,
+                     PlushSeams& result, Progress& progress) {
+    result.charts = make_chart_map(mesh, find_patches(mesh, seam).label, seam, false);
+    const ChartFaces groups = group_faces(result.charts);
+    std::vector<PatchTrial> trials(at(result.charts.count));
+    parallel_for(
+        result.charts.count,
+        [&](int c) {
+            const std::vector<Index> faces{groups.faces.begin() + groups.begin[at(c)],
+                                           groups.faces.begin() + groups.begin[at(c) + 1]};
+            trials[at(c)] = try_patch(mesh, faces, seam, max_area_change, true, progress);
+        },
+        progress);
+    result.area_change.assign(mesh.faces.size(), 0.0);
+    for (const PatchTrial& trial : trials) {
+        result.max_area_change = std::max(result.max_area_change, trial.area_change);
+        result.all_developable = result.all_developable && trial.accepted;
+        for (std::size_t i = 0; i < trial.change.size(); ++i)
+            result.area_change[at(trial.face[i])] = std::abs(trial.change[i]);
+    }
+    for (const Index degree : seam_degrees(mesh, seam))
+        result.darts += degree == 1 ? 1 : 0;
+}
+
+// The patches that are not developable, where seams are to be decided again.
+OpenPart failing_part(const WorkingSurface& model, SeamMarks seam, double max_area_change,
+                      Progress& progress) {
+    const FaceComponents patches = find_patches(model.mesh, seam);
+    std::vector<std::vector<Index>> faces(at(patches.count));
+    for (Index f = 0; f < model.mesh.face_count(); ++f)
+        faces[at(patches.label[at(f)])].push_back(f);
+    std::vector<std::uint8_t> fails(faces.size(), 0);
+    parallel_for(
+        patches.count,
+        [&](int p) {
+            fails[at(p)] =
+                try_patch(model.mesh, faces[at(p)], seam, max_area_change, false, progress).accepted
+                    ? 0
+                    : 1;
+        },
+        progress);
+    OpenPart part;
+    part.seam = std::move(seam);
+    for (const Index p : patches.label)
+        part.faces.push_back(fails[at(p)]);
+    return part;
+}
+
+// Seams that are not inside the open part.
+SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part) {
+    SeamMarks fixed = part.seam;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (part.is_open(h / 3) && mesh.twin[at(h)] >= 0 && part.is_open(mesh.twin[at(h)] / 3))
+            fixed[at(h)] = 0;
+    return fixed;
+}
+
+// The patches of the working surface most of which lie on an open part of the model, and their
+// mirror images.
+OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
+                   const OpenPart& on_model) {
+    const SurfaceSearch search(model);
+    const std::vector<Vec3> normals = vertex_normals(surface.mesh);
+    const FaceComponents patches = find_patches(surface.mesh, seam);
+    std::vector<double> balance(at(patches.count), 0.0);
+    for (Index f = 0; f < surface.mesh.face_count(); ++f) {
+        const Index v = surface.mesh.faces[at(f)][0];
+        const Index near =
+            search.vertex(surface.mesh.points[at(v)], normals[at(v)], [](Index) { return true; });
+        if (near >= 0)
+            balance[at(patches.label[at(f)])] += on_model.is_open(search.leaving(near) / 3)
+                                                     ? surface.mesh.face_areas[at(f)]
+                                                     : -surface.mesh.face_areas[at(f)];
+    }
+    OpenPart part;
+    part.seam = std::move(seam);
+    for (const Index p : patches.label)
+        part.faces.push_back(balance[at(p)] > 0.0 ? 1 : 0);
+    for (Index f = 0; f < surface.mesh.face_count() && surface.is_symmetric(); ++f)
+        if (part.faces[at(f)] != 0)
+            part.faces[at(surface.face_image(f))] = 1;
+    return part;
+}
+
+bool has_open_faces(const OpenPart& part) {
+    return std::find(part.faces.begin(), part.faces.end(), 1) != part.faces.end();
+}
+
+// Seams that are decided on the working surface, on the model. Where patches are not developable on
+// it, seams are decided again: with a smaller bound on the working surface, and in the end on the
+// model itself.
+SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
+                           const PlushOptions& options, const Skeleton& skeleton,
+                           PlushSeams& result, Progress& progress) {
+    const VertexGraph graph = build_vertex_graph(model.mesh);
+    double bound = margin * options.max_area_change;
+    SeamMarks seam = working.decide({}, {}, bound);
+    OpenPart part;
+    for (int round = 0;; ++round) {
+        progress.begin_phase("carrying seams", 0.02);
+        SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, graph, progress);
+        cut_corners(model.mesh, carried);
+        part = failing_part(model, std::move(carried), options.max_area_change, progress);
+        if (!has_open_faces(part))
+            return part.seam;
+        if (round == second_thoughts)
+            break;
+        const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
+        if (!has_open_faces(again))
+            break;
+        bound *= tighter;
+        seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
+    }
+    return PlushSegmentation(model, options, skeleton, result, progress)
+        .decide(part, fixed_seams(model.mesh, part), options.max_area_change);
+}
 
 } // namespace
 
@@ -190,7 +327,25 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     if (options.max_extrema < 0)
         refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
     check_rounds(options.max_iterations, options.random_seed);
-    return PlushSegmentation(mesh, options, hard, progress).run(std::move(skeleton));
+    PlushSeams result;
+    const WorkingSurface model{mesh, {}};
+    const WorkingSurface surface = make_working_surface(mesh, options, hard, progress);
+    result.is_symmetric = surface.is_symmetric();
+    const bool is_model = !surface.is_symmetric() && surface.mesh.face_count() == mesh.face_count();
+    PlushSegmentation working(surface, options, skeleton, result, progress);
+    SeamMarks seam = is_model
+                         ? working.decide({}, hard, options.max_area_change)
+                         : decide_for_model(working, model, options, skeleton, result, progress);
+    progress.begin_phase("measuring patches", 0.05);
+    // Nothing should be left to cut here; noise can make a patch fail that was accepted before.
+    const std::vector<double> weight =
+        seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
+                     mean_curvature(mesh), {}, {});
+    result.all_developable = add_local_seams(model, build_vertex_graph(mesh), weight,
+                                             options.max_area_change, {}, seam, progress)
+                                 .all_developable;
+    measure_patches(mesh, seam, options.max_area_change, result, progress);
+    return result;
 }
 
 } // namespace devseg

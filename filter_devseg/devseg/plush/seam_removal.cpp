@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <random>
 #include <set>
 #include <utility>
 
 #include "devseg/parallel.h"
-#include "devseg/plush/patch_trial.h"
 
 namespace devseg {
 
@@ -18,8 +16,6 @@ namespace {
 constexpr std::size_t batch =
     6;                         // trials that run side by side; fixed, for the same result anywhere
 constexpr int most_passes = 2; // over all segments
-constexpr double unpaired = 0.05; // of the root of the area
-constexpr double lone = 0.008;    // of the area: patches that may be joined without a mirror image
 
 using Key = std::pair<Index, Index>; // lowest half-edge and number of edges of a segment
 
@@ -46,34 +42,36 @@ constexpr Window join_windows[] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85},  {0.1
 // A dart keeps its outer end, which comes first.
 constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
-// Segments that go together, or parts of them, and what becomes of the patches beside them.
+// A segment that goes with its mirror image, or parts of both, and the patches beside them.
 struct Removal {
-    std::vector<std::size_t> segments;
-    std::vector<std::uint8_t> reversed; // the mirror image runs the other way
-    std::vector<Window> windows;        // to be tried, in this order
-    std::vector<Index> patches;         // that are joined or lose a dart
-    std::vector<Index> half_edges;      // that go; empty = no window was accepted
+    std::size_t segment = 0;
+    std::size_t image = 0;         // the same where a segment is its own mirror image
+    std::vector<Window> windows;   // to be tried, in this order
+    std::vector<Index> patches;    // that are joined or lose a dart
+    std::vector<Index> half_edges; // that go; empty = no window was accepted
 };
 
 class Remover {
 public:
     Remover(const SeamSetting& setting, Mode mode, const RemovalOptions& options, SeamMarks& seam,
             Progress& progress)
-        : s_(setting), mode_(mode), options_(options), seam_(seam), progress_(progress) {}
+        : s_(setting), mesh_(setting.mesh()), mode_(mode), options_(options), seam_(seam),
+          progress_(progress) {}
 
-    Index run() {
-        unpaired_ = unpaired * std::sqrt(s_.mesh.total_area);
+    void run() {
         refresh();
         const double start = static_cast<double>(segments_.size());
+        int rounds = 0;
         for (int pass = 0; pass < most_passes; ++pass) {
             failed_.clear();
-            is_first_pass_ = pass == 0;
             bool changed = false;
-            for (; rounds_ < s_.max_rounds; ++rounds_) {
+            for (; rounds < s_.max_rounds; ++rounds) {
                 std::vector<Removal> round = next_round();
                 if (round.empty())
                     break;
-                test(round);
+                parallel_for(
+                    static_cast<int>(round.size()),
+                    [&](int i) { try_windows(round[static_cast<std::size_t>(i)]); }, progress_);
                 bool removed = false;
                 for (const Removal& removal : round)
                     removed = apply(removal) || removed;
@@ -83,63 +81,52 @@ public:
                 progress_.update(std::min(0.95, 1.0 - static_cast<double>(segments_.size()) /
                                                           std::max(1.0, start)));
             }
-            if (!changed && (!is_first_pass_ || s_.mirror.empty()))
+            if (!changed)
                 break;
         }
-        return trials_;
     }
 
 private:
     void refresh() {
-        segments_ = find_segments(s_.mesh, seam_, s_.hard, s_.weight);
-        patches_ = find_patches(s_.mesh, seam_);
-        degree_ = seam_degrees(s_.mesh, seam_);
+        segments_ = find_segments(mesh_, seam_, s_.hard, s_.weight);
+        patches_ = find_patches(mesh_, seam_);
+        degree_ = seam_degrees(mesh_, seam_);
         faces_.assign(at(patches_.count), {});
         area_.assign(at(patches_.count), 0.0);
-        for (Index f = 0; f < s_.mesh.face_count(); ++f) {
+        for (Index f = 0; f < mesh_.face_count(); ++f) {
             faces_[at(patches_.label[at(f)])].push_back(f);
-            area_[at(patches_.label[at(f)])] += s_.mesh.face_areas[at(f)];
+            area_[at(patches_.label[at(f)])] += mesh_.face_areas[at(f)];
         }
-        if (!s_.mirror.empty())
-            find_nearby();
-    }
-
-    // The segments within two rings of each vertex.
-    void find_nearby() {
-        nearby_.assign(s_.mesh.points.size(), {});
+        segment_of_.assign(mesh_.twin.size(), 0);
         for (std::size_t i = 0; i < segments_.size(); ++i)
             for (const Index h : segments_[i].half_edges)
-                for (const Index v : {s_.mesh.origin(h), s_.mesh.target(h)})
-                    nearby_[at(v)].push_back(static_cast<Index>(i));
-        for (int ring = 0; ring < 2; ++ring) {
-            const std::vector<std::vector<Index>> before = nearby_;
-            for (Index h = 0; h < s_.mesh.half_edge_count(); ++h) {
-                const std::vector<Index>& from = before[at(s_.mesh.origin(h))];
-                const std::vector<Index>& back = before[at(s_.mesh.target(h))];
-                std::vector<Index>& to = nearby_[at(s_.mesh.target(h))];
-                std::vector<Index>& start = nearby_[at(s_.mesh.origin(h))];
-                to.insert(to.end(), from.begin(), from.end());
-                start.insert(start.end(), back.begin(), back.end());
-            }
-            for (std::vector<Index>& near : nearby_) {
-                std::sort(near.begin(), near.end());
-                near.erase(std::unique(near.begin(), near.end()), near.end());
-            }
-        }
+                segment_of_[at(h)] = segment_of_[at(mesh_.twin[at(h)])] = i;
+    }
+
+    std::size_t image_of(std::size_t i) const {
+        return s_.surface.is_symmetric()
+                   ? segment_of_[at(s_.surface.image[at(segments_[i].half_edges.front())])]
+                   : i;
+    }
+
+    // Whether the segment runs across the plane: its mirror image is itself, the other way round.
+    bool is_crossing(std::size_t i) const {
+        return s_.surface.is_symmetric() && image_of(i) == i &&
+               !s_.surface.is_on_plane(segments_[i].half_edges.front());
     }
 
     Index left(std::size_t i) const {
         return patches_.label[at(segments_[i].half_edges.front() / 3)];
     }
     Index right(std::size_t i) const {
-        return patches_.label[at(s_.mesh.twin[at(segments_[i].half_edges.front())] / 3)];
+        return patches_.label[at(mesh_.twin[at(segments_[i].half_edges.front())] / 3)];
     }
 
     // A factor near 1 that depends on the seed and on where the segment is; 1 for the seed 0.
     double jitter(const SeamSegment& segment) const {
         if (options_.random_seed == 0)
             return 1.0;
-        const auto [lowest, count] = key_of(s_.mesh, segment);
+        const auto [lowest, count] = key_of(mesh_, segment);
         std::minstd_rand random(static_cast<std::uint32_t>(options_.random_seed) * 2654435761U +
                                 static_cast<std::uint32_t>(lowest));
         random.discard(2);
@@ -148,38 +135,11 @@ private:
 
     double order(std::size_t i) const {
         const SeamSegment& segment = segments_[i];
-        const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / s_.mesh.total_area;
+        const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / mesh_.total_area;
         if (mode_ == Mode::joins)
             return segment.length / std::max(size, 1e-9);
         return jitter(segment) * segment.weight * std::pow(segment.length, options_.length_power) *
                std::pow(size, -options_.size_power);
-    }
-
-    // The mirror image of a segment: the one near which most of its mirrored vertices lie; −1 where
-    // there is none. Without symmetry the segment itself.
-    Index partner(std::size_t i) const {
-        if (s_.mirror.empty())
-            return static_cast<Index>(i);
-        std::map<Index, int> votes;
-        int total = 0;
-        for (const Index h : segments_[i].half_edges) {
-            const Index v = s_.mirror[at(s_.mesh.target(h))];
-            ++total;
-            if (v >= 0)
-                for (const Index k : nearby_[at(v)])
-                    ++votes[k];
-        }
-        Index best = -1;
-        double most = 0.0;
-        for (const auto& [k, count] : votes) {
-            const double ratio = std::min(segments_[at(k)].length, segments_[i].length) /
-                                 std::max(segments_[at(k)].length, segments_[i].length);
-            if (2 * count > total && ratio > 0.5 && count * ratio > most) {
-                most = count * ratio;
-                best = k;
-            }
-        }
-        return best;
     }
 
     std::pair<Index, Index> patches_beside(std::size_t i) const {
@@ -202,7 +162,7 @@ private:
     std::vector<Removal> next_round() {
         std::vector<std::pair<double, std::size_t>> queue;
         for (std::size_t i = 0; i < segments_.size(); ++i)
-            if (!segments_[i].is_hard && failed_.count(key_of(s_.mesh, segments_[i])) == 0 &&
+            if (!segments_[i].is_hard && failed_.count(key_of(mesh_, segments_[i])) == 0 &&
                 may_go(i))
                 queue.emplace_back(-order(i), i);
         std::sort(queue.begin(), queue.end());
@@ -212,11 +172,11 @@ private:
         for (const auto& [price, i] : queue) {
             if (round.size() >= batch)
                 break;
-            if (used[i] != 0 || (partner(i) < 0 && !may_go_alone(i)))
+            if (used[i] != 0)
                 continue;
             Removal removal = removal_of(i);
             bool is_free = true;
-            for (const std::size_t k : removal.segments) {
+            for (const std::size_t k : {i, removal.image}) {
                 used[k] = 1;
                 for (const Index p : {left(k), right(k)})
                     if (std::find(removal.patches.begin(), removal.patches.end(), p) ==
@@ -233,10 +193,6 @@ private:
         return round;
     }
 
-    // Seams of small patches do not show.
-    bool may_go_alone(std::size_t i) const {
-        return segments_[i].length <= unpaired_ || smaller_area(i) <= lone * s_.mesh.total_area;
-    }
     double smaller_area(std::size_t i) const {
         return std::min(area_[at(left(i))], area_[at(right(i))]);
     }
@@ -244,9 +200,9 @@ private:
     bool may_go(std::size_t i) const {
         switch (mode_) {
         case Mode::whole_segments:
-            return is_first_pass_ || s_.mirror.empty() || may_go_alone(i);
+            return true;
         case Mode::joins:
-            return smaller_area(i) <= options_.most_area * s_.mesh.total_area &&
+            return smaller_area(i) <= options_.most_area * mesh_.total_area &&
                    is_longest_between(i);
         case Mode::darts:
             return !segments_[i].is_loop && left(i) == right(i) && free_end(i) != 0;
@@ -257,69 +213,44 @@ private:
     // 1 where a segment ends inside a patch, −1 where it starts there, 0 for neither.
     int free_end(std::size_t i) const {
         const std::vector<Index>& line = segments_[i].half_edges;
-        if (degree_[at(s_.mesh.target(line.back()))] == 1)
+        if (degree_[at(mesh_.target(line.back()))] == 1)
             return 1;
-        return degree_[at(s_.mesh.origin(line.front()))] == 1 ? -1 : 0;
+        return degree_[at(mesh_.origin(line.front()))] == 1 ? -1 : 0;
     }
 
     Removal removal_of(std::size_t i) const {
         Removal removal;
-        removal.segments = {i};
-        removal.reversed = {
-            static_cast<std::uint8_t>(mode_ == Mode::darts && free_end(i) < 0 ? 1 : 0)};
-        const Index image = partner(i);
-        const std::size_t other = image >= 0 ? at(image) : i;
-        if (other != i && !segments_[other].is_hard && may_go(other) &&
-            (is_first_pass_ || !may_go_alone(i))) {
-            removal.segments.push_back(other);
-            removal.reversed.push_back(
-                static_cast<std::uint8_t>(mode_ == Mode::darts ? (free_end(other) < 0 ? 1 : 0)
-                                                               : (is_reversed(i, other) ? 1 : 0)));
-        }
+        removal.segment = i;
+        removal.image = image_of(i);
         if (mode_ == Mode::whole_segments) {
             removal.windows = {{0.0, 1.0}};
         } else if (mode_ == Mode::darts) {
-            removal.windows.assign(std::begin(dart_windows), std::end(dart_windows));
+            for (const Window& w : dart_windows)
+                removal.windows.push_back(free_end(i) < 0 ? Window{1.0 - w.to, 1.0 - w.from} : w);
         } else {
-            const double size = std::min(area_[at(left(i))], area_[at(right(i))]);
-            const double least = options_.least_neck * std::sqrt(size) / segments_[i].length;
-            const bool is_own_image =
-                image == static_cast<Index>(i) && !s_.mirror.empty() && is_reversed(i, i);
+            const double least =
+                options_.least_neck * std::sqrt(smaller_area(i)) / segments_[i].length;
             for (const Window& w : join_windows)
                 if ((w.from == 0.0 && w.to == 1.0) ||
-                    (w.to - w.from >= least && (!is_own_image || w.from == 1.0 - w.to)))
+                    (w.to - w.from >= least && (!is_crossing(i) || w.from == 1.0 - w.to)))
                     removal.windows.push_back(w);
         }
         return removal;
     }
 
-    // Whether the mirror image of segment i runs against segment k.
-    bool is_reversed(std::size_t i, std::size_t k) const {
-        const auto image = [&](Index v) {
-            const Index m = s_.mirror[at(v)];
-            return s_.mesh.points[at(m >= 0 ? m : v)];
-        };
-        const Vec3 start = image(s_.mesh.origin(segments_[i].half_edges.front()));
-        const Vec3 end = image(s_.mesh.target(segments_[i].half_edges.back()));
-        const Vec3& first = s_.mesh.points[at(s_.mesh.origin(segments_[k].half_edges.front()))];
-        const Vec3& last = s_.mesh.points[at(s_.mesh.target(segments_[k].half_edges.back()))];
-        return (start - last).norm() + (end - first).norm() <
-               (start - first).norm() + (end - last).norm();
-    }
-
+    // Of the segment, and their mirror images.
     std::vector<Index> edges_within(const Removal& removal, const Window& window) const {
         std::vector<Index> edges;
-        for (std::size_t j = 0; j < removal.segments.size(); ++j) {
-            const SeamSegment& segment = segments_[removal.segments[j]];
-            const Window w =
-                removal.reversed[j] != 0 ? Window{1.0 - window.to, 1.0 - window.from} : window;
-            double before = 0.0;
-            for (const Index h : segment.half_edges) {
-                const double middle = (before + 0.5 * s_.mesh.edge_length(h)) / segment.length;
-                if (middle >= w.from && middle <= w.to)
-                    edges.push_back(h);
-                before += s_.mesh.edge_length(h);
-            }
+        const SeamSegment& segment = segments_[removal.segment];
+        double before = 0.0;
+        for (const Index h : segment.half_edges) {
+            const double middle = (before + 0.5 * mesh_.edge_length(h)) / segment.length;
+            before += mesh_.edge_length(h);
+            if (middle < window.from || middle > window.to)
+                continue;
+            edges.push_back(h);
+            if (s_.surface.is_symmetric())
+                edges.push_back(s_.surface.image[at(h)]);
         }
         return edges;
     }
@@ -330,7 +261,7 @@ private:
         for (const Index p : removal.patches)
             open.insert(open.end(), faces_[at(p)].begin(), faces_[at(p)].end());
         std::sort(open.begin(), open.end());
-        return patches_of(s_.mesh, marks, open);
+        return patches_of(mesh_, marks, open);
     }
 
     void try_windows(Removal& removal) const {
@@ -341,13 +272,8 @@ private:
                 continue;
             SeamMarks marks = seam_;
             for (const Index h : edges)
-                mark(s_.mesh, h, 0, marks);
-            const auto parts = flood(removal, marks);
-            const bool fits = std::all_of(parts.begin(), parts.end(), [&](const auto& faces) {
-                return try_patch(s_.mesh, faces, marks, s_.max_area_change, false, progress_)
-                    .accepted;
-            });
-            if (fits) {
+                mark(mesh_, h, 0, marks);
+            if (s_.tester.accepts_all(flood(removal, marks), marks, progress_)) {
                 removal.half_edges = std::move(edges);
                 return;
             }
@@ -355,23 +281,17 @@ private:
         }
     }
 
-    void test(std::vector<Removal>& round) {
-        parallel_for(
-            static_cast<int>(round.size()),
-            [&](int i) { try_windows(round[static_cast<std::size_t>(i)]); }, progress_);
-        trials_ += static_cast<Index>(round.size());
-    }
-
     bool apply(const Removal& removal) {
         for (const Index h : removal.half_edges)
-            mark(s_.mesh, h, 0, seam_);
+            mark(mesh_, h, 0, seam_);
         if (removal.half_edges.empty())
-            for (const std::size_t k : removal.segments)
-                failed_.insert(key_of(s_.mesh, segments_[k]));
+            for (const std::size_t k : {removal.segment, removal.image})
+                failed_.insert(key_of(mesh_, segments_[k]));
         return !removal.half_edges.empty();
     }
 
     const SeamSetting& s_;
+    const Mesh& mesh_;
     const Mode mode_;
     const RemovalOptions& options_;
     SeamMarks& seam_;
@@ -380,30 +300,26 @@ private:
     FaceComponents patches_;
     std::vector<std::vector<Index>> faces_; // of each patch
     std::vector<double> area_;
-    std::vector<std::vector<Index>> nearby_; // #V: segments
-    std::vector<Index> degree_;              // #V
+    std::vector<std::size_t> segment_of_; // 3 #F, of seam edges
+    std::vector<Index> degree_;           // #V
     std::set<Key> failed_;
-    bool is_first_pass_ = true; // later, small patches may be joined without their mirror images
-    double unpaired_ = 0.0;     // length of segments that may go without a mirror image
-    Index trials_ = 0;
-    int rounds_ = 0;
 };
 
 } // namespace
 
-Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                   Progress& progress) {
-    return Remover(setting, Mode::whole_segments, options, seam, progress).run();
+void remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                  Progress& progress) {
+    Remover(setting, Mode::whole_segments, options, seam, progress).run();
 }
 
-Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                   Progress& progress) {
-    return Remover(setting, Mode::joins, options, seam, progress).run();
+void join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                  Progress& progress) {
+    Remover(setting, Mode::joins, options, seam, progress).run();
 }
 
-Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+void shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
     const RemovalOptions options;
-    return Remover(setting, Mode::darts, options, seam, progress).run();
+    Remover(setting, Mode::darts, options, seam, progress).run();
 }
 
 } // namespace devseg

@@ -1,19 +1,20 @@
 // Taking seams away that are not needed, by trial flattenings.
 #pragma once
 
+#include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_network.h"
-#include "devseg/progress.h"
 
 namespace devseg {
 
 /// What seams are judged by.
 struct SeamSetting {
-    const Mesh& mesh;
+    const WorkingSurface& surface;
     const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
     const std::vector<double>& weight; // 3 #F
-    const std::vector<Index>& mirror;  // #V: the vertex on the other side, −1 = none; or empty
-    double max_area_change = 0.15;
+    PatchTester& tester;
     int max_rounds = 10000; // of trials side by side
+
+    const Mesh& mesh() const { return surface.mesh; }
 };
 
 struct RemovalOptions {
@@ -29,18 +30,16 @@ struct RemovalOptions {
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all
-/// patches that grow stay developable; seams that end inside a patch are darts. Returns the number
-/// of trials.
-Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                   Progress& progress);
+/// patches that grow stay developable; seams that end inside a patch are darts.
+void remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                  Progress& progress);
 
 /// Joins patches, the smallest first, where only a part of the seam between them can be removed:
-/// what stays of it are darts. The part is as long as possible. Returns the number of trials.
-Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                   Progress& progress);
+/// what stays of it are darts. The part is as long as possible.
+void join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                  Progress& progress);
 
-/// Removes darts, or their inner ends, where patches stay developable without them. Returns the
-/// number of trials.
-Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
+/// Removes darts, or their inner ends, where patches stay developable without them.
+void shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg

@@ -16,137 +16,210 @@ constexpr double worth = 0.97;    // of its cost: what a new path must save
 constexpr double natural_share =
     0.3; // of the seam weight in the cost of an edge, beside its length
 
+// An open part of a segment, which is made straight between its ends.
+struct Line {
+    std::vector<Index> half_edges; // head to tail
+    bool may_slide = false;        // its end, along the plane, where the mirror image goes on
+};
+
 class Straightener {
 public:
     Straightener(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
                  Progress& progress)
-        : s_(setting), graph_(graph), seam_(seam), progress_(progress), cost_(seam.size()) {
-        for (Index h = 0; h < s_.mesh.half_edge_count(); ++h)
+        : s_(setting), mesh_(setting.mesh()), graph_(graph), seam_(seam), progress_(progress),
+          cost_(seam.size()), side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
             cost_[at(h)] =
-                s_.mesh.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[at(h)]);
+                mesh_.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[at(h)]);
+            side_[at(mesh_.origin(h))] = s_.surface.is_symmetric() && s_.surface.image[at(h)] < h;
+            on_plane_[at(mesh_.origin(h))] = s_.surface.starts_on_plane(h) ? 1 : 0;
+        }
     }
 
     Index run() {
         Index replaced = 0;
-        const std::vector<SeamSegment> segments = find_segments(s_.mesh, seam_, s_.hard, s_.weight);
-        std::vector<std::vector<Index>> paths(segments.size());
-        parallel_for(
-            static_cast<int>(segments.size()),
-            [&](int i) {
-                const auto k = static_cast<std::size_t>(i);
-                if (!segments[k].is_hard && !segments[k].is_loop &&
-                    segments[k].half_edges.size() > 2)
-                    paths[k] = shorter_path(segments[k]);
-            },
-            progress_);
-        for (std::size_t i = 0; i < segments.size(); ++i) {
-            progress_.update(static_cast<double>(i) / static_cast<double>(segments.size()));
-            if (!paths[i].empty() && replace(segments[i], paths[i]))
-                ++replaced;
+        // Loops have other ends the second time.
+        for (const int turn : {0, 1}) {
+            const std::vector<Line> lines = find_lines(turn);
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                progress_.update(0.5 * turn +
+                                 0.5 * static_cast<double>(i) / static_cast<double>(lines.size()));
+                const std::vector<Index> path = shorter_path(lines[i]);
+                if (!path.empty() && replace(lines[i].half_edges, path))
+                    ++replaced;
+            }
         }
         return replaced;
     }
 
 private:
-    // Through vertices near the segment that are on no other seam; empty if there is none.
-    std::vector<Index> shorter_path(const SeamSegment& segment) const {
-        const Mesh& mesh = s_.mesh;
-        std::vector<std::uint8_t> near(mesh.points.size(), 0);
+    std::vector<Line> find_lines(int turn) const {
+        std::vector<Line> lines;
+        std::vector<std::uint8_t> done(seam_.size(), 0);
+        for (const SeamSegment& segment : find_segments(mesh_, seam_, s_.hard, s_.weight)) {
+            const std::vector<Index>& line = segment.half_edges;
+            if (segment.is_hard || line.size() < 3 || s_.surface.is_on_plane(line.front()) ||
+                done[at(line.front())] != 0)
+                continue;
+            if (s_.surface.is_symmetric())
+                for (const Index h : line) {
+                    const Index image = s_.surface.image[at(h)];
+                    done[at(image)] = done[at(mesh_.twin[at(image)])] = 1;
+                }
+            if (segment.is_loop)
+                split_loop(line, turn, lines);
+            else
+                lines.push_back(up_to_plane(line));
+        }
+        return lines;
+    }
+
+    Line up_to_plane(const std::vector<Index>& line) const {
+        for (std::size_t k = 1; k < line.size(); ++k)
+            if (on_plane_[at(mesh_.origin(line[k]))] != 0)
+                return {{line.begin(), line.begin() + static_cast<std::ptrdiff_t>(k)}, true};
+        return {line, false};
+    }
+
+    // Where it crosses the plane, the part on one side; else two halves.
+    void split_loop(std::vector<Index> line, int turn, std::vector<Line>& lines) const {
+        const auto crosses = [&](Index h) { return on_plane_[at(mesh_.origin(h))] != 0; };
+        auto first = std::find_if(line.begin(), line.end(), crosses);
+        const bool is_crossing = first != line.end();
+        if (!is_crossing)
+            first = line.begin() + turn * static_cast<std::ptrdiff_t>(line.size()) / 4;
+        std::rotate(line.begin(), first, line.end());
+        auto middle = line.begin() + static_cast<std::ptrdiff_t>(line.size() / 2);
+        if (is_crossing)
+            middle = std::find_if(line.begin() + 1, line.end(), crosses);
+        lines.push_back({{line.begin(), middle}, false});
+        if (!is_crossing)
+            lines.push_back({{middle, line.end()}, false});
+    }
+
+    // Vertices near the line, on its side of the plane, that are on no other seam.
+    std::vector<std::uint8_t> corridor(const std::vector<Index>& line) const {
+        std::vector<std::uint8_t> near(mesh_.points.size(), 0);
         std::vector<Index> ring;
-        double before = 0.0;
-        for (const Index h : segment.half_edges) {
-            before += cost_[at(h)];
-            for (const Index v : {mesh.origin(h), mesh.target(h)})
+        for (const Index h : line)
+            for (const Index v : {mesh_.origin(h), mesh_.target(h)})
                 if (near[at(v)] == 0) {
                     near[at(v)] = 1;
                     ring.push_back(v);
                 }
-        }
+        const std::uint8_t side =
+            s_.surface.is_symmetric() && s_.surface.image[at(line.front())] < line.front();
         for (int k = 0; k < corridor_rings; ++k) {
             std::vector<Index> next;
             for (const Index v : ring)
                 for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
                     const Index u = graph_.vertex[at(i)];
-                    if (near[at(u)] == 0 && !is_on_seam(u)) {
-                        near[at(u)] = 1;
-                        next.push_back(u);
-                    }
+                    if (near[at(u)] != 0 || is_on_seam(u) ||
+                        (side_[at(u)] != side && on_plane_[at(u)] == 0))
+                        continue;
+                    near[at(u)] = 1;
+                    next.push_back(u);
                 }
             ring = std::move(next);
         }
-        const Index start = mesh.origin(segment.half_edges.front());
-        const Index end = mesh.target(segment.half_edges.back());
+        return near;
+    }
+
+    // Empty if there is none.
+    std::vector<Index> shorter_path(const Line& whole) const {
+        const std::vector<Index>& line = whole.half_edges;
+        double before = 0.0;
+        for (const Index h : line) {
+            if (seam_[at(h)] == 0)
+                return {}; // another line took its place
+            before += cost_[at(h)];
+        }
+        const Index start = mesh_.origin(line.front());
+        Index end = mesh_.target(line.back());
         if (start == end)
             return {};
-        const PathTree tree = shortest_paths(graph_, cost_, {start}, near);
+        const std::vector<std::uint8_t> near = corridor(line);
+        // Paths end where they reach the plane.
+        const PathTree tree = shortest_paths(graph_, cost_, {start}, near, on_plane_);
+        for (std::size_t v = 0; v < near.size() && whole.may_slide; ++v)
+            if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[at(end)])
+                end = static_cast<Index>(v);
         if (!(tree.distance[at(end)] < worth * before))
             return {};
-        return trace_path(mesh, tree, end);
+        return trace_path(mesh_, tree, end);
     }
 
     bool is_on_seam(Index v) const {
         for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
             const Index h = graph_.half_edge[at(i)];
-            if (seam_[at(h)] != 0 || s_.mesh.twin[at(h)] < 0)
+            if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
                 return true;
         }
         return false;
     }
 
+    void mark_both(const std::vector<Index>& line, std::uint8_t value, SeamMarks& marks) const {
+        for (const Index h : line) {
+            mark(mesh_, h, value, marks);
+            if (s_.surface.is_symmetric())
+                mark(mesh_, s_.surface.image[at(h)], value, marks);
+        }
+    }
+
     // Whether the new path meets no seam but at its ends.
-    bool is_free(const SeamSegment& segment, const std::vector<Index>& path,
+    bool is_free(const std::vector<Index>& line, const std::vector<Index>& path,
                  const SeamMarks& without) const {
-        const Index start = s_.mesh.origin(segment.half_edges.front());
-        const Index end = s_.mesh.target(segment.half_edges.back());
         for (const Index h : path)
-            for (const Index v : {s_.mesh.origin(h), s_.mesh.target(h)}) {
-                if (v == start || v == end)
+            for (const Index v : {mesh_.origin(h), mesh_.target(h)}) {
+                if (v == mesh_.origin(line.front()) || v == mesh_.target(line.back()))
                     continue;
                 for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
                     const Index e = graph_.half_edge[at(i)];
-                    if (without[at(e)] != 0 || s_.mesh.twin[at(e)] < 0)
+                    if (without[at(e)] != 0 || mesh_.twin[at(e)] < 0)
                         return false;
                 }
             }
         return true;
     }
 
-    bool replace(const SeamSegment& segment, const std::vector<Index>& path) {
+    bool replace(const std::vector<Index>& line, const std::vector<Index>& path) {
         SeamMarks marks = seam_;
-        for (const Index h : segment.half_edges)
-            mark(s_.mesh, h, 0, marks);
-        if (!is_free(segment, path, marks))
+        mark_both(line, 0, marks);
+        if (!is_free(line, path, marks))
             return false;
-        for (const Index h : path)
-            mark(s_.mesh, h, 1, marks);
-        // The patches beside the old and the new line, as they would be.
-        std::vector<Index> start;
-        for (const Index h : path)
-            for (const Index side : {h, s_.mesh.twin[at(h)]})
-                start.push_back(side / 3);
-        const std::vector<std::vector<Index>> parts = patches_of(s_.mesh, marks, start);
-        std::vector<std::uint8_t> fits(parts.size(), 0);
-        parallel_for(
-            static_cast<int>(parts.size()),
-            [&](int i) {
-                const auto k = static_cast<std::size_t>(i);
-                fits[k] = try_patch(s_.mesh, parts[k], marks, s_.max_area_change, false, progress_)
-                                  .accepted
-                              ? 1
-                              : 0;
-            },
-            progress_);
-        if (std::find(fits.begin(), fits.end(), 0) != fits.end())
+        mark_both(path, 1, marks);
+        if (!keeps_patches(path, marks))
             return false;
         seam_ = std::move(marks);
         return true;
     }
 
+    bool keeps_patches(const std::vector<Index>& path, const SeamMarks& marks) const {
+        // The patches beside the old and the new line, as they would be.
+        std::vector<Index> start;
+        for (const Index h : path)
+            for (const Index side : {h, mesh_.twin[at(h)]})
+                start.push_back(side / 3);
+        const std::vector<std::vector<Index>> parts = patches_of(mesh_, marks, start);
+        std::vector<std::uint8_t> fits(parts.size(), 0);
+        parallel_for(
+            static_cast<int>(parts.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                fits[k] = s_.tester.accepts(parts[k], marks, progress_) ? 1 : 0;
+            },
+            progress_);
+        return std::find(fits.begin(), fits.end(), 0) == fits.end();
+    }
+
     const SeamSetting& s_;
+    const Mesh& mesh_;
     const VertexGraph& graph_;
     SeamMarks& seam_;
     Progress& progress_;
-    std::vector<double> cost_; // 3 #F
+    std::vector<double> cost_;           // 3 #F
+    std::vector<std::uint8_t> side_;     // #V: 1 on the mirror image
+    std::vector<std::uint8_t> on_plane_; // #V
 };
 
 } // namespace

@@ -5,17 +5,15 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "devseg/cut/min_cut.h"
 #include "devseg/mesh/surface_search.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr Index samples = 1500;   // points that are mirrored while a plane is fitted
-constexpr int most_rounds = 30;   // of fitting
-constexpr double trusted = 0.8;   // share of the points, the nearest, that a plane is fitted to
-constexpr double cut_reach = 2.5; // of the mean edge: how far the middle line may leave the plane
+constexpr Index samples = 1500; // points that are mirrored while a plane is fitted
+constexpr int most_rounds = 30; // of fitting
+constexpr double trusted = 0.8; // share of the points, the nearest, that a plane is fitted to
 
 Vec3 reflect_direction(const MirrorPlane& plane, const Vec3& d) {
     return d - 2.0 * plane.normal.dot(d) * plane.normal;
@@ -90,13 +88,6 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
     return planes;
 }
 
-double mean_edge_length(const Mesh& mesh) {
-    double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        sum += mesh.edge_length(h);
-    return sum / mesh.half_edge_count();
-}
-
 } // namespace
 
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
@@ -145,64 +136,6 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
         }
     }
     return best;
-}
-
-std::vector<std::uint8_t> sides_of(const Mesh& mesh, const MirrorPlane& plane) {
-    const double reach = cut_reach * mean_edge_length(mesh);
-    std::vector<CutSide> start(mesh.faces.size(), CutSide::open);
-    for (std::size_t f = 0; f < start.size(); ++f) {
-        const double height = plane.height(mesh.face_centers[f]);
-        if (std::abs(height) > reach)
-            start[f] = height < 0.0 ? CutSide::source : CutSide::sink;
-    }
-    MinCut cut(start);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
-        if (twin < h)
-            continue;
-        const double height = 0.5 *
-                              (plane.height(mesh.points[at(mesh.origin(h))]) +
-                               plane.height(mesh.points[at(mesh.target(h))])) /
-                              reach;
-        cut.link(h / 3, twin / 3, mesh.edge_length(h) * (1.0 + 4.0 * height * height));
-    }
-    const std::vector<CutSide> sides = cut.solve();
-    std::vector<std::uint8_t> side(mesh.faces.size());
-    for (std::size_t f = 0; f < side.size(); ++f)
-        side[f] = sides[f] == CutSide::source ? 0 : 1;
-    return side;
-}
-
-std::vector<Index> mirror_faces(const Mesh& mesh, const MirrorPlane& plane,
-                                const std::vector<std::uint8_t>& side) {
-    const SurfaceSearch search(mesh);
-    std::vector<std::uint8_t> touches(2 * mesh.points.size(), 0); // vertex has faces on the side
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        touches[2 * at(mesh.origin(h)) + side[at(h / 3)]] = 1;
-    std::vector<Index> image(mesh.faces.size());
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::uint8_t other = side[at(f)] == 0 ? 1 : 0;
-        const Vec3 p = plane.reflect(mesh.face_centers[at(f)]);
-        const Vec3 n = reflect_direction(plane, mesh.face_normals[at(f)]);
-        const auto on_side = [&](Index v) { return touches[2 * at(v) + other] != 0; };
-        const Index v = search.vertex(p, n, on_side);
-        image[at(f)] = f;
-        if (v >= 0)
-            image[at(f)] =
-                search.on_faces(p, v, [&](Index g) { return side[at(g)] == other; }).first;
-    }
-    return image;
-}
-
-std::vector<Index> mirror_vertices(const Mesh& mesh, const MirrorPlane& plane) {
-    const SurfaceSearch search(mesh);
-    std::vector<Index> image(mesh.points.size(), -1);
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        if (search.leaving(v) >= 0)
-            image[at(v)] = search.vertex(plane.reflect(mesh.points[at(v)]),
-                                         reflect_direction(plane, search.normal(v)),
-                                         [](Index) { return true; });
-    return image;
 }
 
 } // namespace devseg

@@ -25,15 +25,4 @@ struct MirrorPlane {
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              const Progress& progress);
 
-/// Both sides of the plane: 0 where the height is below 0 and 1 above, along a short line (a
-/// minimum cut within a few edges of the plane). #F.
-std::vector<std::uint8_t> sides_of(const Mesh& mesh, const MirrorPlane& plane);
-
-/// The face that lies where each face's centre is mirrored to, of those on the other side; #F.
-std::vector<Index> mirror_faces(const Mesh& mesh, const MirrorPlane& plane,
-                                const std::vector<std::uint8_t>& side);
-
-/// The nearest vertex to each mirrored vertex; #V.
-std::vector<Index> mirror_vertices(const Mesh& mesh, const MirrorPlane& plane);
-
 } // namespace devseg
