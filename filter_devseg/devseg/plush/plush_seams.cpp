@@ -28,10 +28,11 @@ constexpr Index decision_faces = 6000;    // of the surface on which seams are d
 // of deciding again.
 constexpr double margin = 0.85;
 constexpr double tighter = 0.88;
-constexpr int second_thoughts = 4;
+constexpr int second_thoughts = 2;
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
+constexpr double remnant = 0.02; // of the surface: patches that are joined on the model, in the end
 
 // Material borders are edges of the model: then seams are decided on the model itself.
 WorkingSurface make_working_surface(const Mesh& mesh, const PlushOptions& options,
@@ -74,6 +75,22 @@ public:
         seam_.resize(mesh_.twin.size(), 0);
         lay_candidates();
         remove();
+        return seam_;
+    }
+
+    /// The seams, with small patches joined to neighbours.
+    SeamMarks without_small_patches(const SeamMarks& seam, double max_area_change) {
+        hard_.clear();
+        seam_ = seam;
+        PatchTester tester(surface_, max_area_change);
+        RemovalOptions removal;
+        removal.random_seed = options_.random_seed;
+        removal.most_area = remnant;
+        removal.least_neck = narrow_neck;
+        progress_.begin_phase("joining patches", 0.04);
+        join_patches({surface_, hard_, weight_, tester, options_.max_iterations}, removal, seam_,
+                     progress_);
+        result_.trials += tester.trials();
         return seam_;
     }
 
@@ -304,9 +321,7 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, graph, progress);
         cut_corners(model.mesh, carried);
         part = failing_part(model, std::move(carried), options.max_area_change, progress);
-        if (!has_open_faces(part))
-            return part.seam;
-        if (round == second_thoughts)
+        if (!has_open_faces(part) || round == second_thoughts)
             break;
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
         if (!has_open_faces(again))
@@ -314,8 +329,10 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         bound *= tighter;
         seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
     }
-    return PlushSegmentation(model, options, skeleton, result, progress)
-        .decide(part, fixed_seams(model.mesh, part), options.max_area_change);
+    PlushSegmentation on_model(model, options, skeleton, result, progress);
+    if (has_open_faces(part))
+        part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
+    return on_model.without_small_patches(part.seam, options.max_area_change);
 }
 
 } // namespace
