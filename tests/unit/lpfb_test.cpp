@@ -8,6 +8,7 @@
 
 #include "devseg/flatten/abf.h"
 #include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/seam_lengths.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
@@ -263,6 +264,27 @@ TEST(Lpfb, ThinTrianglesGiveFiniteMapsOrFailures) {
             } catch (const NumericalFailure&) { // said, not hidden
             }
         }
+}
+
+TEST(Lpfb, LengthsAreGivenBackByShortMoves) {
+    Random random(7);
+    std::vector<Vec2> points;
+    for (int i = 0; i < 60; ++i) {
+        const double t = 2.0 * pi * i / 60.0;
+        points.emplace_back((2.0 + 0.2 * (i % 2)) * std::cos(t), std::sin(t));
+    }
+    std::vector<double> lengths = measure(points).lengths;
+    for (double& length : lengths)
+        length *= 1.0 + random.uniform(-0.05, 0.05);
+    const auto restored = restore_lengths(points, lengths, Progress{});
+    ASSERT_TRUE(restored.has_value());
+    const Boundary after = measure(*restored);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        EXPECT_NEAR(after.lengths[i], lengths[i], 1e-6 * lengths[i]);
+        EXPECT_LT(((*restored)[i] - points[i]).norm(), 0.1);
+    }
+    lengths[0] = 100.0; // longer than all others together
+    EXPECT_FALSE(restore_lengths(points, lengths, Progress{}).has_value());
 }
 
 TEST(Lpfb, OneTriangleKeepsItsShape) {

@@ -23,7 +23,10 @@ namespace {
 
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
-constexpr Index decision_faces = 6000;    // of the surface on which seams are decided
+// Of the surface on which seams are decided: with its mirror image, and without, where what is
+// saved is less than what carrying seams costs.
+constexpr Index mirrored_faces = 6000;
+constexpr Index plain_faces = 15000;
 // Of the bound: what is used of it on another surface than the model, at first, and in each round
 // of deciding again.
 constexpr double margin = 0.85;
@@ -42,9 +45,9 @@ WorkingSurface make_working_surface(const Mesh& mesh, const PlushOptions& option
         return {mesh, {}};
     if (options.symmetric)
         if (const auto plane = find_mirror_plane(mesh, symmetric_enough, progress))
-            if (auto surface = mirrored_working_surface(mesh, *plane, decision_faces, progress))
+            if (auto surface = mirrored_working_surface(mesh, *plane, mirrored_faces, progress))
                 return std::move(*surface);
-    return plain_working_surface(mesh, decision_faces, progress);
+    return plain_working_surface(mesh, plain_faces, progress);
 }
 
 // A part of a surface where seams are still to be decided.
