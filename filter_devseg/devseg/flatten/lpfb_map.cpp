@@ -82,6 +82,10 @@ std::vector<Vec2> isometric_map(const FlatteningProblem& problem, double give_up
     return minimise_arap(problem, map.uv, options, progress).uv;
 }
 
+std::optional<LpfbMap> smaller_change(std::optional<LpfbMap> a, std::optional<LpfbMap> b) {
+    return !a || (b && b->area_change < a->area_change) ? std::move(b) : std::move(a);
+}
+
 // The map with the boundary's lengths nearest to a nearly isometric one, if it keeps the
 // conditions.
 std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartSurface& surface,
@@ -132,11 +136,11 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
             isometric_map(problem, options.give_up_energy, progress);
         if (!isometric.empty()) {
             auto near = map_beside(problem, surface, isometric, tolerance, progress);
-            if (!near)
-                near = map_near(problem, surface, boundary_angles(problem, isometric), tolerance,
-                                progress);
-            if (near && (!best || near->area_change < best->area_change))
-                best = std::move(near);
+            if (!near || (options.all_maps && near->area_change > lpfb_area_change))
+                best = smaller_change(std::move(best), map_near(problem, surface,
+                                                                boundary_angles(problem, isometric),
+                                                                tolerance, progress));
+            best = smaller_change(std::move(best), std::move(near));
         }
     } catch (const NumericalFailure&) { // then the first one has to do
     }
