@@ -157,7 +157,12 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
                             of_faces(host.face_color, gated),
                             gated.center};
     try {
-        return map_back(host, gated, filter.run(input, values, progress));
+        FilterOutput output = filter.run(input, values, progress);
+        const std::function<void()> save = std::move(output.save);
+        HostResult result = map_back(host, gated, std::move(output));
+        if (save)
+            save();
+        return result;
     } catch (InvalidMesh& error) {
         for (Index& f : error.faces)
             f = gated.source_face[at(f)];
