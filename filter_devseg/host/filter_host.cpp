@@ -1,6 +1,7 @@
 #include "host/filter_host.h"
 
 #include <optional>
+#include <utility>
 
 #include "host/host_errors.h"
 #include "host/layout_uv.h"
@@ -78,7 +79,7 @@ HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
         if (filter.needs_uv)
             host.wedge_uv = read_layout_uv(*model);
         HostResult result =
-            run_filter(filter, host, parameter_values(filter, parameters), progress);
+            run_filter(filter, std::move(host), parameter_values(filter, parameters), progress);
         HostRun run;
         std::optional<NewLayer> layer;
         if (result.layer)

@@ -126,8 +126,9 @@ struct HostResult {
 };
 
 /// Gates the mesh, runs the filter and maps its output back. Parameters that are not given take
-/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then.
-HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
-                      const ParameterValues& values, Progress& progress);
+/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then, and no
+/// file has changed. Whatever the filter is busy with, Cancelled comes at once (apart.h).
+HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
+                      Progress& progress);
 
 } // namespace devseg
