@@ -1,6 +1,6 @@
 // A small mesh through a segmentation and a flattening; both results are validated.
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "devseg/errors.h"
 #include "devseg/filters/filter.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_vertices = 40;
 constexpr int most_faces = 80;
-constexpr std::chrono::seconds longest_run{20};
+constexpr double longest_run = 20.0; // seconds of a processor: machines that fuzz are busy
 
 RawMesh read_mesh(Bytes& bytes) {
     RawMesh mesh;
@@ -35,9 +35,9 @@ RawMesh read_mesh(Bytes& bytes) {
 
 HostResult run(const FilterDeclaration& filter, const HostMesh& host,
                const ParameterValues& values) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     Progress progress([&](double, const char*) {
-        if (std::chrono::steady_clock::now() - start > longest_run)
+        if (static_cast<double>(std::clock() - start) > longest_run * CLOCKS_PER_SEC)
             fail(filter.menu_name + " takes too long");
         return true;
     });
