@@ -1,6 +1,7 @@
 // A small mesh through a segmentation and a flattening; both results are validated.
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include "devseg/errors.h"
 #include "devseg/filters/filter.h"
@@ -83,8 +84,12 @@ void run_pipeline(Bytes& bytes) {
     host.chart_id.assign(segmented.chart_id.begin(), segmented.chart_id.end());
     host.seam_edges.assign(segmented.seam_edges.begin(), segmented.seam_edges.end());
     // What could be segmented can be flattened, unless it is too large for 32 bits.
+    bool too_thin = false;
     try {
-        host.wedge_uv = run(flattening(), host, way).wedge_uv;
+        HostResult flat = run(flattening(), host, way);
+        host.wedge_uv = std::move(flat.wedge_uv);
+        for (const std::string& note : flat.notes) // one face far larger than the others: told
+            too_thin |= note.find("too thin for 32-bit") != std::string::npos;
     } catch (const InvalidMesh&) {
         return;
     }
@@ -92,7 +97,7 @@ void run_pipeline(Bytes& bytes) {
         if (filter.python_name != "get_parametrization_measures")
             continue;
         const HostResult measured = run(filter, host, {});
-        if (value(measured, "flipped_faces_number") != 0)
+        if (value(measured, "flipped_faces_number") != 0 && !too_thin)
             fail("flipped faces");
         if (value(measured, "overlapping_faces_number") != 0)
             fail("overlapping faces");
