@@ -6,7 +6,6 @@
 #include <exception>
 #include <mutex>
 #include <new>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -77,7 +76,7 @@ std::vector<std::thread> start_workers(Pool& pool, int count,
         change_running(1); // before it ends
         try {
             workers.emplace_back([&pool, count, &task] { work(pool, count, task); });
-        } catch (const std::system_error&) {
+        } catch (const std::exception&) { // no thread, or no memory for what describes it
             change_running(-1);
             break;
         }

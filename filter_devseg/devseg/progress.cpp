@@ -40,6 +40,14 @@ void Progress::update(double phase_fraction) {
         throw Cancelled();
 }
 
+void Progress::pass_on(double fraction, const char* phase) {
+    owner_ = std::this_thread::get_id();
+    phase_ = phase;
+    last_fraction_ = std::max(last_fraction_, fraction);
+    last_call_ = {};
+    check();
+}
+
 void Progress::check() const {
     if (cancelled() || (callback_ && std::this_thread::get_id() == owner_ && !ask_host()))
         throw Cancelled();

@@ -25,6 +25,10 @@ public:
     /// Only the thread that runs the filter may call it: hosts touch their windows here.
     void update(double phase_fraction);
 
+    /// Reports what another progress object of the same run was told, as it was told; throws
+    /// Cancelled when the user said stop.
+    void pass_on(double fraction, const char* phase);
+
     /// True once the user said stop. Any thread may ask.
     bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
 

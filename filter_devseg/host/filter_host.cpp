@@ -1,5 +1,8 @@
 #include "host/filter_host.h"
 
+#include <optional>
+#include <utility>
+
 #include "host/host_errors.h"
 #include "host/layout_uv.h"
 #include "host/rich_parameters.h"
@@ -19,6 +22,48 @@ std::string to_text(const ResultValue& value) {
     return QString::number(std::get<double>(value)).toStdString();
 }
 
+// Hosts before 2021 ask for the mesh itself instead of its number.
+template <class Document>
+auto remove(Document& document, MeshModel& mesh) -> decltype(document.delMesh(&mesh)) {
+    return document.delMesh(&mesh);
+}
+template <class Document>
+auto remove(Document& document, MeshModel& mesh) -> decltype(document.delMesh(unsigned{0})) {
+    return document.delMesh(static_cast<unsigned>(mesh.id()));
+}
+
+// A layer that goes away again, with all that it holds, unless it is kept.
+class NewLayer {
+public:
+    NewLayer(MeshDocument& document, const LayerMesh& layer)
+        : document_(document), before_(document.mm()->id()),
+          mesh_(document.addNewMesh("", to_qstring(layer.name))) {
+        try {
+            fill_layer(*mesh_, layer);
+        } catch (...) { // memory may run out
+            take_back();
+            throw;
+        }
+    }
+    ~NewLayer() {
+        if (mesh_ != nullptr)
+            take_back();
+    }
+    NewLayer(const NewLayer&) = delete;
+    NewLayer& operator=(const NewLayer&) = delete;
+    void keep() { mesh_ = nullptr; }
+
+private:
+    void take_back() {
+        remove(document_, *mesh_);
+        document_.setCurrentMesh(before_);
+    }
+
+    MeshDocument& document_;
+    int before_; // the current mesh
+    MeshModel* mesh_;
+};
+
 } // namespace
 
 HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
@@ -34,11 +79,14 @@ HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
         if (filter.needs_uv)
             host.wedge_uv = read_layout_uv(*model);
         HostResult result =
-            run_filter(filter, host, parameter_values(filter, parameters), progress);
+            run_filter(filter, std::move(host), parameter_values(filter, parameters), progress);
         HostRun run;
-        run.changed = write_host_result(*model, result);
+        std::optional<NewLayer> layer;
         if (result.layer)
-            fill_layer(*document.addNewMesh("", to_qstring(result.layer->name)), *result.layer);
+            layer.emplace(document, *result.layer);
+        run.changed = write_host_result(*model, result);
+        if (layer)
+            layer->keep();
         run.log = std::move(result.notes);
         for (const auto& [name, value] : result.values)
             run.log.push_back(name + ": " + to_text(value));

@@ -1,7 +1,10 @@
 #include "filters/export_filter.h"
 
+#include <utility>
+
 #include "devseg/filters/declare.h"
 #include "filters/export_pattern.h"
+#include "writers/file.h"
 
 namespace devseg {
 
@@ -98,15 +101,18 @@ Declare<O> with_paper(Declare<O> filter) {
 
 FilterOutput run_export(const FilterInput& input, const ExportOptions& options,
                         Progress& progress) {
-    const ExportReport report = export_pattern(input.mesh, *input.uv, options, progress);
+    PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
     FilterOutput output;
-    output.notes = report.notes;
-    output.values = {{"pieces_number", report.pieces},
-                     {"seams_number", report.seams},
-                     {"unnumbered_seams_number", report.unnumbered_seams},
-                     {"unnamed_pieces_number", report.unnamed_pieces},
-                     {"sheets_number", report.sheets},
-                     {"pages_number", report.pages}};
+    output.notes = std::move(file.notes);
+    output.values = {{"pieces_number", file.pieces},
+                     {"seams_number", file.seams},
+                     {"unnumbered_seams_number", file.unnumbered_seams},
+                     {"unnamed_pieces_number", file.unnamed_pieces},
+                     {"sheets_number", file.sheets},
+                     {"pages_number", file.pages}};
+    output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
+        save_file(path, bytes);
+    };
     return output;
 }
 

@@ -9,7 +9,6 @@
 #include "sheet/cover.h"
 #include "sheet/pattern_drawing.h"
 #include "writers/dxf_writer.h"
-#include "writers/file.h"
 #include "writers/pdf_writer.h"
 #include "writers/svg_writer.h"
 
@@ -83,8 +82,8 @@ Document make_document(const Mesh& mesh, const Pattern& pattern, const PatternLa
 
 } // namespace
 
-ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOptions& given,
-                            Progress& progress) {
+PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv, const ExportOptions& given,
+                              Progress& progress) {
     const Format format = format_of(given.output_file);
     const ExportOptions options = resolved(given);
     page_format(options); // says what is wrong with it before the work begins
@@ -92,29 +91,27 @@ ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOp
     PatternLayout layout = lay_out_pattern(pattern, options, progress);
     progress.begin_phase("writing", 0.1);
     progress.update(0.0);
-    ExportReport report;
-    std::string bytes;
+    PatternFile file;
     if (format == Format::pdf) {
         const Document document = make_document(mesh, pattern, layout, options, progress);
-        report.pages = static_cast<Index>(document.pages.size());
-        bytes = pdf_bytes(document);
+        file.pages = static_cast<Index>(document.pages.size());
+        file.bytes = pdf_bytes(document);
     } else if (format == Format::dxf && is_apparel(options)) {
-        bytes =
+        file.bytes =
             apparel_dxf_bytes(pattern, layout, options, {title_of(options.output_file), today()});
     } else {
         const Drawing drawing = draw_sheets(layout, options);
-        bytes = format == Format::svg ? svg_bytes(drawing) : dxf_bytes(drawing);
+        file.bytes = format == Format::svg ? svg_bytes(drawing) : dxf_bytes(drawing);
     }
     progress.update(0.5);
-    save_file(options.output_file, bytes);
-    report.pieces = static_cast<Index>(pattern.pieces.size());
-    report.seams = static_cast<Index>(pattern.seams.size());
-    report.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
-    report.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
-    report.sheets = static_cast<Index>(layout.sheets.size());
-    report.notes = pattern.notes;
-    report.notes.insert(report.notes.end(), layout.notes.begin(), layout.notes.end());
-    return report;
+    file.pieces = static_cast<Index>(pattern.pieces.size());
+    file.seams = static_cast<Index>(pattern.seams.size());
+    file.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
+    file.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
+    file.sheets = static_cast<Index>(layout.sheets.size());
+    file.notes = pattern.notes;
+    file.notes.insert(file.notes.end(), layout.notes.begin(), layout.notes.end());
+    return file;
 }
 
 } // namespace devseg

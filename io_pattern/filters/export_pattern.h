@@ -1,4 +1,4 @@
-// Texture coordinates → a pattern file, from end to end.
+// Texture coordinates → the bytes of a pattern file, from end to end.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace devseg {
 
-struct ExportReport {
+struct PatternFile {
+    std::string bytes;
     Index pieces = 0;
     Index seams = 0;
     Index unnumbered_seams = 0; // for lack of room
@@ -20,9 +21,9 @@ struct ExportReport {
     std::vector<std::string> notes; // for the user, one sentence each
 };
 
-/// Writes options.output_file in the format of its extension. Throws InvalidParameter for options
-/// outside of their range, FileError, InvalidMesh and Cancelled; no file has changed then.
-ExportReport export_pattern(const Mesh& mesh, const CornerUv& uv, const ExportOptions& options,
-                            Progress& progress);
+/// The file options.output_file in the format of its extension; the caller writes it. Throws
+/// InvalidParameter for options outside of their range, InvalidMesh and Cancelled.
+PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv, const ExportOptions& options,
+                              Progress& progress);
 
 } // namespace devseg

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "filters/export_filter.h"
 #include "host/host_errors.h"
@@ -50,7 +51,7 @@ std::vector<std::string> save_pattern(const std::string& file_name, MeshModel& m
         values["output_file"] = file_name;
         HostMesh host = read_host_mesh(model);
         host.wedge_uv = read_layout_uv(model);
-        return run_filter(export_filter(), host, values, progress).notes;
+        return run_filter(export_filter(), std::move(host), values, progress).notes;
     });
 }
 

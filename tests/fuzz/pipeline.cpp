@@ -1,6 +1,7 @@
 // A small mesh through a segmentation and a flattening; both results are validated.
-#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <utility>
 
 #include "devseg/errors.h"
 #include "devseg/filters/filter.h"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr int most_vertices = 40;
 constexpr int most_faces = 80;
-constexpr std::chrono::seconds longest_run{20};
+constexpr double longest_run = 20.0; // seconds of a processor: machines that fuzz are busy
 
 RawMesh read_mesh(Bytes& bytes) {
     RawMesh mesh;
@@ -35,9 +36,9 @@ RawMesh read_mesh(Bytes& bytes) {
 
 HostResult run(const FilterDeclaration& filter, const HostMesh& host,
                const ParameterValues& values) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     Progress progress([&](double, const char*) {
-        if (std::chrono::steady_clock::now() - start > longest_run)
+        if (static_cast<double>(std::clock() - start) > longest_run * CLOCKS_PER_SEC)
             fail(filter.menu_name + " takes too long");
         return true;
     });
@@ -83,8 +84,12 @@ void run_pipeline(Bytes& bytes) {
     host.chart_id.assign(segmented.chart_id.begin(), segmented.chart_id.end());
     host.seam_edges.assign(segmented.seam_edges.begin(), segmented.seam_edges.end());
     // What could be segmented can be flattened, unless it is too large for 32 bits.
+    bool too_thin = false;
     try {
-        host.wedge_uv = run(flattening(), host, way).wedge_uv;
+        HostResult flat = run(flattening(), host, way);
+        host.wedge_uv = std::move(flat.wedge_uv);
+        for (const std::string& note : flat.notes) // one face far larger than the others: told
+            too_thin |= note.find("too thin for 32-bit") != std::string::npos;
     } catch (const InvalidMesh&) {
         return;
     }
@@ -92,7 +97,7 @@ void run_pipeline(Bytes& bytes) {
         if (filter.python_name != "get_parametrization_measures")
             continue;
         const HostResult measured = run(filter, host, {});
-        if (value(measured, "flipped_faces_number") != 0)
+        if (value(measured, "flipped_faces_number") != 0 && !too_thin)
             fail("flipped faces");
         if (value(measured, "overlapping_faces_number") != 0)
             fail("overlapping faces");

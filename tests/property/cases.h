@@ -28,7 +28,8 @@ ParameterValues random_values(const FilterDeclaration& filter, Index faces,
 std::string described(const FilterDeclaration& filter, const ParameterValues& values);
 
 /// Runs the filter. Errors that tell the user about mesh or parameters give nothing, if they are
-/// `may_refuse`; all others, and more than a minute, are failures of the test.
+/// `may_refuse`; all others, and more than a minute (DEVSEG_PROPERTY_SECONDS), are failures of the
+/// test.
 std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMesh& host,
                                   const ParameterValues& values, bool may_refuse);
 

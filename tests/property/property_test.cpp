@@ -312,21 +312,8 @@ TEST(Property, RigidMotionKeepsTheCharts) {
     expect_few(changes, 0.1);
 }
 
-// Of these two it decides more than ties between costs: among faces at equal distance in
-// t-flooding, and about seeds in Multi-Chart Geometry Images.
-std::vector<const FilterDeclaration*> independent_of_order() {
-    std::vector<const FilterDeclaration*> methods = filters_named("Segmentation:");
-    methods.erase(std::remove_if(methods.begin(), methods.end(),
-                                 [](const FilterDeclaration* filter) {
-                                     return filter->menu_name == "Segmentation: t-flooding" ||
-                                            filter->menu_name ==
-                                                "Segmentation: Multi-Chart Geometry Images";
-                                 }),
-                  methods.end());
-    return methods;
-}
-
-TEST(Property, TheOrderOfFacesKeepsTheCharts) {
+void count_changes_by_order(const std::vector<const FilterDeclaration*>& methods,
+                            double largest_share) {
     Changes changes;
     for_random_cases(30, [&](Random& random) {
         count_changes(
@@ -334,9 +321,23 @@ TEST(Property, TheOrderOfFacesKeepsTheCharts) {
             [](const RawMesh& mesh, const std::vector<Index>& order, Random&) {
                 return shapes::with_face_order(mesh, order);
             },
-            changes, independent_of_order());
+            changes, methods);
     });
-    expect_few(changes, 0.25); // a sixth, measured on 139 small meshes with up to 20 charts
+    expect_few(changes, largest_share);
+}
+
+// Of the other methods it decides more than ties between costs: among faces at equal distance in
+// t-flooding, about seeds in Multi-Chart Geometry Images, and which seam is tried next in Plush Toy
+// Seams.
+TEST(Property, TheOrderOfFacesKeepsTheCharts) {
+    count_changes_by_order({&filter_named("Segmentation: D-Charts"),
+                            &filter_named("Segmentation: Papercraft with Creases and Slits")},
+                           0.03); // 1.8 %, measured on 494 small meshes
+}
+
+// A fitting error that rounding raises or lowers decides here which face is the next seed.
+TEST(Property, TheOrderOfFacesKeepsMostProxies) {
+    count_changes_by_order({&filter_named("Segmentation: Variational Shape Approximation")}, 0.2);
 }
 
 // Multiplying by a power of two changes no digit: nothing may differ but the lengths.

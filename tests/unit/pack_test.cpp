@@ -209,6 +209,21 @@ TEST(Pack, ManyTrianglesAreFittedTogether) {
     }
 }
 
+// The room that the padding takes was taken for a bad layout, and searched for minutes.
+TEST(Pack, PaddingOfManyChartsTakesNoMoreTime) {
+    Random random(7);
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 300; ++i)
+        shapes.push_back(rectangle(random.uniform(0.5, 1.0), random.uniform(0.5, 1.0)));
+    const auto work = [&](double padding) {
+        const std::clock_t start = std::clock();
+        pack(shapes, PackOptions{padding, true});
+        return static_cast<double>(std::clock() - start);
+    };
+    const double without = work(0.0);
+    EXPECT_LT(work(0.015), 6.0 * without);
+}
+
 TEST(Pack, ThreadsDoNotMatterToManyCharts) {
     expect_same_bytes_on_one_thread(triangles(300, 4));
 }

@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <set>
 #include <string>
 #include <thread>
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/apart.h"
 #include "devseg/errors.h"
 #include "devseg/parallel.h"
 #include "devseg/progress.h"
@@ -249,6 +251,59 @@ TEST(Progress, WithoutAHostThereIsNothingToCancel) {
     progress.update(1.0);
     progress.check();
     EXPECT_FALSE(progress.cancelled());
+}
+
+TEST(RunApart, ReportsAndErrorsComeThrough) {
+    std::vector<std::pair<double, std::string>> calls;
+    Progress progress([&](double fraction, const char* phase) {
+        calls.emplace_back(fraction, phase);
+        return true;
+    });
+    bool done = false;
+    run_apart(
+        [&](Progress& own) {
+            own.begin_phase("first", 0.5);
+            own.begin_phase("second", 0.5);
+            done = true;
+        },
+        progress);
+    EXPECT_TRUE(done);
+    const std::vector<std::pair<double, std::string>> expected = {{0.0, "first"}, {0.5, "second"}};
+    ASSERT_GE(calls.size(), expected.size());
+    EXPECT_EQ(calls[0], expected[0]);
+    EXPECT_EQ(calls[1], expected[1]);
+    const auto fail = [](Progress&) { throw InvalidMesh("expected a test, found none"); };
+    EXPECT_THROW(run_apart(fail, progress), InvalidMesh);
+}
+
+// Work that never looks at its progress object is left behind, and what it owns lives on.
+TEST(RunApart, CancellingDoesNotWaitForTheWork) {
+    struct Owned {
+        std::atomic<bool> may_end{false};
+        std::atomic<bool> was_told{false};
+    };
+    const auto owned = std::make_shared<Owned>();
+    int calls = 0;
+    Progress progress([&](double, const char*) { return ++calls < 3; });
+    const auto start = Clock::now();
+    const auto work = [owned](Progress& own) {
+        own.begin_phase("deaf", 1.0);
+        while (!owned->may_end)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        try {
+            std::this_thread::sleep_for(std::chrono::milliseconds(25));
+            own.check();
+        } catch (const Cancelled&) {
+            owned->was_told = true;
+        }
+    };
+    EXPECT_THROW(run_apart(work, progress), Cancelled);
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(2)); // on a busy machine; else 60 ms
+    EXPECT_FALSE(owned->may_end);
+    owned->may_end = true;
+    for (int i = 0; i < 5000 && !owned->was_told; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_TRUE(owned->was_told);
 }
 
 } // namespace

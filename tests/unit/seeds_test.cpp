@@ -129,5 +129,23 @@ TEST(Seeds, RandomSeedsGiveDifferentStartsAndTheSameOnesTwice) {
     EXPECT_GT(starts.size(), 10U);
 }
 
+// A component without seeds is infinitely far, all of it: no face may come first by its number.
+TEST(Seeds, OfSeveralComponentsDoNotDependOnTheOrderOfFaces) {
+    const RawMesh raw = shapes::with_noise(
+        shapes::join(shapes::sphere(1), shapes::moved(shapes::torus(8, 6), 0.5, {5.0, 1.0, -2.0})),
+        0.05, 3);
+    const Mesh mesh = checks::gated(raw);
+    const std::vector<Index> seeds = seeds_of(mesh, 7);
+    for (const std::uint32_t order : {1U, 2U, 3U}) {
+        const Mesh other = checks::gated(
+            shapes::with_face_order(raw, shapes::random_order(raw.faces.size(), order)));
+        const std::vector<Index> found = seeds_of(other, 7);
+        for (std::size_t i = 0; i < seeds.size(); ++i)
+            EXPECT_LE((other.face_centers[at(found[i])] - mesh.face_centers[at(seeds[i])]).norm(),
+                      1e-12)
+                << i;
+    }
+}
+
 } // namespace
 } // namespace devseg

@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
+#include "devseg/apart.h"
 #include "devseg/errors.h"
 #include "devseg/mesh/weld.h"
 
@@ -137,13 +140,18 @@ GatedMesh gate_joined(const RawMesh& raw, const Progress& progress) {
     return gated;
 }
 
-} // namespace
+// A run owns all that it reads and writes: a cancelled one is left behind.
+struct FilterRun {
+    FilterDeclaration filter;
+    HostMesh host;
+    ParameterValues values;
+    HostResult result;
+    std::function<void()> save;
 
-HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
-                      const ParameterValues& values, Progress& progress) {
-    if (filter.needs_uv && host.wedge_uv.empty())
-        throw InvalidMesh("expected wedge texture coordinates, found none; run 'Charts: Flatten' "
-                          "or load a mesh that has them");
+    void operator()(Progress& progress);
+};
+
+void FilterRun::operator()(Progress& progress) {
     progress.begin_phase("reading the mesh", 0.0);
     const GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
                                                  : gate_mesh(host.geometry, progress);
@@ -157,12 +165,29 @@ HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
                             of_faces(host.face_color, gated),
                             gated.center};
     try {
-        return map_back(host, gated, filter.run(input, values, progress));
+        FilterOutput output = filter.run(input, values, progress);
+        save = std::move(output.save);
+        result = map_back(host, gated, std::move(output));
     } catch (InvalidMesh& error) {
         for (Index& f : error.faces)
             f = gated.source_face[at(f)];
         throw;
     }
+}
+
+} // namespace
+
+HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
+                      Progress& progress) {
+    if (filter.needs_uv && host.wedge_uv.empty())
+        throw InvalidMesh("expected wedge texture coordinates, found none; run 'Charts: Flatten' "
+                          "or load a mesh that has them");
+    const auto run =
+        std::make_shared<FilterRun>(FilterRun{filter, std::move(host), values, {}, {}});
+    run_apart([run](Progress& own) { (*run)(own); }, progress);
+    if (run->save)
+        run->save();
+    return std::move(run->result);
 }
 
 } // namespace devseg

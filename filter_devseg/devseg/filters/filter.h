@@ -64,9 +64,9 @@ struct FilterInput {
     const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
     const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
                                              // a vertex that the gate had to split share one
-    std::vector<std::uint8_t> selected;    // #F: 1 for selected faces; empty if none is
-    std::vector<Color> color;              // #F; empty if the mesh has no face colours
-    Vec3 center = Vec3::Zero();            // model coordinates of the mesh's origin
+    std::vector<std::uint8_t> selected;      // #F: 1 for selected faces; empty if none is
+    std::vector<Color> color;                // #F; empty if the mesh has no face colours
+    Vec3 center = Vec3::Zero();              // model coordinates of the mesh's origin
 
     /// Between internal units and model coordinates.
     Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
@@ -82,6 +82,8 @@ struct FilterOutput {
     std::optional<LayerMesh> layer;
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
+    std::function<void()> save;     // writes the filter's file, if it has one: comes last, because
+                                    // what fails leaves none
 };
 
 struct FilterDeclaration {
@@ -124,8 +126,9 @@ struct HostResult {
 };
 
 /// Gates the mesh, runs the filter and maps its output back. Parameters that are not given take
-/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then.
-HostResult run_filter(const FilterDeclaration& filter, const HostMesh& host,
-                      const ParameterValues& values, Progress& progress);
+/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then, and no
+/// file has changed. Whatever the filter is busy with, Cancelled comes at once (apart.h).
+HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
+                      Progress& progress);
 
 } // namespace devseg

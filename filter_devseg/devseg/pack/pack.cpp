@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include "devseg/errors.h"
@@ -18,6 +17,7 @@ namespace devseg {
 
 namespace {
 
+constexpr double pi = 3.14159265358979323846;
 constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
 constexpr double least_use = 0.1;         // what padding alone must leave of it
 constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each
@@ -53,7 +53,6 @@ Box box_of(const std::vector<Outline>& outlines, const std::vector<Placement>& p
 // The side of a square that charts, each grown by half of the padding, use as expected. They grow
 // by an area of perimeter · m + π m², m = side · padding / 2: solved for the side.
 double guess_side(const std::vector<Outline>& outlines, const PackOptions& options) {
-    constexpr double pi = 3.14159265358979323846;
     double area = 0.0;
     double perimeter = 0.0;
     double longest = 0.0;
@@ -82,6 +81,19 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
     const double side = (b + std::sqrt(b * b + a * area)) / a;
     // Charts that are all points have no size; any will do.
     return std::max(side, longest) > 0.0 ? std::max(side, longest) : 1.0;
+}
+
+// What charts take up with half of the padding around them, where the square has this side.
+double taken_area(const std::vector<Outline>& outlines, double padding, double side) {
+    const double margin = 0.5 * padding * side;
+    double area = 0.0;
+    for (const Outline& outline : outlines) {
+        double perimeter = 0.0;
+        for (std::size_t k = 0; k < outline.hull.size(); ++k)
+            perimeter += (outline.hull[(k + 1) % outline.hull.size()] - outline.hull[k]).norm();
+        area += outline.area + margin * (perimeter + pi * margin);
+    }
+    return area;
 }
 
 std::vector<Placement> find_placements(const NestProblem& problem, Progress& progress) {
@@ -126,12 +138,12 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, progress);
     parallel_for(
         1, [&](int) { fitted = compact(outlines, fitted, options, progress); }, progress);
-    const double area =
-        std::accumulate(outlines.begin(), outlines.end(), 0.0,
-                        [](double sum, const Outline& outline) { return sum + outline.area; });
     const Vec2 fitted_box = box_of(outlines, fitted).size();
-    const double enough = outlines.size() > many_charts ? enough_use_of_many : enough_use;
-    if (outlines.size() > most_nested || area >= enough * fitted_box.prod())
+    // Room that the padding takes is no reason to look for a better layout for seconds.
+    const bool many = outlines.size() > many_charts;
+    const double area = taken_area(outlines, many ? options.padding : 0.0, fitted_box.maxCoeff());
+    if (outlines.size() > most_nested ||
+        area >= (many ? enough_use_of_many : enough_use) * fitted_box.prod())
         return fitted;
     std::vector<Placement> nested = nest(problem, progress);
     return badness(box_of(outlines, nested).size()) < badness(fitted_box) ? nested : fitted;

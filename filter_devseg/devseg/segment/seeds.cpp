@@ -37,20 +37,30 @@ void relax_from(const Mesh& mesh, Index source, std::vector<double>& distance, M
     }
 }
 
-Index first_seed(const Mesh& mesh, std::uint32_t random_seed) {
+// How far faces are from the centre of the surface.
+class Remoteness {
+public:
+    explicit Remoteness(const Mesh& mesh) : mesh_(mesh), centre_(Vec3::Zero()) {
+        for (Index f = 0; f < mesh.face_count(); ++f)
+            centre_ += mesh.face_areas[at(f)] * mesh.face_centers[at(f)];
+        centre_ /= mesh.total_area;
+    }
+    double operator()(Index f) const { return (mesh_.face_centers[at(f)] - centre_).squaredNorm(); }
+
+private:
+    const Mesh& mesh_;
+    Vec3 centre_;
+};
+
+Index first_seed(const Mesh& mesh, const Remoteness& remoteness, std::uint32_t random_seed) {
     if (random_seed != 0) {
         std::mt19937 generator(random_seed);
         // Not a std distribution: those differ between standard libraries.
         return static_cast<Index>(generator() % static_cast<std::uint32_t>(mesh.face_count()));
     }
-    Vec3 centre = Vec3::Zero();
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        centre += mesh.face_areas[at(f)] * mesh.face_centers[at(f)];
-    centre /= mesh.total_area;
     Index best = 0;
     for (Index f = 1; f < mesh.face_count(); ++f)
-        if ((mesh.face_centers[at(f)] - centre).squaredNorm() >
-            (mesh.face_centers[at(best)] - centre).squaredNorm())
+        if (remoteness(f) > remoteness(best))
             best = f;
     return best;
 }
@@ -63,7 +73,8 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
     MinQueue queue;
     std::vector<Index> seeds;
     seeds.reserve(at(count));
-    Index next = first_seed(mesh, random_seed);
+    const Remoteness remoteness(mesh);
+    Index next = first_seed(mesh, remoteness, random_seed);
     while (true) {
         seeds.push_back(next);
         if (static_cast<Index>(seeds.size()) == count)
@@ -71,7 +82,10 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
         progress.update(static_cast<double>(seeds.size()) / count);
         relax_from(mesh, next, distance, queue);
         for (Index f = 0; f < mesh.face_count(); ++f)
-            if (distance[at(f)] > distance[at(next)])
+            if (distance[at(f)] > distance[at(next)] ||
+                // a component without seeds: not the first of its faces, but the most remote
+                (distance[at(f)] == infinity && distance[at(next)] == infinity &&
+                 remoteness(f) > remoteness(next)))
                 next = f;
         if (distance[at(next)] <= 0.0) { // centroids coincide: any face that is not a seed yet
             std::vector<std::uint8_t> taken(mesh.faces.size(), 0);

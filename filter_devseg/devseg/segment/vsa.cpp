@@ -1,6 +1,7 @@
 #include "devseg/segment/vsa.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -62,6 +63,16 @@ private:
     std::vector<Eigen::Vector3f> proxies_;
 };
 
+// Faces whose errors differ by no more than the rounding of sums count as equal: the one that lies
+// first along the axes is taken then, so that the order of faces does not decide.
+constexpr double same_deviation = 1e-12;
+
+bool lies_before(const Mesh& mesh, Index f, Index g) {
+    const Vec3& a = mesh.face_centers[at(f)];
+    const Vec3& b = mesh.face_centers[at(g)];
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
 double squared_deviation(const Mesh& mesh, Index f, const Vec3& proxy) {
     return (mesh.face_normals[at(f)] - proxy).squaredNorm();
 }
@@ -107,9 +118,11 @@ public:
         std::vector<double> least(seeds_.size(), std::numeric_limits<double>::infinity());
         for (Index f = 0; f < mesh_.face_count(); ++f) {
             const std::size_t c = at(now_.chart[at(f)]);
-            const double error = mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, proxies_[c]);
-            if (error < least[c]) {
-                least[c] = error;
+            const double deviation =
+                std::sqrt(mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, proxies_[c]));
+            const bool same = std::abs(deviation - least[c]) <= same_deviation;
+            if (same ? lies_before(mesh_, f, seeds_[c]) : deviation < least[c]) {
+                least[c] = deviation;
                 seeds_[c] = f;
             }
         }
@@ -124,9 +137,13 @@ public:
         Index farthest = -1;
         double largest = 0.0;
         for (Index f = 0; f < mesh_.face_count(); ++f) {
-            const double error = mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, normal);
-            if (now_.chart[at(f)] == worst && f != seeds_[at(worst)] && error > largest) {
-                largest = error;
+            if (now_.chart[at(f)] != worst || f == seeds_[at(worst)])
+                continue;
+            const double deviation =
+                std::sqrt(mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, normal));
+            const bool same = farthest >= 0 && std::abs(deviation - largest) <= same_deviation;
+            if (same ? lies_before(mesh_, f, farthest) : deviation > largest) {
+                largest = deviation;
                 farthest = f;
             }
         }
@@ -159,14 +176,14 @@ public:
             const Index twin = mesh_.twin[at(h)];
             if (twin < h)
                 continue;
-            const std::size_t a = at(now_.chart[at(h / 3)]);
-            const std::size_t b = at(now_.chart[at(twin / 3)]);
+            const auto [a, b] =
+                std::minmax({at(now_.chart[at(h / 3)]), at(now_.chart[at(twin / 3)])});
             if (a == b || a == worst || b == worst)
                 continue;
             const double increase = now_.merged_error(a, b) - now_.error(a) - now_.error(b);
-            if (increase < least) {
+            if (increase < least || (increase == least && std::pair(a, b) < pair)) {
                 least = increase;
-                pair = std::minmax(a, b);
+                pair = {a, b};
             }
         }
         if (pair.first == pair.second || !split_worst())
