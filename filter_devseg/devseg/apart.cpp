@@ -15,6 +15,7 @@ namespace devseg {
 namespace {
 
 constexpr std::chrono::milliseconds poll_interval{20};
+constexpr std::size_t most_left_behind = 2; // that still run, and keep their memory
 
 struct Report {
     double fraction;
@@ -47,7 +48,8 @@ public:
         const std::lock_guard<std::mutex> lock(mutex_);
         runners_.splice(runners_.end(), runner);
     }
-    void forget_ended() {
+    // Returns how many there are still.
+    std::size_t forget_ended() {
         const std::lock_guard<std::mutex> lock(mutex_);
         for (auto runner = runners_.begin(); runner != runners_.end();) {
             if (!has_ended(*runner)) {
@@ -57,6 +59,7 @@ public:
             runner->thread.join();
             runner = runners_.erase(runner);
         }
+        return runners_.size();
     }
 
 private:
@@ -115,7 +118,10 @@ void pass_on_reports(Exchange& exchange, Progress& progress) {
 } // namespace
 
 void run_apart(std::function<void(Progress&)> work, Progress& progress) {
-    left_behind().forget_ended();
+    while (left_behind().forget_ended() >= most_left_behind) {
+        progress.pass_on(0.0, "waiting for cancelled work to end");
+        std::this_thread::sleep_for(poll_interval);
+    }
     std::list<Runner> runner(1); // made now: what leaves it behind must not fail
     const auto exchange = std::make_shared<Exchange>();
     runner.front().exchange = exchange;

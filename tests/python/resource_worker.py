@@ -63,6 +63,7 @@ def main() -> None:
         for name in (DCHARTS, FLATTEN):
             small.apply_filter(name)
         small.apply_filter("export_pattern", output_file=str(folder / "pattern.pdf"))
+        small.apply_filter("generate_pattern_pieces")
         with contextlib.suppress(pymeshlab.PyMeshLabException):
             small.apply_filter(DCHARTS, charts_number=-1)
     (folder / "pattern.pdf").unlink()
@@ -74,6 +75,7 @@ def main() -> None:
             (DCHARTS, {}),
             (FLATTEN, {}),
             ("export_pattern", {"output_file": str(folder / "pattern.pdf")}),
+            ("generate_pattern_pieces", {}),
         ):
             outcomes[name] = attempts(meshset, name, pymeshlab.PyMeshLabException, **parameters)
     outcomes["files"] = sorted(file.name for file in folder.iterdir())

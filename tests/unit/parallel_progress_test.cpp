@@ -306,5 +306,29 @@ TEST(RunApart, CancellingDoesNotWaitForTheWork) {
     EXPECT_TRUE(owned->was_told);
 }
 
+// They keep their memory: a user who cancels again and again must not run out of it.
+TEST(RunApart, WaitsWhileMuchIsLeftBehind) {
+    const auto may_end = std::make_shared<std::atomic<bool>>(false);
+    const auto deaf = [may_end](Progress& own) {
+        own.begin_phase("deaf", 1.0);
+        while (!*may_end)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    for (int i = 0; i < 2; ++i) {
+        Progress progress([](double, const char*) { return false; });
+        EXPECT_THROW(run_apart(deaf, progress), Cancelled);
+    }
+    const auto runs = std::make_shared<std::atomic<int>>(0);
+    const auto work = [runs](Progress&) { ++*runs; };
+    int calls = 0;
+    Progress impatient([&](double, const char*) { return ++calls < 3; });
+    EXPECT_THROW(run_apart(work, impatient), Cancelled);
+    EXPECT_EQ(*runs, 0);
+    *may_end = true;
+    Progress patient;
+    run_apart(work, patient);
+    EXPECT_EQ(*runs, 1);
+}
+
 } // namespace
 } // namespace devseg
