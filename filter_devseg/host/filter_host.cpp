@@ -28,7 +28,8 @@ auto remove(Document& document, MeshModel& mesh) -> decltype(document.delMesh(&m
     return document.delMesh(&mesh);
 }
 template <class Document>
-auto remove(Document& document, MeshModel& mesh) -> decltype(document.delMesh(std::declval<unsigned&>())) {
+auto remove(Document& document, MeshModel& mesh)
+    -> decltype(document.delMesh(std::declval<unsigned&>())) {
     return document.delMesh(static_cast<unsigned>(mesh.id()));
 }
 
