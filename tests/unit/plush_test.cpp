@@ -350,6 +350,17 @@ TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
     EXPECT_FALSE(accepted(shapes::hemisphere(32, 12)));
 }
 
+// Equations of conformal maps are singular there; the answer is a map all the same.
+TEST(PatchTrial, NeedlesAreMapped) {
+    for (const double height : {1e-5, 1e-9, 1e-11, 1e-13}) {
+        const checks::Disk disk({{{0, 0, 0}, {1, 0, 0}, {0, height, 0}}, {{0, 1, 2}}});
+        const PatchTrial trial =
+            try_patch(disk.mesh, disk.surface.face, disk.charts.seam, 0.15, true, Progress{});
+        ASSERT_EQ(trial.change.size(), 1U);
+        EXPECT_TRUE(std::isfinite(trial.change[0])) << height;
+    }
+}
+
 TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     const Mesh mesh = checks::gated(shapes::grid(8, 8));
     SeamMarks seam(mesh.twin.size(), 0);

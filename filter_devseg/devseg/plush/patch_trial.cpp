@@ -33,8 +33,12 @@ void describe(const ChartSurface& surface, const FlatteningProblem& problem,
 
 // A map of a patch that LPFB cannot map, good enough to see where its area changes.
 std::vector<Vec2> any_map(const FlatteningProblem& problem) {
-    std::vector<Vec2> uv = flatten_lscm(problem);
-    if (count_flips(problem, uv) > 0)
+    std::vector<Vec2> uv;
+    try {
+        uv = flatten_lscm(problem);
+    } catch (const NumericalFailure&) { // needles
+    }
+    if (uv.empty() || count_flips(problem, uv) > 0)
         uv = flatten_tutte(problem);
     scale_to_area(problem, uv);
     return uv;
