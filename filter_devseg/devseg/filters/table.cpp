@@ -10,10 +10,10 @@ namespace devseg {
 const std::vector<FilterDeclaration>& filter_table() {
     static const std::vector<FilterDeclaration> table = [] {
         std::vector<FilterDeclaration> all;
-        for (auto group : {segmentation_filters(), t_flooding_filters(), plush_filters(),
-                           papercraft_filters(), baseline_filters(), deformation_filters(),
-                           flattening_filters(), pattern_filters(), sewn_preview_filters(),
-                           measure_filters(), circle_map_filters()})
+        for (auto group :
+             {segmentation_filters(), t_flooding_filters(), plush_filters(), papercraft_filters(),
+              baseline_filters(), deformation_filters(), flattening_filters(), pattern_filters(),
+              sewn_preview_filters(), measure_filters(), circle_map_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();
