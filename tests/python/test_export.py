@@ -298,3 +298,21 @@ def test_command_line_writes_all_formats(obj: Callable, tmp_path: Path) -> None:
         assert cut[name.replace("-sew", "-cut")].exterior.distance(piece) > 8.9
     assert "1" in files.read_dxf(out / "mesh.dxf")
     assert len(pypdf.PdfReader(out / "mesh.pdf", strict=True).pages) > 1
+
+
+def test_matched_outlines_of_real_models_do_not_overlap(
+    pymeshlab: Any, data: Path, tmp_path: Path
+) -> None:
+    # A chart of this solid touches itself, so that its outline crosses itself by rounding.
+    ms = pymeshlab.MeshSet()
+    ms.load_new_mesh(str(data / "public" / "syn_bracket.ply"))
+    ms.compute_segmentation_dcharts_per_face(charts_number=10)
+    ms.compute_texcoord_parametrization_charts_per_wedge()
+    file = tmp_path / "x.svg"
+    ms.export_pattern(output_file=str(file), height_mm=250.0, match_seams=True)
+    rings = files.read_svg(file)["cut"].rings
+    assert max(files.overlap_of_itself(ring) for ring in rings) < 0.5
+    # Too rarely used for the dialog of 'Save as'.
+    with pytest.raises(pymeshlab.PyMeshLabException):
+        ms.save_current_mesh(str(tmp_path / "y.svg"), curve_mm=0.1)
+    assert not (tmp_path / "y.svg").exists()
