@@ -197,8 +197,7 @@ std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
 
 } // namespace
 
-bool develop(const Mesh& mesh, FlatChart& chart) {
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
     auto development = unfold(problem, chart.surface.twin);
     if (!development)
         return false;
@@ -215,13 +214,13 @@ bool develop(const Mesh& mesh, FlatChart& chart) {
 
 std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
                                FlatChart& chart, const Progress& progress) {
-    if (develop(mesh, chart)) {
+    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    if (develop(mesh, problem, chart)) {
         // It stays as it is: its parts are not pushed apart.
         const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
         return pairs.empty() ? std::vector<Index>{}
                              : on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
     }
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
     try {
         if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
             chart.mended = true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "devseg/flatten/flatten.h"
+#include "devseg/flatten/rest_shape.h"
 
 namespace devseg {
 
@@ -14,7 +15,7 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
                                FlatChart& chart, const Progress& progress);
 
 /// The chart's exact development, which every method looks for; false where it has none. Parts may
-/// lie on each other.
-bool develop(const Mesh& mesh, FlatChart& chart);
+/// lie on each other. `problem` is that of chart.surface.
+bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart);
 
 } // namespace devseg

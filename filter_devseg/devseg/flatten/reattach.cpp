@@ -114,7 +114,7 @@ private:
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
         joined.surface = extract_surface(mesh_, std::move(faces), seam);
-        if (!develop(mesh_, joined) ||
+        if (!develop(mesh_, make_flattening_problem(mesh_, joined.surface), joined) ||
             !overlapping_pairs(joined.surface, joined.uv, tolerance_).empty()) {
             seam[at(h)] = seam[at(twin)] = 1;
             return false;
