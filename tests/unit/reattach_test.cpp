@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/cut/disks.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/mesh/input_gate.h"
+#include "devseg/mesh/texture.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -89,6 +91,49 @@ TEST(Slivers, StayWhereTheJoinedMapWouldOverlap) {
     EXPECT_EQ(flat.charts.count, before);
     for (const FlatChart& chart : flat.flat)
         EXPECT_TRUE(chart.surface.is_disk());
+}
+
+// Charts that readers of the texture coordinates take for disks.
+Index disks_in_the_plane(const Mesh& mesh, const FlattenResult& flat) {
+    CornerUv uv(3 * mesh.faces.size());
+    double shift = 0.0;
+    for (const FlatChart& chart : flat.flat) {
+        for (std::size_t f = 0; f < chart.surface.face.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k)
+                uv[3 * at(chart.surface.face[f]) + k] =
+                    chart.uv[at(chart.surface.corners[f][k])] + Vec2(shift, 0.0);
+        shift += 10.0;
+    }
+    Index disks = 0;
+    for (const ChartSurface& surface : extract_charts(mesh, charts_from_uv(mesh, uv)))
+        disks += surface.is_disk() ? 1 : 0;
+    return disks;
+}
+
+// The sides of cuts around holes in a flat sheet lie on each other.
+TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
+    const Mesh mesh = gate_mesh(shapes::plate(shapes::mask_with_holes(3))).mesh;
+    double right = -1e9;
+    for (const Vec3& center : mesh.face_centers)
+        right = std::max(right, center.x());
+    std::vector<Index> label; // the last column is a chart of its own
+    const double cell = std::sqrt(2.0 * mesh.face_areas.front());
+    for (const Vec3& center : mesh.face_centers)
+        label.push_back(center.x() > right - 0.7 * cell ? 1 : 0);
+    Progress progress;
+    const ChartMap cut =
+        cut_charts_to_disks(mesh, make_chart_map(mesh, label, {}, false), progress).charts;
+    FlattenResult flat = flatten_charts(mesh, cut, FlattenMethod::symmetric_dirichlet, progress);
+    ASSERT_EQ(flat.charts.count, 2);
+    EXPECT_EQ(disks_in_the_plane(mesh, flat), 2);
+
+    for (FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        chart.cut_off = chart.surface.face_count() < mesh.face_count() / 2;
+    }
+    EXPECT_EQ(reattach_parts(mesh, tolerance, flat, progress), 1);
+    ASSERT_EQ(flat.charts.count, 1);
+    EXPECT_EQ(disks_in_the_plane(mesh, flat), 1);
 }
 
 } // namespace
