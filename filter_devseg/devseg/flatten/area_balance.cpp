@@ -18,6 +18,8 @@ constexpr double even = 0.1; // changes below this are left alone: Wang's own bo
 // and more than the shear of a usual face for others.
 constexpr double bound = 0.12;
 constexpr double usual_weight = 0.02;
+constexpr double least_share = 0.5;  // of the mean area: what a small face counts at least
+constexpr double stiffness = 1000.0; // of the boundary where it moves
 constexpr int most_steps = 12;
 constexpr double sufficient_decrease = 1e-4; // Armijo's constant
 constexpr double safe_step = 0.8;            // of the step at which the first face collapses
@@ -43,8 +45,13 @@ public:
             return sum;
         for (std::size_t f = 0; f < problem.faces.size(); ++f) {
             const double z = change(jacobian(problem, x, f).determinant());
-            sum += problem.area[f] / problem.total_area * weight * z * z * z * z * z * z;
+            sum += share(problem, f) * weight * z * z * z * z * z * z;
         }
+        for_each_boundary_edge(problem, x,
+                               [&](Index, Index, const Eigen::RowVector2d& edge, double own) {
+                                   const double excess = edge.norm() - own;
+                                   sum += boundary_stiffness / problem.total_area * excess * excess;
+                               });
         return sum;
     }
 
@@ -54,19 +61,28 @@ public:
             const Triangle& t = problem.faces[f];
             const double z = change(jacobian(problem, x, f).determinant());
             // ∂ det J / ∂ corner k is the opposite edge, turned by a quarter, over twice the area.
-            const double slope =
-                weight * 6.0 * z * z * z * z * z / (width_ * 2.0 * problem.total_area);
+            const double slope = share(problem, f) * weight * 6.0 * z * z * z * z * z /
+                                 (width_ * 2.0 * problem.area[f]);
             for (std::size_t k = 0; k < 3; ++k) {
                 const Eigen::RowVector2d edge = x.row(t[(k + 2) % 3]) - x.row(t[(k + 1) % 3]);
                 sum.row(t[k]) += slope * Eigen::RowVector2d(-edge.y(), edge.x());
             }
         }
+        for_each_boundary_edge(
+            problem, x, [&](Index v, Index u, const Eigen::RowVector2d& edge, double own) {
+                const Eigen::RowVector2d pull = 2.0 * boundary_stiffness / problem.total_area *
+                                                (edge.norm() - own) * edge.stableNormalized();
+                sum.row(u) += pull;
+                sum.row(v) -= pull;
+            });
         return sum;
     }
 
-    double curvature(double det) const {
+    /// Of the penalty on a face, for each unit of its share of the area.
+    double curvature(const FlatteningProblem& problem, std::size_t f, double det) const {
         const double z = change(det);
-        return weight * 30.0 * z * z * z * z / (width_ * width_);
+        return share(problem, f) * problem.total_area / problem.area[f] * weight * 30.0 * z * z *
+               z * z / (width_ * width_);
     }
 
     /// In units of what is allowed, from the middle of it.
@@ -79,9 +95,26 @@ public:
         return largest;
     }
 
-    double weight = usual_weight; // of the penalty
+    double weight = usual_weight;    // of the penalty
+    double boundary_stiffness = 0.0; // of the boundary edges, where they may move
 
 private:
+    template <typename Visit>
+    void for_each_boundary_edge(const FlatteningProblem& problem, const Positions& x,
+                                Visit visit) const {
+        for (std::size_t i = 0; i < problem.boundary.size() && boundary_stiffness > 0.0; ++i) {
+            const Index v = problem.boundary[i];
+            const Index u = problem.boundary[(i + 1) % problem.boundary.size()];
+            visit(v, u, x.row(u) - x.row(v), problem.boundary_edge[i]);
+        }
+    }
+
+    // Of the penalty: a small face must keep its area as well, although it has little of it.
+    static double share(const FlatteningProblem& problem, std::size_t f) {
+        const double mean = problem.total_area / static_cast<double>(problem.faces.size());
+        return std::max(problem.area[f], least_share * mean) / problem.total_area;
+    }
+
     double center_ = 1.0;
     double width_ = 1.0;
 };
@@ -175,8 +208,10 @@ void hold(const std::vector<std::uint8_t>& fixed, Positions& rows) {
 
 void descend(const Region& region, const BalancedEnergy& energy, Positions& x,
              const Progress& progress) {
-    ProjectedNewton newton(region.problem, region.fixed,
-                           [&](double det) { return energy.curvature(det); });
+    ProjectedNewton newton(
+        region.problem, region.fixed,
+        [&](std::size_t f, double det) { return energy.curvature(region.problem, f, det); },
+        energy.boundary_stiffness);
     double value = energy.value(region.problem, x);
     for (int i = 0; i < most_steps; ++i) {
         progress.check();
@@ -225,6 +260,26 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
         moved[at(region.vertex[v])] = x.row(static_cast<Eigen::Index>(v)).transpose();
     if (measure_area_change(problem, moved).largest() < measure_area_change(problem, uv).largest())
         uv = std::move(moved);
+}
+
+std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
+                                        const std::vector<Vec2>& uv, const Progress& progress) {
+    BalancedEnergy energy(1.0);
+    energy.boundary_stiffness = stiffness;
+    const Region region{problem, {}, {}};
+    Positions x(problem.vertex_count, 2);
+    for (std::size_t v = 0; v < uv.size(); ++v)
+        x.row(static_cast<Eigen::Index>(v)) = uv[v].transpose();
+    for (const double strength : {1.0, 30.0}) {
+        energy.weight = strength * usual_weight;
+        descend(region, energy, x, progress);
+        if (energy.largest_change(problem, x) <= 1.0)
+            break;
+    }
+    std::vector<Vec2> moved;
+    for (Eigen::Index v = 0; v < x.rows(); ++v)
+        moved.emplace_back(x.row(v).transpose());
+    return moved;
 }
 
 } // namespace devseg

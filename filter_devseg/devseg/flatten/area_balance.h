@@ -29,4 +29,9 @@ AreaChange measure_area_change(const FlatteningProblem& problem, const std::vect
 void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
                    const Progress& progress);
 
+/// The same for all vertices: the boundary may bend, and its edges keep their lengths but for a
+/// small rest. `uv` has no flips.
+std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
+                                        const std::vector<Vec2>& uv, const Progress& progress);
+
 } // namespace devseg

@@ -20,10 +20,7 @@ namespace {
 constexpr double most_stretch = 2.0;
 // Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
 constexpr double harmonic_is_enough = 1.02;
-// The isometric map only gives angles: a few steps are enough.
-constexpr int first_steps = 12;
-constexpr int more_steps = 25;
-constexpr double stiffness = 20.0; // of the boundary then
+constexpr int isometric_steps = 12; // a start: a few are enough
 
 double polygon_area(const std::vector<Vec2>& points) {
     double twice = 0.0;
@@ -72,26 +69,22 @@ std::vector<Vec2> isometric_map(const FlatteningProblem& problem, double give_up
         return {};
     scale_to_area(problem, start);
     ArapOptions options;
-    options.max_rounds = first_steps;
+    options.max_rounds = isometric_steps;
     ArapResult map = minimise_arap(problem, start, options, progress);
-    if (map.energy > give_up_energy)
+    if (map.energy > give_up_energy || map.flips > 0)
         return {};
-    // Faces give way to the lengths of the boundary as it moves.
-    options.max_rounds = more_steps;
-    options.boundary_stiffness = stiffness;
-    return minimise_arap(problem, map.uv, options, progress).uv;
+    return map.uv;
 }
 
 std::optional<LpfbMap> smaller_change(std::optional<LpfbMap> a, std::optional<LpfbMap> b) {
     return !a || (b && b->area_change < a->area_change) ? std::move(b) : std::move(a);
 }
 
-// The map with the boundary's lengths nearest to a nearly isometric one, if it keeps the
-// conditions.
+// The map with the boundary's lengths nearest to a given one, if it keeps the conditions.
 std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartSurface& surface,
-                                  const std::vector<Vec2>& isometric, double tolerance,
+                                  const std::vector<Vec2>& start, double tolerance,
                                   const Progress& progress) {
-    auto uv = restore_seam_lengths(problem, isometric, progress);
+    auto uv = restore_seam_lengths(problem, start, progress);
     if (!uv || !keeps_area(problem, map_area(problem, *uv)))
         return std::nullopt;
     LpfbResult lpfb;
@@ -135,12 +128,9 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
         const std::vector<Vec2> isometric =
             isometric_map(problem, options.give_up_energy, progress);
         if (!isometric.empty()) {
-            auto near = map_beside(problem, surface, isometric, tolerance, progress);
-            if (!near || (options.all_maps && near->area_change > lpfb_area_change))
-                best = smaller_change(std::move(best), map_near(problem, surface,
-                                                                boundary_angles(problem, isometric),
-                                                                tolerance, progress));
-            best = smaller_change(std::move(best), std::move(near));
+            const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
+            best = smaller_change(std::move(best),
+                                  map_beside(problem, surface, even, tolerance, progress));
         }
     } catch (const NumericalFailure&) { // then the first one has to do
     }

@@ -29,8 +29,6 @@ struct SewingMapOptions {
     double enough = 0.005;
     // As-rigid-as-possible energy of a nearly isometric map above which the chart is given up.
     double give_up_energy = std::numeric_limits<double>::infinity();
-    // All maps are tried where areas change by more than [Wan08] allows; off for quick trials.
-    bool all_maps = true;
 };
 
 /// The LPFB map for sewing: with the angles that the boundary has on the surface, and with those of

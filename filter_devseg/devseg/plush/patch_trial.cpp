@@ -66,7 +66,7 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     const double bound = kept * max_area_change;
     const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
-                                {bound, hopeless_energy, false}, progress);
+                                {bound, hopeless_energy}, progress);
     if (map) {
         trial.area_change = map->area_change;
         // At the scale at which the map has the patch's area.
