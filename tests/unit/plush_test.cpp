@@ -106,6 +106,39 @@ RawMesh animal() {
     return raw;
 }
 
+TEST(SeamGuides, TellWhatLooksNatural) {
+    // A tube around a bone: cuts along it look natural, rings around it do not.
+    const Mesh tube = checks::gated(shapes::cylinder_tube(48, 24));
+    Skeleton skeleton;
+    skeleton.joints = {Vec3(0.0, 0.0, -1.0), Vec3(0.0, 0.0, 1.0)};
+    skeleton.bones = {{0, 1}};
+    SeamMarks along(tube.twin.size(), 0);
+    SeamMarks around(tube.twin.size(), 0);
+    for (Index h = 0; h < tube.half_edge_count(); ++h) {
+        const Vec3 edge = tube.points[at(tube.target(h))] - tube.points[at(tube.origin(h))];
+        if (edge.head<2>().norm() < 1e-9)
+            mark(tube, h, 1, along);
+        if (std::abs(edge.z()) < 1e-9)
+            mark(tube, h, 1, around);
+    }
+    const Progress progress;
+    EXPECT_DOUBLE_EQ(measure_seams(tube, along, skeleton, {}, progress).guided_share, 1.0);
+    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, {}, progress).guided_share, 0.0);
+    const MirrorPlane middle{Vec3::UnitZ(), 0.0, 0.0};
+    const MirrorPlane beside{Vec3::UnitX(), 5.0, 0.0};
+    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, middle, progress).mirrored_share, 1.0);
+    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, beside, progress).mirrored_share, 0.0);
+    // The edges of a box are creases, from outside; from inside they are grooves.
+    const Mesh box = checks::gated(shapes::cube(8));
+    const std::vector<double> bends = bends_across_edges(box, progress);
+    for (Index h = 0; h < box.half_edge_count(); ++h) {
+        const bool is_crease =
+            box.face_normals[at(h / 3)].dot(box.face_normals[at(box.twin[at(h)] / 3)]) < 0.5;
+        EXPECT_NEAR(straying(1.0, bends[at(h)]), is_crease ? 0.0 : 1.0, 1e-12);
+        EXPECT_NEAR(straying(1.0, -bends[at(h)]), is_crease ? 0.0 : 1.0, 1e-12);
+    }
+}
+
 // The share of the seam length that has its mirror image within 2 % of the diagonal.
 double mirrored_share(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
     Eigen::AlignedBox3d box;
@@ -161,7 +194,8 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
     const FaceComponents before = find_patches(coarse, seam);
     Progress progress;
     progress.begin_phase("carrying", 1.0);
-    SeamMarks carried = carry_seams(coarse, seam, fine, build_vertex_graph(fine), progress);
+    SeamMarks carried = carry_seams(coarse, seam, fine, build_vertex_graph(fine),
+                                    std::vector<double>(fine.twin.size(), 0.0), progress);
     cut_corners(fine, carried);
     EXPECT_EQ(before.count, 2);
     EXPECT_EQ(find_patches(fine, carried).count, before.count);
@@ -342,7 +376,7 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
 TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
     const auto accepted = [](const RawMesh& raw) {
         const checks::Disk disk(raw);
-        return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, 0.15, false, Progress{})
+        return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, false, Progress{})
             .accepted;
     };
     EXPECT_TRUE(accepted(shapes::cylinder_tube(24, 8)));
@@ -355,7 +389,7 @@ TEST(PatchTrial, NeedlesAreMapped) {
     for (const double height : {1e-5, 1e-9, 1e-11, 1e-13}) {
         const checks::Disk disk({{{0, 0, 0}, {1, 0, 0}, {0, height, 0}}, {{0, 1, 2}}});
         const PatchTrial trial =
-            try_patch(disk.mesh, disk.surface.face, disk.charts.seam, 0.15, true, Progress{});
+            try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, true, Progress{});
         ASSERT_EQ(trial.change.size(), 1U);
         EXPECT_TRUE(std::isfinite(trial.change[0])) << height;
     }
@@ -379,8 +413,8 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     EXPECT_EQ(find_patches(mesh, seam).count, 4);
     // Flat patches need no seam at all.
     const WorkingSurface surface{mesh, {}};
-    PatchTester tester(surface, 0.15);
-    const SeamSetting setting{surface, {}, weight, tester, 100};
+    PatchTester tester(surface, {});
+    const SeamSetting setting{surface, {}, weight, tester, tester, 100};
     Progress progress;
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);

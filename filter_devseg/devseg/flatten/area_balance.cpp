@@ -18,8 +18,10 @@ constexpr double even = 0.1; // changes below this are left alone: Wang's own bo
 // and more than the shear of a usual face for others.
 constexpr double bound = 0.12;
 constexpr double usual_weight = 0.02;
-constexpr double least_share = 0.5;  // of the mean area: what a small face counts at least
-constexpr double stiffness = 1000.0; // of the boundary where it moves
+constexpr double least_share = 0.5; // of the mean area: what a small face counts at least
+// Of the boundary where it moves, while areas become even and where the last of them do.
+constexpr double stiffness = 5e3;
+constexpr double last_stiffness = 5e6;
 constexpr int most_steps = 12;
 constexpr double sufficient_decrease = 1e-4; // Armijo's constant
 constexpr double safe_step = 0.8;            // of the step at which the first face collapses
@@ -265,13 +267,13 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
 std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
                                         const std::vector<Vec2>& uv, const Progress& progress) {
     BalancedEnergy energy(1.0);
-    energy.boundary_stiffness = stiffness;
     const Region region{problem, {}, {}};
     Positions x(problem.vertex_count, 2);
     for (std::size_t v = 0; v < uv.size(); ++v)
         x.row(static_cast<Eigen::Index>(v)) = uv[v].transpose();
     for (const double strength : {1.0, 30.0}) {
         energy.weight = strength * usual_weight;
+        energy.boundary_stiffness = strength > 1.0 ? last_stiffness : stiffness;
         descend(region, energy, x, progress);
         if (energy.largest_change(problem, x) <= 1.0)
             break;

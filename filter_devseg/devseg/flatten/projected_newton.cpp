@@ -67,12 +67,8 @@ struct ProjectedNewton::State {
 
 ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
                                  AreaCurvature area_curvature, double boundary_stiffness)
-    : state_(new State{problem,
-                       std::move(fixed),
-                       std::move(area_curvature),
-                       boundary_stiffness,
-                       {},
-                       {}}) {}
+    : state_(new State{
+          problem, std::move(fixed), std::move(area_curvature), boundary_stiffness, {}, {}}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {

@@ -12,7 +12,8 @@ namespace devseg {
 namespace {
 
 constexpr double reach = 2.5;   // mean edges of the first surface: how far paths may leave the line
-constexpr double leaning = 0.7; // mean edges of the second one: a path so far away costs double
+constexpr double leaning = 2.0; // mean edges of the second one: a path so far away costs double
+constexpr double stray_share = 0.8;   // of an edge's cost: what goes where seams look natural
 constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
 
 double mean_edge(const Mesh& mesh) {
@@ -35,11 +36,13 @@ double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
 
 class Carrier {
 public:
-    Carrier(const Mesh& from, const Mesh& to, const VertexGraph& graph)
-        : from_(from), to_(to), graph_(graph), search_(to), normal_(vertex_normals(from)),
-          on_border_(boundary_vertices(from)), may_border_(boundary_vertices(to)),
-          reach_(reach * mean_edge(from)), leaning_(leaning * mean_edge(to)),
-          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {}
+    Carrier(const Mesh& from, const Mesh& to, const VertexGraph& graph,
+            const std::vector<double>& stray)
+        : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
+          normal_(vertex_normals(from)), on_border_(boundary_vertices(from)),
+          may_border_(boundary_vertices(to)), reach_(reach * mean_edge(from)),
+          leaning_(leaning * mean_edge(to)), seam_(to.twin.size(), 0), taken_(to.points.size(), 0),
+          place_(from.points.size(), -1) {}
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
         const std::vector<double> even(seam.size(), 1.0);
@@ -140,7 +143,8 @@ private:
         cost_.assign(to_.twin.size(), 0.0);
         for (Index h = 0; h < to_.half_edge_count(); ++h) {
             const double d = 0.5 * (away[at(to_.origin(h))] + away[at(to_.target(h))]) / leaning_;
-            cost_[at(h)] = to_.edge_length(h) * (1.0 + d * d);
+            cost_[at(h)] = to_.edge_length(h) * (1.0 + d * d) *
+                           (1.0 - stray_share + stray_share * stray_[at(h)]);
         }
         strip[at(place(line.front()))] = strip[at(place(line.back()))] = 1;
         return strip;
@@ -149,6 +153,7 @@ private:
     const Mesh& from_;
     const Mesh& to_;
     const VertexGraph& graph_;
+    const std::vector<double>& stray_; // 3 #F of to
     const SurfaceSearch search_;
     const std::vector<Vec3> normal_;             // #V of from
     const std::vector<std::uint8_t> on_border_;  // #V of from
@@ -164,8 +169,9 @@ private:
 } // namespace
 
 SeamMarks carry_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
-                      const VertexGraph& graph, Progress& progress) {
-    return Carrier(from, to, graph).run(seam, progress);
+                      const VertexGraph& graph, const std::vector<double>& stray,
+                      Progress& progress) {
+    return Carrier(from, to, graph, stray).run(seam, progress);
 }
 
 void cut_corners(const Mesh& mesh, SeamMarks& seam) {

@@ -26,12 +26,11 @@ struct Split {
 class Splitter {
 public:
     Splitter(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& weight,
-             double max_area_change, const SeamMarks& seam)
-        : mesh_(mesh), graph_(graph), weight_(weight), max_area_change_(max_area_change),
-          seam_(seam) {}
+             const PatchLimits& limits, const SeamMarks& seam)
+        : mesh_(mesh), graph_(graph), weight_(weight), limits_(limits), seam_(seam) {}
 
     Split split(const std::vector<Index>& faces, bool in_halves, const Progress& progress) const {
-        const PatchTrial trial = try_patch(mesh_, faces, seam_, max_area_change_, true, progress);
+        const PatchTrial trial = try_patch(mesh_, faces, seam_, limits_, true, progress);
         Split split;
         if (trial.accepted)
             return split;
@@ -213,7 +212,7 @@ private:
     const Mesh& mesh_;
     const VertexGraph& graph_;
     const std::vector<double>& weight_;
-    double max_area_change_;
+    const PatchLimits limits_;
     const SeamMarks& seam_;
 };
 
@@ -237,7 +236,7 @@ std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, cons
 } // namespace
 
 LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
-                           const std::vector<double>& weight, double max_area_change,
+                           const std::vector<double>& weight, const PatchLimits& limits,
                            std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = surface.mesh;
     LocalSeams result;
@@ -246,7 +245,7 @@ LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& gra
         const std::vector<std::vector<Index>> faces = open_patches(surface, seam, settled);
         if (faces.empty())
             return result;
-        const Splitter splitter(mesh, graph, weight, max_area_change, seam);
+        const Splitter splitter(mesh, graph, weight, limits, seam);
         std::vector<Split> splits(faces.size());
         parallel_for(
             static_cast<int>(faces.size()),

@@ -1,6 +1,7 @@
 // Further seams where patches are not developable enough yet.
 #pragma once
 
+#include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_paths.h"
 #include "devseg/plush/working_surface.h"
 
@@ -16,7 +17,7 @@ struct LocalSeams {
 /// by a path through the worst spot, until all are developable. Marks stay symmetric where the
 /// surface is. `settled`: 1 for faces of patches that are developable (#F), or empty.
 LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
-                           const std::vector<double>& weight, double max_area_change,
+                           const std::vector<double>& weight, const PatchLimits& limits,
                            std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg

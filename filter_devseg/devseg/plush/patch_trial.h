@@ -25,20 +25,28 @@ struct PatchTrial {
     std::vector<double> change; // of each face: area in the plane / on the surface − 1
 };
 
+/// What is asked of a patch. In a search, where many patches are tried, the shear is held lower,
+/// and patches far from an isometry are given up early: another surface than the one it is made on
+/// may be a little worse.
+struct PatchLimits {
+    double max_area_change = 0.15;
+    bool is_search = true;
+};
+
 /// The map that 'Charts: Flatten' with LPFB makes of the faces, cut open along the marked edges
 /// (`seam`, 3 #F of the mesh, all edges to other faces marked): accepted if it is a disk, keeps
-/// [Wan08]'s conditions, no face changes its area by more than `max_area_change`, and nothing
-/// overlaps. With `details` also the change of each face, for patches that are not accepted too.
+/// [Wan08]'s conditions, no face changes its area by more than the limit, and nothing overlaps.
+/// With `details` also the change of each face, for patches that are not accepted too.
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
-                     const std::vector<std::uint8_t>& seam, double max_area_change, bool details,
+                     const std::vector<std::uint8_t>& seam, const PatchLimits& limits, bool details,
                      const Progress& progress);
 
 /// Trials on one surface. None is made twice: a patch and its mirror image are one. Threads may
 /// share it.
 class PatchTester {
 public:
-    PatchTester(const WorkingSurface& surface, double max_area_change)
-        : surface_(surface), max_area_change_(max_area_change) {}
+    PatchTester(const WorkingSurface& surface, const PatchLimits& limits)
+        : surface_(surface), limits_(limits) {}
 
     /// Whether the patch is developable. `seam` as for try_patch, symmetric where the surface is.
     bool accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
@@ -50,7 +58,7 @@ public:
 
 private:
     const WorkingSurface& surface_;
-    const double max_area_change_;
+    const PatchLimits limits_;
     std::mutex mutex_;
     std::map<std::vector<Index>, bool> known_; // 8 f + marks of its edges
 };

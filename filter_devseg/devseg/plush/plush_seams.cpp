@@ -29,24 +29,23 @@ constexpr Index mirrored_faces = 6000;
 constexpr Index plain_faces = 15000;
 // Of the bound: what is used of it on another surface than the model, at first, and in each round
 // of deciding again.
-constexpr double margin = 0.85;
+constexpr double margin = 0.75;
 constexpr double tighter = 0.88;
 constexpr int second_thoughts = 2;
+constexpr double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
 constexpr double remnant = 0.02; // of the surface: patches that are joined on the model, in the end
 
 // Material borders are edges of the model: then seams are decided on the model itself.
-WorkingSurface make_working_surface(const Mesh& mesh, const PlushOptions& options,
+WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<MirrorPlane>& plane,
                                     const SeamMarks& hard, Progress& progress) {
-    progress.begin_phase("finding symmetry", 0.06);
     if (!hard.empty())
         return {mesh, {}};
-    if (options.symmetric)
-        if (const auto plane = find_mirror_plane(mesh, symmetric_enough, progress))
-            if (auto surface = mirrored_working_surface(mesh, *plane, mirrored_faces, progress))
-                return std::move(*surface);
+    if (plane)
+        if (auto surface = mirrored_working_surface(mesh, *plane, mirrored_faces, progress))
+            return std::move(*surface);
     return plain_working_surface(mesh, plain_faces, progress);
 }
 
@@ -62,11 +61,11 @@ struct OpenPart {
 // inside the open part.
 class PlushSegmentation {
 public:
-    PlushSegmentation(const WorkingSurface& surface, const PlushOptions& options,
-                      const Skeleton& skeleton, PlushSeams& result, Progress& progress)
-        : surface_(surface), mesh_(surface.mesh), options_(options), result_(result),
-          progress_(progress), graph_(build_vertex_graph(mesh_)) {
-        weigh_edges(skeleton);
+    PlushSegmentation(const WorkingSurface& surface, const PlushOptions& options, Skeleton skeleton,
+                      PlushSeams& result, Progress& progress)
+        : surface_(surface), mesh_(surface.mesh), options_(options), skeleton_(std::move(skeleton)),
+          result_(result), progress_(progress), graph_(build_vertex_graph(mesh_)) {
+        weigh_edges();
     }
 
     /// Seams of the open part, with those that there are elsewhere.
@@ -85,37 +84,43 @@ public:
     SeamMarks without_small_patches(const SeamMarks& seam, double max_area_change) {
         hard_.clear();
         seam_ = seam;
-        PatchTester tester(surface_, max_area_change);
+        PatchTester tester(surface_, {max_area_change, true});
+        PatchTester strict(surface_, {nearly_flat * max_area_change, true});
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
         removal.most_area = remnant;
         removal.least_neck = narrow_neck;
         progress_.begin_phase("joining patches", 0.04);
-        join_patches({surface_, hard_, weight_, tester, options_.max_iterations}, removal, seam_,
-                     progress_);
-        result_.trials += tester.trials();
+        join_patches({surface_, hard_, weights_.weight, tester, strict, options_.max_iterations},
+                     removal, seam_, progress_);
+        result_.trials += tester.trials() + strict.trials();
         return seam_;
     }
 
     const Mesh& mesh() const { return mesh_; }
+    const VertexGraph& graph() const { return graph_; }
+    const std::vector<double>& stray() const { return weights_.stray; }
+    const Skeleton& skeleton() const { return skeleton_; }
     const WorkingSurface& surface() const { return surface_; }
 
 private:
-    void weigh_edges(Skeleton skeleton) {
+    void weigh_edges() {
         progress_.begin_phase("finding the skeleton", 0.08);
-        if (skeleton.empty())
-            skeleton = extract_skeleton(mesh_, progress_);
+        if (skeleton_.empty())
+            skeleton_ = extract_skeleton(mesh_, progress_);
         BoneWeights bones;
-        if (!skeleton.empty())
-            bones = bone_weights(mesh_, skeleton, progress_);
-        result_.bones = std::max(result_.bones, static_cast<Index>(skeleton.bones.size()));
+        if (!skeleton_.empty())
+            bones = bone_weights(mesh_, skeleton_, progress_);
+        result_.bones = static_cast<Index>(skeleton_.bones.size());
         curvature_ = mean_curvature(mesh_);
-        weight_ = seam_weights(
+        weights_ = seam_weights(
             mesh_, {options_.geodesic_weight, options_.skeleton_weight, options_.curvature_weight},
-            curvature_, skeleton, bones);
+            curvature_, skeleton_, bones, progress_);
         for (std::size_t h = 0; h < surface_.image.size() / 2; ++h) {
-            double& image = weight_[at(surface_.image[h])];
-            weight_[h] = image = 0.5 * (weight_[h] + image);
+            for (std::vector<double>* values : {&weights_.weight, &weights_.stray}) {
+                double& image = (*values)[at(surface_.image[h])];
+                (*values)[h] = image = 0.5 * ((*values)[h] + image);
+            }
         }
         progress_.update(1.0);
         const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh_.points.size())));
@@ -148,15 +153,16 @@ private:
             find_limbs(mesh_, graph_, curvature_, limb_tips(), progress_);
         result_.limbs = std::max(result_.limbs, static_cast<Index>(limbs.size()));
         add_limb_seams(mesh_, limbs, seam_);
-        add_structural_seams(mesh_, graph_, weight_, extrema_, seam_, progress_);
+        add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, progress_);
         clean_patches();
         progress_.begin_phase("cutting patches", 0.15);
         std::vector<std::uint8_t> settled(mesh_.faces.size(), 0);
         for (Index f = 0; f < mesh_.face_count(); ++f)
             settled[at(f)] = open_.is_open(f) ? 0 : 1;
-        add_local_seams(surface_, graph_, weight_, max_area_change_, settled, seam_, progress_);
+        add_local_seams(surface_, graph_, weights_.weight, {max_area_change_, true}, settled, seam_,
+                        progress_);
         result_.candidates +=
-            static_cast<Index>(find_segments(mesh_, seam_, hard_, weight_).size());
+            static_cast<Index>(find_segments(mesh_, seam_, hard_, weights_.weight).size());
     }
 
     void mark_plane() {
@@ -186,8 +192,10 @@ private:
     }
 
     void remove() {
-        PatchTester tester(surface_, max_area_change_);
-        const SeamSetting setting{surface_, hard_, weight_, tester, options_.max_iterations};
+        PatchTester tester(surface_, {max_area_change_, true});
+        PatchTester strict(surface_, {nearly_flat * max_area_change_, true});
+        const SeamSetting setting{surface_, hard_,  weights_.weight,
+                                  tester,   strict, options_.max_iterations};
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
         progress_.begin_phase("removing seams", 0.25);
@@ -202,17 +210,18 @@ private:
         join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("shortening darts", 0.02);
         shorten_darts(setting, seam_, progress_);
-        result_.trials += tester.trials();
+        result_.trials += tester.trials() + strict.trials();
     }
 
     const WorkingSurface& surface_;
     const Mesh& mesh_;
     const PlushOptions& options_;
+    Skeleton skeleton_;
     PlushSeams& result_;
     Progress& progress_;
     const VertexGraph graph_;
     std::vector<double> curvature_; // #V
-    std::vector<double> weight_;    // 3 #F
+    SeamWeights weights_;
     std::vector<Index> extrema_;
     OpenPart open_;
     SeamMarks hard_; // 3 #F or empty
@@ -231,7 +240,7 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
         [&](int c) {
             const std::vector<Index> faces{groups.faces.begin() + groups.begin[at(c)],
                                            groups.faces.begin() + groups.begin[at(c) + 1]};
-            trials[at(c)] = try_patch(mesh, faces, seam, max_area_change, true, progress);
+            trials[at(c)] = try_patch(mesh, faces, seam, {max_area_change, false}, true, progress);
         },
         progress);
     result.area_change.assign(mesh.faces.size(), 0.0);
@@ -257,7 +266,8 @@ OpenPart failing_part(const WorkingSurface& model, SeamMarks seam, double max_ar
         patches.count,
         [&](int p) {
             fails[at(p)] =
-                try_patch(model.mesh, faces[at(p)], seam, max_area_change, false, progress).accepted
+                try_patch(model.mesh, faces[at(p)], seam, {max_area_change, false}, false, progress)
+                        .accepted
                     ? 0
                     : 1;
         },
@@ -313,15 +323,15 @@ bool has_open_faces(const OpenPart& part) {
 // it, seams are decided again: with a smaller bound on the working surface, and in the end on the
 // model itself.
 SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
-                           const PlushOptions& options, const Skeleton& skeleton,
-                           PlushSeams& result, Progress& progress) {
-    const VertexGraph graph = build_vertex_graph(model.mesh);
+                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
+    PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
     double bound = margin * options.max_area_change;
     SeamMarks seam = working.decide({}, {}, bound);
     OpenPart part;
     for (int round = 0;; ++round) {
         progress.begin_phase("carrying seams", 0.02);
-        SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, graph, progress);
+        SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, on_model.graph(),
+                                        on_model.stray(), progress);
         cut_corners(model.mesh, carried);
         part = failing_part(model, std::move(carried), options.max_area_change, progress);
         if (!has_open_faces(part) || round == second_thoughts)
@@ -332,7 +342,6 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         bound *= tighter;
         seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
     }
-    PlushSegmentation on_model(model, options, skeleton, result, progress);
     if (has_open_faces(part))
         part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
     return on_model.without_small_patches(part.seam, options.max_area_change);
@@ -349,22 +358,26 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     check_rounds(options.max_iterations, options.random_seed);
     PlushSeams result;
     const WorkingSurface model{mesh, {}};
-    const WorkingSurface surface = make_working_surface(mesh, options, hard, progress);
+    progress.begin_phase("finding symmetry", 0.06);
+    std::optional<MirrorPlane> plane;
+    if (options.symmetric)
+        plane = find_mirror_plane(mesh, symmetric_enough, progress);
+    const WorkingSurface surface = make_working_surface(mesh, plane, hard, progress);
     result.is_symmetric = surface.is_symmetric();
     const bool is_model = !surface.is_symmetric() && surface.mesh.face_count() == mesh.face_count();
-    PlushSegmentation working(surface, options, skeleton, result, progress);
-    SeamMarks seam = is_model
-                         ? working.decide({}, hard, options.max_area_change)
-                         : decide_for_model(working, model, options, skeleton, result, progress);
+    PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
+    SeamMarks seam = is_model ? working.decide({}, hard, options.max_area_change)
+                              : decide_for_model(working, model, options, result, progress);
     progress.begin_phase("measuring patches", 0.05);
     // Nothing should be left to cut here; noise can make a patch fail that was accepted before.
-    const std::vector<double> weight =
+    const SeamWeights weights =
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
-                     mean_curvature(mesh), {}, {});
-    result.all_developable = add_local_seams(model, build_vertex_graph(mesh), weight,
-                                             options.max_area_change, {}, seam, progress)
+                     mean_curvature(mesh), {}, {}, progress);
+    result.all_developable = add_local_seams(model, build_vertex_graph(mesh), weights.weight,
+                                             {options.max_area_change, false}, {}, seam, progress)
                                  .all_developable;
     measure_patches(mesh, seam, options.max_area_change, result, progress);
+    result.seams = measure_seams(mesh, seam, working.skeleton(), plane, progress);
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/plush/seam_guides.h"
 #include "devseg/plush/skeleton.h"
 #include "devseg/progress.h"
 
@@ -29,6 +30,7 @@ struct PlushSeams {
     std::vector<double> area_change; // #F: of the accepted maps, |area in the plane / own area − 1|
     double max_area_change = 0.0;
     bool is_symmetric = false;
+    SeamMeasures seams;
     Index extrema = 0;
     Index bones = 0;
     Index limbs = 0;

@@ -6,20 +6,24 @@
 #include <limits>
 #include <queue>
 
+#include "devseg/plush/seam_guides.h"
+
 namespace devseg {
 
 namespace {
 constexpr double least_weight = 1e-4; // so that paths stay short where a term vanishes
+constexpr double stray_share = 0.95;  // of a weight: what goes where seams look natural
 constexpr double shared = 0.25;       // factor of edges that are seams already
 } // namespace
 
-std::vector<double> seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
-                                 const std::vector<double>& curvature, const Skeleton& skeleton,
-                                 const BoneWeights& bones) {
+SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
+                         const std::vector<double>& curvature, const Skeleton& skeleton,
+                         const BoneWeights& bones, const Progress& progress) {
+    const std::vector<double> bends = bends_across_edges(mesh, progress);
     double longest = 0.0;
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         longest = std::max(longest, mesh.edge_length(h));
-    std::vector<double> weight(mesh.twin.size());
+    SeamWeights result;
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         const Index a = std::min(mesh.origin(h), mesh.target(h));
         const Index b = std::max(mesh.origin(h), mesh.target(h));
@@ -30,12 +34,14 @@ std::vector<double> seam_weights(const Mesh& mesh, const SeamWeightOptions& opti
             along = 1.0 - bone.agreement * std::abs(edge.dot(bone.direction));
         }
         const double curved = 1.0 / (1.0 + std::abs(curvature[at(a)]) + std::abs(curvature[at(b)]));
-        weight[at(h)] =
+        result.stray.push_back(straying(along, bends[at(h)]));
+        result.weight.push_back(
+            (1.0 - stray_share + stray_share * result.stray.back()) *
             std::max(least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
                                        std::pow(std::max(0.0, along), options.skeleton) *
-                                       std::pow(curved, options.curvature));
+                                       std::pow(curved, options.curvature)));
     }
-    return weight;
+    return result;
 }
 
 PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,

@@ -137,8 +137,8 @@ private:
         const SeamSegment& segment = segments_[i];
         const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / mesh_.total_area;
         if (mode_ == Mode::joins)
-            return segment.length / std::max(size, 1e-9);
-        return jitter(segment) * segment.weight * std::pow(segment.length, options_.length_power) *
+            return segment.length * segment.weight / std::max(size, 1e-9);
+        return jitter(segment) * std::pow(segment.weight, options_.weight_power) *
                std::pow(size, -options_.size_power);
     }
 
@@ -195,6 +195,12 @@ private:
 
     double smaller_area(std::size_t i) const {
         return std::min(area_[at(left(i))], area_[at(right(i))]);
+    }
+
+    // Large patches with many slits would be hard to sew, and seams easily fail on another surface.
+    bool is_large_together(std::size_t i) const {
+        return left(i) != right(i) &&
+               area_[at(left(i))] + area_[at(right(i))] > options_.most_together * mesh_.total_area;
     }
 
     bool may_go(std::size_t i) const {
@@ -265,6 +271,7 @@ private:
     }
 
     void try_windows(Removal& removal) const {
+        PatchTester& tester = is_large_together(removal.segment) ? s_.strict_tester : s_.tester;
         std::vector<Index> tried;
         for (const Window& window : removal.windows) {
             std::vector<Index> edges = edges_within(removal, window);
@@ -273,7 +280,7 @@ private:
             SeamMarks marks = seam_;
             for (const Index h : edges)
                 mark(mesh_, h, 0, marks);
-            if (s_.tester.accepts_all(flood(removal, marks), marks, progress_)) {
+            if (tester.accepts_all(flood(removal, marks), marks, progress_)) {
                 removal.half_edges = std::move(edges);
                 return;
             }

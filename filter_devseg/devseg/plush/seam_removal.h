@@ -12,17 +12,19 @@ struct SeamSetting {
     const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
     const std::vector<double>& weight; // 3 #F
     PatchTester& tester;
-    int max_rounds = 10000; // of trials side by side
+    PatchTester& strict_tester; // for large patches
+    int max_rounds = 10000;     // of trials side by side
 
     const Mesh& mesh() const { return surface.mesh; }
 };
 
 struct RemovalOptions {
-    // What goes first: the mean weight of a segment's edges [the paper], times powers of its length
-    // and of the smaller patch's size.
-    double length_power = 0.0;
+    // What goes first: powers of the mean weight of a segment's edges [the paper: 1] and of the
+    // smaller patch's size.
+    double weight_power = 2.0;
     double size_power = 0.5;
-    int random_seed = 0; // other numbers than 0 change the order a little
+    int random_seed = 0;        // other numbers than 0 change the order a little
+    double most_together = 0.2; // of the surface: larger patches must pass the strict tester
     // Of joins: only patches up to this share of the surface are joined to a neighbour, along at
     // least so much of the root of their area.
     double most_area = 1.0;

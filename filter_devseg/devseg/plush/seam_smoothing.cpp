@@ -14,7 +14,7 @@ constexpr int most_rounds = 12;   // of taking teeth away
 constexpr int corridor_rings = 3; // of vertices beside a segment
 constexpr double worth = 0.97;    // of its cost: what a new path must save
 constexpr double natural_share =
-    0.3; // of the seam weight in the cost of an edge, beside its length
+    0.5; // of the seam weight in the cost of an edge, beside its length
 
 // An open part of a segment, which is made straight between its ends.
 struct Line {
