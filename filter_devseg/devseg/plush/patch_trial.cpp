@@ -25,6 +25,7 @@ constexpr double search_stretch = 1.02;
 // As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
 // length by 8 % in the mean.
 constexpr double hopeless_energy = 0.012;
+constexpr double usual_change = 0.1; // for smaller bounds in proportion to their square
 
 void describe(const ChartSurface& surface, const FlatteningProblem& problem,
               const std::vector<Vec2>& uv, PatchTrial& trial) {
@@ -67,9 +68,11 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
         return trial;
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     const double bound = kept * limits.max_area_change;
+    const double strictness = std::min(1.0, limits.max_area_change / usual_change);
+    const double give_up = hopeless_energy * strictness * strictness;
     const auto map = sewing_map(
         problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
-        {bound, limits.is_search ? hopeless_energy : SewingMapOptions{}.give_up_energy}, progress);
+        {bound, limits.is_search ? give_up : SewingMapOptions{}.give_up_energy}, progress);
     if (map) {
         trial.area_change = map->area_change;
         // At the scale at which the map has the patch's area.

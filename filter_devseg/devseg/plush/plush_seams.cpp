@@ -81,19 +81,19 @@ public:
     }
 
     /// The seams, with small patches joined to neighbours.
-    SeamMarks without_small_patches(const SeamMarks& seam, double max_area_change) {
-        hard_.clear();
+    SeamMarks without_small_patches(const SeamMarks& seam, const SeamMarks& hard,
+                                    double max_area_change) {
+        hard_ = hard;
         seam_ = seam;
-        PatchTester tester(surface_, {max_area_change, true});
-        PatchTester strict(surface_, {nearly_flat * max_area_change, true});
+        PatchTester tester(surface_, {max_area_change, false});
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
         removal.most_area = remnant;
         removal.least_neck = narrow_neck;
         progress_.begin_phase("joining patches", 0.04);
-        join_patches({surface_, hard_, weights_.weight, tester, strict, options_.max_iterations},
+        join_patches({surface_, hard_, weights_.weight, tester, tester, options_.max_iterations},
                      removal, seam_, progress_);
-        result_.trials += tester.trials() + strict.trials();
+        result_.trials += tester.trials();
         return seam_;
     }
 
@@ -344,7 +344,7 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     }
     if (has_open_faces(part))
         part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
-    return on_model.without_small_patches(part.seam, options.max_area_change);
+    return on_model.without_small_patches(part.seam, {}, options.max_area_change);
 }
 
 } // namespace
@@ -366,8 +366,12 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     result.is_symmetric = surface.is_symmetric();
     const bool is_model = !surface.is_symmetric() && surface.mesh.face_count() == mesh.face_count();
     PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
-    SeamMarks seam = is_model ? working.decide({}, hard, options.max_area_change)
-                              : decide_for_model(working, model, options, result, progress);
+    SeamMarks seam;
+    if (is_model)
+        seam = working.without_small_patches(working.decide({}, hard, options.max_area_change),
+                                             hard, options.max_area_change);
+    else
+        seam = decide_for_model(working, model, options, result, progress);
     progress.begin_phase("measuring patches", 0.05);
     // Nothing should be left to cut here; noise can make a patch fail that was accepted before.
     const SeamWeights weights =

@@ -271,7 +271,10 @@ private:
     }
 
     void try_windows(Removal& removal) const {
-        PatchTester& tester = is_large_together(removal.segment) ? s_.strict_tester : s_.tester;
+        const bool is_large = is_large_together(removal.segment);
+        PatchTester& tester = is_large ? s_.strict_tester : s_.tester;
+        if (is_large && removal.windows.front().from == 0.0 && removal.windows.front().to == 1.0)
+            removal.windows.resize(1); // nearly flat patches need no darts
         std::vector<Index> tried;
         for (const Window& window : removal.windows) {
             std::vector<Index> edges = edges_within(removal, window);
