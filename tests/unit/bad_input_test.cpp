@@ -173,6 +173,27 @@ TEST(BadInput, CoordinatesThatAreNotFiniteAreRefusedWithTheFace) {
         }
 }
 
+TEST(BadInput, TextureCoordinatesThatNoHostHoldsAreRefusedWithTheFace) {
+    const HostMesh flat = [] {
+        HostMesh host = checks::host_of(shapes::with_noise(shapes::grid(4, 4), 0.05, 1));
+        host.wedge_uv = run("Charts: Flatten", host).wedge_uv;
+        return host;
+    }();
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1e300, 1e39}) {
+        HostMesh host = flat;
+        host.wedge_uv[30][1].y() = bad;
+        try {
+            run("Pattern: Sewn Preview", host);
+            ADD_FAILURE() << "accepted " << bad;
+        } catch (const InvalidMesh& error) {
+            EXPECT_EQ(error.faces, std::vector<Index>{30});
+        }
+    }
+    HostMesh host = flat;
+    host.wedge_uv[30][1].y() = std::numeric_limits<float>::max();
+    EXPECT_NO_THROW(run("Pattern: Sewn Preview", host));
+}
+
 TEST(BadInput, AFoldedBackStripAndABowtie) {
     // Two squares that touch in one vertex, and a strip folded onto itself in space.
     RawMesh bowtie =
