@@ -63,6 +63,8 @@ public:
         const Index last = grows_ ? rows_ : rows_ - cells.height;
         for (Index y = 0; y <= last && y + cells.height < limit; ++y) {
             add_rows(y + cells.height);
+            if (!has_room(cells, y))
+                continue;
             for (Index x = 0; x + cells.width <= columns_;) {
                 const Index next = blocked_until(cells, x, y);
                 if (next == x) {
@@ -82,10 +84,18 @@ public:
             std::fill(row + spot.x + run.first, row + spot.x + run.last, 0);
             for (Index x = spot.x + run.first - 1; x >= 0 && row[x] != 0; --x)
                 row[x] = spot.x + run.first - x;
+            widest_[at(spot.y + run.row)] = *std::max_element(row, row + columns_);
         }
     }
 
 private:
+    // Whether each row has somewhere as many free cells as the run that comes there.
+    bool has_room(const ChartCells& cells, Index y) const {
+        return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const CellRun& run) {
+            return widest_[at(y + run.row)] >= run.last - run.first;
+        });
+    }
+
     // The next column to try; x itself where all runs are free.
     Index blocked_until(const ChartCells& cells, Index x, Index y) const {
         for (const CellRun& run : cells.runs) {
@@ -97,9 +107,11 @@ private:
     }
 
     void add_rows(Index rows) {
-        for (; rows_ < rows; ++rows_)
+        for (; rows_ < rows; ++rows_) {
             for (Index x = 0; x < columns_; ++x)
                 free_.push_back(columns_ - x);
+            widest_.push_back(columns_);
+        }
     }
     std::size_t offset(Index y) const { return at(y) * at(columns_); }
 
@@ -107,10 +119,13 @@ private:
     Index rows_;
     bool grows_;
     std::vector<Index> free_;
+    std::vector<Index> widest_; // of each row, the most free cells side by side
 };
 
+// The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
 std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& options,
                                  double cell) {
+    const bool grows = options.height <= 0.0;
     const Outline outline = outline_of(piece);
     double angle = least_box_angle(piece.cut.front());
     int turns = 4;
@@ -120,8 +135,13 @@ std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& 
         turns = 2;
     }
     std::vector<ChartCells> poses;
-    for (int i = 0; i < turns; ++i)
-        poses.push_back(rasterize(outline, angle + 2.0 * pi * i / turns, cell, 0.5 * options.gap));
+    for (int i = 0; i < turns; ++i) {
+        const double turn = angle + 2.0 * pi * i / turns;
+        const Vec2 size = turned_size(piece.cut.front(), turn);
+        if (size.x() > options.width + cell || (!grows && size.y() > options.height + cell))
+            continue;
+        poses.push_back(rasterize(outline, turn, cell, 0.5 * options.gap));
+    }
     return poses;
 }
 
@@ -151,10 +171,6 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     std::size_t done = 0;
     for (const std::size_t i : order) {
         progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
-        // A piece longer than the sheet's diagonal fits in no pose; it may be far longer.
-        if (!grows &&
-            pieces[i]->box().sizes().maxCoeff() > std::hypot(options.width, options.height))
-            continue;
         const std::vector<ChartCells> poses = poses_of(*pieces[i], options, cell);
         for (std::size_t b = 0; b <= boards.size() && nesting.sheet[i] < 0; ++b) {
             Board fresh(cells(options.width), grows ? 0 : cells(options.height), grows);
