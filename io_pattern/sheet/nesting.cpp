@@ -48,6 +48,10 @@ double least_box_angle(const std::vector<Vec2>& points) {
     return best;
 }
 
+Index width(const CellRun& run) {
+    return run.last - run.first;
+}
+
 // Free cells of one sheet: for each cell, how many from it to the right are free.
 class Board {
 public:
@@ -60,10 +64,13 @@ public:
     bool find(const ChartCells& cells, Index limit, Spot& spot) {
         if (cells.width > columns_)
             return false;
+        const CellRun longest = *std::max_element(
+            cells.runs.begin(), cells.runs.end(),
+            [](const CellRun& a, const CellRun& b) { return width(a) < width(b); });
         const Index last = grows_ ? rows_ : rows_ - cells.height;
         for (Index y = 0; y <= last && y + cells.height < limit; ++y) {
             add_rows(y + cells.height);
-            if (!has_room(cells, y))
+            if (widest_[at(y + longest.row)] < width(longest) || !has_room(cells, y))
                 continue;
             for (Index x = 0; x + cells.width <= columns_;) {
                 const Index next = blocked_until(cells, x, y);
@@ -92,7 +99,7 @@ private:
     // Whether each row has somewhere as many free cells as the run that comes there.
     bool has_room(const ChartCells& cells, Index y) const {
         return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const CellRun& run) {
-            return widest_[at(y + run.row)] >= run.last - run.first;
+            return widest_[at(y + run.row)] >= width(run);
         });
     }
 
@@ -100,7 +107,7 @@ private:
     Index blocked_until(const ChartCells& cells, Index x, Index y) const {
         for (const CellRun& run : cells.runs) {
             const Index room = free_[at(static_cast<Index>(offset(y + run.row)) + x + run.first)];
-            if (room < run.last - run.first)
+            if (room < width(run))
                 return x + room + 1;
         }
         return x;
