@@ -48,6 +48,10 @@ double least_box_angle(const std::vector<Vec2>& points) {
     return best;
 }
 
+Index width(const CellRun& run) {
+    return run.last - run.first;
+}
+
 // Free cells of one sheet: for each cell, how many from it to the right are free.
 class Board {
 public:
@@ -60,9 +64,14 @@ public:
     bool find(const ChartCells& cells, Index limit, Spot& spot) {
         if (cells.width > columns_)
             return false;
+        const CellRun longest = *std::max_element(
+            cells.runs.begin(), cells.runs.end(),
+            [](const CellRun& a, const CellRun& b) { return width(a) < width(b); });
         const Index last = grows_ ? rows_ : rows_ - cells.height;
         for (Index y = 0; y <= last && y + cells.height < limit; ++y) {
             add_rows(y + cells.height);
+            if (widest_[at(y + longest.row)] < width(longest) || !has_room(cells, y))
+                continue;
             for (Index x = 0; x + cells.width <= columns_;) {
                 const Index next = blocked_until(cells, x, y);
                 if (next == x) {
@@ -82,24 +91,34 @@ public:
             std::fill(row + spot.x + run.first, row + spot.x + run.last, 0);
             for (Index x = spot.x + run.first - 1; x >= 0 && row[x] != 0; --x)
                 row[x] = spot.x + run.first - x;
+            widest_[at(spot.y + run.row)] = *std::max_element(row, row + columns_);
         }
     }
 
 private:
+    // Whether each row has somewhere as many free cells as the run that comes there.
+    bool has_room(const ChartCells& cells, Index y) const {
+        return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const CellRun& run) {
+            return widest_[at(y + run.row)] >= width(run);
+        });
+    }
+
     // The next column to try; x itself where all runs are free.
     Index blocked_until(const ChartCells& cells, Index x, Index y) const {
         for (const CellRun& run : cells.runs) {
             const Index room = free_[at(static_cast<Index>(offset(y + run.row)) + x + run.first)];
-            if (room < run.last - run.first)
+            if (room < width(run))
                 return x + room + 1;
         }
         return x;
     }
 
     void add_rows(Index rows) {
-        for (; rows_ < rows; ++rows_)
+        for (; rows_ < rows; ++rows_) {
             for (Index x = 0; x < columns_; ++x)
                 free_.push_back(columns_ - x);
+            widest_.push_back(columns_);
+        }
     }
     std::size_t offset(Index y) const { return at(y) * at(columns_); }
 
@@ -107,10 +126,13 @@ private:
     Index rows_;
     bool grows_;
     std::vector<Index> free_;
+    std::vector<Index> widest_; // of each row, the most free cells side by side
 };
 
+// The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
 std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& options,
                                  double cell) {
+    const bool grows = options.height <= 0.0;
     const Outline outline = outline_of(piece);
     double angle = least_box_angle(piece.cut.front());
     int turns = 4;
@@ -120,8 +142,13 @@ std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& 
         turns = 2;
     }
     std::vector<ChartCells> poses;
-    for (int i = 0; i < turns; ++i)
-        poses.push_back(rasterize(outline, angle + 2.0 * pi * i / turns, cell, 0.5 * options.gap));
+    for (int i = 0; i < turns; ++i) {
+        const double turn = angle + 2.0 * pi * i / turns;
+        const Vec2 size = turned_size(piece.cut.front(), turn);
+        if (size.x() > options.width + cell || (!grows && size.y() > options.height + cell))
+            continue;
+        poses.push_back(rasterize(outline, turn, cell, 0.5 * options.gap));
+    }
     return poses;
 }
 
@@ -151,10 +178,6 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     std::size_t done = 0;
     for (const std::size_t i : order) {
         progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
-        // A piece longer than the sheet's diagonal fits in no pose; it may be far longer.
-        if (!grows &&
-            pieces[i]->box().sizes().maxCoeff() > std::hypot(options.width, options.height))
-            continue;
         const std::vector<ChartCells> poses = poses_of(*pieces[i], options, cell);
         for (std::size_t b = 0; b <= boards.size() && nesting.sheet[i] < 0; ++b) {
             Board fresh(cells(options.width), grows ? 0 : cells(options.height), grows);

@@ -33,6 +33,8 @@ bool touches_window(const std::vector<Vec2>& ring, const PageWindow& window) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Vec2& a = ring[i];
         const Vec2& b = ring[(i + 1) % ring.size()];
+        if (!box.intersects(Eigen::AlignedBox2d(a).extend(b)))
+            continue;
         if (box.contains(a))
             return true;
         for (std::size_t k = 0; k < 4; ++k)

@@ -25,6 +25,14 @@ std::atomic<long> counted{0};
         return memory;
     throw std::bad_alloc();
 }
+// Sanitizers have their own, whose memory the functions below must not free; sorts ask for it.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    try {
+        return operator new(size);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }

@@ -167,7 +167,9 @@ class Corpus:
         answer: dict[str, Any] = {"status": status, "files": left, "stderr": complained.getvalue()}
         problems = []
         errors = [line for line in answer["stderr"].splitlines() if "devseg: error:" in line]
-        expected = sorted(f"{path.stem}.{kind}" for kind in [*formats.split(","), "png", "json"])
+        kinds = [*formats.split(","), "png", "json"]
+        kinds += ["obj.mtl"] if "obj" in kinds else []  # which the host writes beside it
+        expected = sorted(f"{path.stem}.{kind}" for kind in kinds)
         if status == 0 and (errors or left != expected):
             problems.append(f"expected {expected}, found {left}")
         if status != 0 and (status != 1 or left or len(errors) != 1 or "unexpected" in errors[0]):

@@ -173,6 +173,46 @@ TEST(BadInput, CoordinatesThatAreNotFiniteAreRefusedWithTheFace) {
         }
 }
 
+TEST(BadInput, TextureCoordinatesThatNoHostHoldsAreRefusedWithTheFace) {
+    const HostMesh flat = [] {
+        HostMesh host = checks::host_of(shapes::with_noise(shapes::grid(4, 4), 0.05, 1));
+        host.wedge_uv = run("Charts: Flatten", host).wedge_uv;
+        return host;
+    }();
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1e300, 1e39}) {
+        HostMesh host = flat;
+        host.wedge_uv[30][1].y() = bad;
+        try {
+            run("Pattern: Sewn Preview", host);
+            ADD_FAILURE() << "accepted " << bad;
+        } catch (const InvalidMesh& error) {
+            EXPECT_EQ(error.faces, std::vector<Index>{30});
+        }
+    }
+    HostMesh host = flat;
+    host.wedge_uv[30][1].y() = std::numeric_limits<float>::max();
+    EXPECT_NO_THROW(run("Pattern: Sewn Preview", host));
+}
+
+// The needles at the collapsed edge can only be opened to wide angles: maps thousands of times as
+// large as the model are of no use.
+TEST(BadInput, ATetrahedronWithACollapsedEdgeStaysSmall) {
+    for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, -4, 0), Vec3(2, 1, 0)}) {
+        RawMesh raw;
+        raw.points = {{0, 0, 0}, 1e-11 * way, {0.28, 0, 0}, {0.2, 0.29, 0}};
+        raw.faces = {{0, 1, 2}, {1, 3, 2}, {0, 3, 1}, {0, 2, 3}};
+        for (int method = 0; method < 5; ++method) {
+            SCOPED_TRACE(methods[method]);
+            const HostResult flat =
+                run("Charts: Flatten", checks::host_of(raw), {{"method", method}, {"pack", false}});
+            for (const auto& corners : flat.wedge_uv)
+                for (const Vec2& p : corners)
+                    EXPECT_LT(p.norm(), 10.0);
+        }
+        expect_valid_layout(raw, 0);
+    }
+}
+
 TEST(BadInput, AFoldedBackStripAndABowtie) {
     // Two squares that touch in one vertex, and a strip folded onto itself in space.
     RawMesh bowtie =

@@ -43,6 +43,17 @@ TEST(Nesting, FillsSheetsWithoutOverlap) {
     }
 }
 
+// An image of the first piece in cells of the sheet's size would take terabytes.
+TEST(Nesting, LeavesOutPiecesThatAreFarTooWide) {
+    const SheetPiece huge = rectangle(1e6, 1e6);
+    const SheetPiece upright = rectangle(80, 900);
+    Progress progress;
+    const Nesting endless = nest_pieces({&huge, &upright}, {100.0, 0.0, 2.0, false}, progress);
+    EXPECT_EQ(endless.sheet, (std::vector<Index>{-1, 0}));
+    const Nesting page = nest_pieces({&huge, &upright}, {100.0, 120.0, 2.0, false}, progress);
+    EXPECT_EQ(page.sheet, (std::vector<Index>{-1, -1}));
+}
+
 TEST(PageSize, KnowsNamesAndSizes) {
     ExportOptions options;
     EXPECT_FALSE(page_format(options));

@@ -1,4 +1,4 @@
-// A directory of its own for each test, gone afterwards.
+// A directory of its own for each test and process, gone afterwards.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,15 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace devseg {
 
 class TemporaryFolder {
 public:
-    TemporaryFolder() : path_(std::filesystem::temp_directory_path() / ("devseg_" + test_name())) {
+    TemporaryFolder()
+        : path_(std::filesystem::temp_directory_path() /
+                ("devseg_" + test_name() + '_' + std::to_string(::getpid()))) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }

@@ -43,6 +43,11 @@ std::optional<ChartMap> read_charts(const HostMesh& host, const GatedMesh& gated
     return make_chart_map(mesh, labels, seam, true);
 }
 
+// Hosts keep texture coordinates in 32 bits, where larger numbers are infinite.
+bool is_coordinate(const Vec2& p) {
+    return (p.array().abs() <= std::numeric_limits<float>::max()).all();
+}
+
 // Broken texture coordinates only matter to filters that need them.
 std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bool needed) {
     if (host.wedge_uv.empty())
@@ -52,11 +57,11 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bo
         for (Index k = 0; k < 3; ++k) {
             const std::size_t source = at(gated.source_face[at(f)]);
             const Vec2& p = host.wedge_uv[source][at(gated.source_corner(f, k))];
-            if (!p.allFinite() && !needed)
+            if (!is_coordinate(p) && !needed)
                 return std::nullopt;
-            if (!p.allFinite())
-                throw InvalidMesh("expected finite texture coordinates, found a NaN or an infinite "
-                                  "number at face " +
+            if (!is_coordinate(p))
+                throw InvalidMesh("expected finite texture coordinates, found a NaN or a number "
+                                  "beyond 32 bits at face " +
                                       std::to_string(source) + "; run 'Charts: Flatten' again",
                                   {static_cast<Index>(source)});
             uv[at(3 * f + k)] = p;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "devseg/errors.h"
 #include "devseg/flatten/abf.h"
 #include "devseg/flatten/arap.h"
@@ -34,6 +36,11 @@ constexpr double visible_gap = 5e-6;
 
 // A face that keeps less of its area has collapsed.
 constexpr double collapsed = 1e-5;
+
+// A map this many times larger than the chart is of no use: needles had to be opened to wide
+// angles, and the least energy is too far away. The layout would be so large that readers see no
+// slits.
+constexpr double blown_up = 100.0;
 
 // Coarse-to-fine maps of larger charts are taken as they are: their energy is within 1e-4 of the
 // minimum, and one factorization of the whole chart would cost more than all levels together.
@@ -195,6 +202,17 @@ std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
     return on_mesh(surface, separating_path(mesh, surface, pairs));
 }
 
+// An isometric map of a disk is no longer than half of its boundary.
+bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double boundary = 0.0;
+    for (const double length : problem.boundary_edge)
+        boundary += length;
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : uv)
+        box.extend(p);
+    return !(box.diagonal().norm() <= blown_up * (boundary + std::sqrt(problem.total_area)));
+}
+
 } // namespace
 
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
@@ -231,6 +249,8 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
             throw;
         return halve(mesh, chart.surface); // the halves are easier
     }
+    if (chart.surface.face_count() > 1 && is_blown_up(problem, chart.uv))
+        return halve(mesh, chart.surface);
     restore_needles(mesh, chart.surface, problem, chart.uv);
     open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);

@@ -14,12 +14,14 @@ namespace devseg {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double shift = 1e-8; // of the mean diagonal: constants are in the Laplacian's kernel
+constexpr double shift = 1e-8;      // of the mean diagonal: constants are in the Laplacian's kernel
+constexpr double least_size = 1e-9; // internal units: faces whose corners coincide need a shape
 constexpr double smoothing_edges = 2.0; // radius of the curvature's smoothing, in mean edges
 
 RestTriangle rest_of(const Mesh& mesh, Index f) {
     return make_rest_triangle(
-        {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)}, 0.0);
+        {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
+        least_size);
 }
 
 Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::VectorXd& rhs) {
