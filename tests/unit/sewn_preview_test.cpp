@@ -7,6 +7,7 @@
 #include "devseg/flatten/area_balance.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/lpfb.h"
+#include "devseg/flatten/lscm.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/tutte.h"
 #include "unit/checks.h"
@@ -101,6 +102,30 @@ TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
     std::vector<Vec2> even = square;
     balance_areas(disk.problem, even, Progress{});
     EXPECT_EQ(even, square);
+}
+
+TEST(AreaBalance, ABoundaryThatMayBendTakesMore) {
+    // A strip around a ball: its middle is longer than its edges.
+    RawMesh strip = shapes::grid(40, 12, 2.4, 1.0);
+    for (Vec3& p : strip.points)
+        p = {std::cos(p.y()) * std::cos(p.x()), std::cos(p.y()) * std::sin(p.x()), std::sin(p.y())};
+    const checks::Disk disk(strip);
+    std::vector<Vec2> uv = flatten_lscm(disk.problem);
+    scale_to_area(disk.problem, uv);
+    std::vector<Vec2> fixed = uv;
+    balance_areas(disk.problem, fixed, Progress{});
+    const std::vector<Vec2> bent = balance_with_boundary(disk.problem, uv, Progress{});
+    const auto change = [&](const std::vector<Vec2>& map) {
+        return measure_area_change(disk.problem, map).largest();
+    };
+    EXPECT_EQ(checks::count_flips(disk.problem.faces, bent), 0);
+    EXPECT_LT(change(bent), 0.5 * change(fixed));
+    for (std::size_t i = 0; i < disk.problem.boundary.size(); ++i) {
+        const Index v = disk.problem.boundary[i];
+        const Index u = disk.problem.boundary[(i + 1) % disk.problem.boundary.size()];
+        EXPECT_NEAR((bent[at(u)] - bent[at(v)]).norm(), disk.problem.boundary_edge[i],
+                    0.03 * disk.problem.boundary_edge[i]);
+    }
 }
 
 } // namespace
