@@ -3,7 +3,8 @@
     bench_plush.py DATA/public [NAME...]
 
 Symmetric: share of the seam length whose mirror image is within 2 % of the diagonal of a seam, in
-the best of the three planes through the middle of the box. Guided: share of the seam length within
+the filter's plane; measured here, in the best of the three planes through the middle of the box.
+Guided: as the filter tells, by its skeleton; and measured here: share of the seam length within
 30 degrees of the axis of the body part around it (the direction in which the normals within a tenth
 of the diagonal point least), on edges that bend by more than 15 degrees, or on concave ones.
 """
@@ -99,7 +100,10 @@ def processor_seconds() -> float:
 def main() -> None:
     devseg.load_plugins()
     folder = Path(sys.argv[1])
-    print("model patches darts area symmetric guided preview seconds processor", flush=True)
+    print(
+        "model patches darts area symmetric of-box guided by-normals preview seconds processor",
+        flush=True,
+    )
     for name in sys.argv[2:] or NAMES:
         path = next(p for p in sorted(folder.iterdir()) if p.name.startswith(name))
         meshes = pymeshlab.MeshSet()
@@ -114,8 +118,10 @@ def main() -> None:
         preview = meshes.apply_filter("generate_sewn_preview")
         print(
             f"{name} {found['charts_number']} {found['darts_number']} "
-            f"{measures['max_area_change']:.3f} {symmetric_share(points, edges):.2f} "
-            f"{guided_share(points, faces, edges):.2f} {preview['mean_distance_share']:.4f} "
+            f"{measures['max_area_change']:.3f} "
+            f"{found['mirrored_share']:.2f} {symmetric_share(points, edges):.2f} "
+            f"{found['guided_share']:.2f} {guided_share(points, faces, edges):.2f} "
+            f"{preview['mean_distance_share']:.4f} "
             f"{seconds:.1f} {used:.1f}",
             flush=True,
         )

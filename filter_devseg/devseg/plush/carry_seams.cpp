@@ -13,7 +13,9 @@ namespace {
 
 constexpr double reach = 2.5;   // mean edges of the first surface: how far paths may leave the line
 constexpr double leaning = 2.0; // mean edges of the second one: a path so far away costs double
-constexpr double stray_share = 0.8;   // of an edge's cost: what goes where seams look natural
+constexpr double stray_share = 0.8; // of an edge's cost: what goes where seams look natural
+constexpr double least_leaning =
+    0.1; // of that, where the second surface is no finer than the first
 constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
 
 double mean_edge(const Mesh& mesh) {
@@ -41,8 +43,9 @@ public:
         : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
           normal_(vertex_normals(from)), on_border_(boundary_vertices(from)),
           may_border_(boundary_vertices(to)), reach_(reach * mean_edge(from)),
-          leaning_(leaning * mean_edge(to)), seam_(to.twin.size(), 0), taken_(to.points.size(), 0),
-          place_(from.points.size(), -1) {}
+          leaning_(leaning * mean_edge(to) *
+                   std::clamp(2.0 * (mean_edge(from) / mean_edge(to) - 1.0), least_leaning, 1.0)),
+          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {}
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
         const std::vector<double> even(seam.size(), 1.0);
