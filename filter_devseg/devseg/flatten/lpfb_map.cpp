@@ -122,15 +122,21 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
         best = map_near(problem, surface, boundary_angles(problem), tolerance, progress);
     } catch (const NumericalFailure&) { // the other angles may have a solution
     }
-    if (best && best->area_change <= options.enough)
+    const auto is_enough = [&](const std::optional<LpfbMap>& map) {
+        return map && map->area_change <= options.enough &&
+               map->l2_stretch <= options.enough_stretch;
+    };
+    if (is_enough(best))
         return best;
     try {
         const std::vector<Vec2> isometric =
             isometric_map(problem, options.give_up_energy, progress);
         if (!isometric.empty()) {
             const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
-            best = smaller_change(std::move(best),
-                                  map_beside(problem, surface, even, tolerance, progress));
+            auto bent = map_beside(problem, surface, even, tolerance, progress);
+            if (is_enough(bent))
+                return bent;
+            best = smaller_change(std::move(best), std::move(bent));
         }
     } catch (const NumericalFailure&) { // then the first one has to do
     }

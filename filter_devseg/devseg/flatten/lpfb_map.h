@@ -25,8 +25,10 @@ struct LpfbMap {
 constexpr double lpfb_area_change = 0.1;
 
 struct SewingMapOptions {
-    // A map in which no face changes its area by more is good enough: no other one is tried.
+    // A map in which no face changes its area by more, with at most so much L2 stretch, is good
+    // enough: no other one is tried.
     double enough = 0.005;
+    double enough_stretch = std::numeric_limits<double>::infinity();
     // As-rigid-as-possible energy of a nearly isometric map above which the chart is given up.
     double give_up_energy = std::numeric_limits<double>::infinity();
 };

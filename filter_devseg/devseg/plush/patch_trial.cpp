@@ -69,17 +69,20 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     const double bound = kept * limits.max_area_change;
     const double strictness = std::min(1.0, limits.max_area_change / usual_change);
-    const double give_up = hopeless_energy * strictness * strictness;
-    const auto map = sewing_map(
-        problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
-        {bound, limits.is_search ? give_up : SewingMapOptions{}.give_up_energy}, progress);
+    const double stretch = limits.is_search ? search_stretch : most_stretch;
+    SewingMapOptions options;
+    options.enough = bound;
+    options.enough_stretch = stretch;
+    if (limits.is_search)
+        options.give_up_energy = hopeless_energy * strictness * strictness;
+    const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
+                                options, progress);
     if (map) {
         trial.area_change = map->area_change;
         // At the scale at which the map has the patch's area.
         const double l2 =
             map->l2_stretch * std::sqrt(map_area(problem, map->uv) / problem.total_area);
-        trial.accepted = map->area_change <= bound &&
-                         l2 <= (limits.is_search ? search_stretch : most_stretch) &&
+        trial.accepted = map->area_change <= bound && l2 <= stretch &&
                          lies_flat(mesh, surface, problem, map->uv, bound);
     }
     if (details)

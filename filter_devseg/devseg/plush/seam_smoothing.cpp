@@ -188,18 +188,20 @@ private:
         if (!is_free(line, path, marks))
             return false;
         mark_both(path, 1, marks);
-        if (!keeps_patches(path, marks))
+        if (!keeps_patches(line, path, marks))
             return false;
         seam_ = std::move(marks);
         return true;
     }
 
-    bool keeps_patches(const std::vector<Index>& path, const SeamMarks& marks) const {
+    bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
+                       const SeamMarks& marks) const {
         // The patches beside the old and the new line, as they would be.
         std::vector<Index> start;
-        for (const Index h : path)
-            for (const Index side : {h, mesh_.twin[at(h)]})
-                start.push_back(side / 3);
+        for (const std::vector<Index>* edges : {&line, &path})
+            for (const Index h : *edges)
+                for (const Index side : {h, mesh_.twin[at(h)]})
+                    start.push_back(side / 3);
         const std::vector<std::vector<Index>> parts = patches_of(mesh_, marks, start);
         std::vector<std::uint8_t> fits(parts.size(), 0);
         parallel_for(

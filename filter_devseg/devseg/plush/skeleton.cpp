@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::size_t most_bones = 6; // that influence one vertex: the others add up to little
 constexpr double least_weight = 1e-3;
+// Heat from a bone against heat along the surface: 1 in [BP07], where a stout body takes the heat
+// of its limbs.
+constexpr double conductance = 10.0;
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 edge = b - a;
@@ -96,7 +99,8 @@ BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progr
                 nearest[at(v)] = static_cast<Index>(b);
             }
         }
-        heat[at(v)] = std::max(areas[at(v)], 1e-12 * mesh.total_area) / std::max(least, floor);
+        heat[at(v)] =
+            conductance * std::max(areas[at(v)], 1e-12 * mesh.total_area) / std::max(least, floor);
         matrix.coeffRef(v, v) += heat[at(v)];
     }
     progress.check();
