@@ -79,6 +79,21 @@ TEST(SewnPreview, Cancels) {
     EXPECT_THROW(sew_and_inflate(mesh, loose_faces(mesh, 1.0), {}, progress), Cancelled);
 }
 
+TEST(SewnPreview, LongFacesTakeLessStuffing) {
+    // A tube 100,000 times as long as wide, of two faces to each side: the pressure on its faces is
+    // more than its edges hold.
+    const Mesh tube = checks::gated(shapes::cylinder_tube(12, 1, 1.0, 1e5));
+    Progress progress;
+    progress.begin_phase("sewing", 1.0);
+    const CornerUv uv = loose_faces(tube, 1.0);
+    const SewnPreview preview = sew_and_inflate(tube, uv, {}, progress);
+    EXPECT_LT(preview.stuffing, SewnOptions{}.stuffing);
+    EXPECT_LT(preview.largest_distance, 0.1);
+    const Mesh ball = checks::gated(shapes::sphere(3));
+    EXPECT_EQ(sew_and_inflate(ball, loose_faces(ball, 1.0), {}, progress).stuffing,
+              SewnOptions{}.stuffing);
+}
+
 TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
     const checks::Disk disk(shapes::grid(12, 12));
     std::vector<Vec2> uv = flatten_tutte(disk.problem);

@@ -49,6 +49,10 @@ FilterOutput run_preview(const FilterInput& input, const SewnOptions& options, P
                      {"largest_distance_share", preview.largest_distance},
                      {"rounds_number", preview.rounds},
                      {"converged", preview.converged}};
+    if (preview.stuffing < options.stuffing)
+        output.notes.push_back("the faces are too long to hold the stuffing that was asked for: " +
+                               std::to_string(preview.stuffing) +
+                               " was used; remesh the model for more.");
     output.layer = std::move(layer);
     return output;
 }

@@ -18,6 +18,8 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double smoothing = 0.015; // of the diagonal: details below it are forgotten at the start
 constexpr double inertia = 0.02;    // of a spring's stiffness: steps stay small
 constexpr double settled = 2e-5;    // of the diagonal: the mean step at which the cloth is at rest
+constexpr double burst =
+    10.0; // of the diagonal: mean step of a net that does not hold the pressure
 // Stiffness of a net of springs of stiffness 1 along the edges of even triangles, per length.
 constexpr double net_stiffness = 1.1547;
 
@@ -135,14 +137,17 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
 
     // In a sphere of the surface's size the pressure stretches the net by `stuffing`.
     const double radius = std::sqrt(mesh.total_area / (4.0 * pi));
-    const double pressure = 2.0 * options.stuffing * net_stiffness / radius;
     const Solver solver(spring_matrix(mesh.vertex_count(), springs, 1.0, inertia));
     if (solver.info() != Eigen::Success)
         throw NumericalFailure("expected springs that can be solved, found a singular system; "
                                "remesh or clean the mesh first");
+    const Points start = x;
     SewnPreview result;
-    for (; result.rounds < options.max_iterations && !result.converged; ++result.rounds) {
-        progress.update(static_cast<double>(result.rounds) / options.max_iterations);
+    result.stuffing = options.stuffing;
+    for (int round = 0; round < options.max_iterations && !result.converged; ++round) {
+        progress.update(static_cast<double>(round) / options.max_iterations);
+        ++result.rounds;
+        const double pressure = 2.0 * result.stuffing * net_stiffness / radius;
         Points rhs = inertia * x + pressure_on(mesh, x, pressure);
         for (const Spring& s : springs) {
             const Eigen::RowVector3d along = x.row(s.a) - x.row(s.b);
@@ -153,12 +158,18 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
             rhs.row(s.b) -= s.length / length * along;
         }
         const Points next = solver.solve(rhs);
-        result.converged = (next - x).rowwise().norm().mean() < settled * diagonal;
-        x = next;
+        const double step = (next - x).rowwise().norm().mean();
+        if (step < burst * diagonal) {
+            result.converged = step < settled * diagonal;
+            x = next;
+        } else {
+            result.stuffing *= 0.5;
+            x = start;
+        }
     }
     if (!x.allFinite())
-        throw NumericalFailure("expected a cloth that comes to rest, found one that does not; use "
-                               "less stuffing");
+        throw NumericalFailure("expected springs that can be solved, found a singular system; "
+                               "remesh or clean the mesh first");
     align(mesh, x);
     result.points.resize(mesh.points.size());
     for (Index v = 0; v < mesh.vertex_count(); ++v)

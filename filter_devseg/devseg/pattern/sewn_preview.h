@@ -25,6 +25,7 @@ struct SewnPreview {
     double largest_distance = 0.0; // as a share of the diagonal
     int rounds = 0;
     bool converged = false; // steps had become small
+    double stuffing = 0.0;  // less than was asked for where a net of few long faces would burst
 };
 
 /// The surface as cloth that has the lengths of the pieces on paper (`uv`, 3 #F) and is sewn along
