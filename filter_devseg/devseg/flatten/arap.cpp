@@ -28,8 +28,7 @@ Vec2 nearest_rotation(const Eigen::Matrix2d& j) {
 // The cotangent Laplacian with vertex 0 held at its place, factorized once.
 class GlobalStep {
 public:
-    GlobalStep(const FlatteningProblem& problem, double stiffness)
-        : problem_(problem), stiffness_(stiffness) {
+    explicit GlobalStep(const FlatteningProblem& problem) : problem_(problem) {
         std::vector<Eigen::Triplet<double>> entries;
         entries.reserve(9 * problem.faces.size());
         const auto add = [&](Index i, Index j, double w) {
@@ -44,13 +43,6 @@ public:
                 add(j, j, problem.cotangent[f][k]);
                 add(i, j, -problem.cotangent[f][k]);
             }
-        for (std::size_t i = 0; i < problem.boundary.size() && stiffness > 0.0; ++i) {
-            const Index v = problem.boundary[i];
-            const Index u = problem.boundary[(i + 1) % problem.boundary.size()];
-            add(v, v, stiffness);
-            add(u, u, stiffness);
-            add(v, u, -stiffness);
-        }
         Eigen::SparseMatrix<double> matrix(problem.vertex_count - 1, problem.vertex_count - 1);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
@@ -74,14 +66,6 @@ public:
                 rhs.row(problem_.faces[f][(k + 1) % 3]) += force.transpose();
             }
         }
-        for (std::size_t i = 0; i < problem_.boundary.size() && stiffness_ > 0.0; ++i) {
-            const Index v = problem_.boundary[i];
-            const Index u = problem_.boundary[(i + 1) % problem_.boundary.size()];
-            const Vec2 force =
-                stiffness_ * problem_.boundary_edge[i] * (uv[at(u)] - uv[at(v)]).stableNormalized();
-            rhs.row(v) -= force.transpose();
-            rhs.row(u) += force.transpose();
-        }
         const Eigen::MatrixX2d solution = solver_.solve(rhs.bottomRows(problem_.vertex_count - 1));
         if (!solution.allFinite())
             throw NumericalFailure("expected a finite map, found one that is not");
@@ -93,25 +77,8 @@ public:
 
 private:
     const FlatteningProblem& problem_;
-    const double stiffness_;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
 };
-
-} // namespace
-
-namespace {
-
-double boundary_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                       double stiffness) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < problem.boundary.size() && stiffness > 0.0; ++i) {
-        const Index v = problem.boundary[i];
-        const Index u = problem.boundary[(i + 1) % problem.boundary.size()];
-        const double excess = (uv[at(u)] - uv[at(v)]).norm() - problem.boundary_edge[i];
-        sum += stiffness * excess * excess;
-    }
-    return sum / problem.total_area;
-}
 
 } // namespace
 
@@ -129,17 +96,14 @@ double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv
 
 ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec2>& start,
                          const ArapOptions& options, const Progress& progress) {
-    const GlobalStep global(problem, options.boundary_stiffness);
+    const GlobalStep global(problem);
     ArapResult result;
     result.uv = start;
-    const auto energy_of = [&](const std::vector<Vec2>& uv) {
-        return arap_energy(problem, uv) + boundary_energy(problem, uv, options.boundary_stiffness);
-    };
-    result.energy = energy_of(start);
+    result.energy = arap_energy(problem, start);
     while (result.rounds < options.max_rounds && !result.converged) {
         progress.check();
         std::vector<Vec2> next = global(result.uv);
-        const double energy = energy_of(next);
+        const double energy = arap_energy(problem, next);
         result.converged = result.energy - energy <= options.relative_tolerance * result.energy;
         if (!(energy < result.energy))
             break; // at the limit of rounding

@@ -11,8 +11,6 @@ namespace devseg {
 struct ArapOptions {
     int max_rounds = 100;             // local and global steps at most
     double relative_tolerance = 1e-4; // stop when a round gains less than this share of the energy
-    // Of springs along the boundary edges, beside the faces' cotangents; their energy counts too.
-    double boundary_stiffness = 0.0;
 };
 
 struct ArapResult {
