@@ -33,11 +33,12 @@ struct SewingMapOptions {
     double give_up_energy = std::numeric_limits<double>::infinity();
 };
 
-/// The LPFB map for sewing: with the angles that the boundary has on the surface, and with those of
-/// a nearly isometric map; the one in which areas change less. The inside is the harmonic one where
-/// that is nearly an isometry; else it is moved towards one, and then so that areas change evenly.
-/// Nothing where neither keeps [Wan08]'s conditions: no flips, the area changes by at most 10 %,
-/// the L2 stretch is at most 2, and no parts lie on each other by more than `tolerance`.
+/// The LPFB map for sewing: with the angles that the boundary has on the surface, and beside a
+/// nearly isometric map whose areas were evened out while its boundary bends; the one in which
+/// areas change less. The inside is the harmonic one where that is nearly an isometry; else it is
+/// moved towards one, and then so that areas change evenly. Nothing where neither keeps [Wan08]'s
+/// conditions: no flips, the area changes by at most 10 %, the L2 stretch is at most 2, and no
+/// parts lie on each other by more than `tolerance`.
 std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
                                   double tolerance, const SewingMapOptions& options,
                                   const Progress& progress);

@@ -12,7 +12,7 @@ struct LocalSeams {
     bool all_developable = true;
 };
 
-/// Makes every patch a disk, and splits those that do not keep the limits
+/// Makes every patch a disk, and splits those that do not keep the limits,
 /// along the isoline half way to their worst spot, or where that is too small a part of the patch,
 /// by a path through the worst spot, until all are developable. Marks stay symmetric where the
 /// surface is. `settled`: 1 for faces of patches that are developable (#F), or empty.
