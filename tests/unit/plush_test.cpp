@@ -122,21 +122,62 @@ TEST(SeamGuides, TellWhatLooksNatural) {
             mark(tube, h, 1, around);
     }
     const Progress progress;
-    EXPECT_DOUBLE_EQ(measure_seams(tube, along, skeleton, {}, progress).guided_share, 1.0);
-    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, {}, progress).guided_share, 0.0);
+    const SeamGuides guides{skeleton, {}};
+    EXPECT_DOUBLE_EQ(seam_shares(tube, along, guides, {}, progress).guided, 1.0);
+    EXPECT_DOUBLE_EQ(seam_shares(tube, around, guides, {}, progress).guided, 0.0);
     const MirrorPlane middle{Vec3::UnitZ(), 0.0, 0.0};
     const MirrorPlane beside{Vec3::UnitX(), 5.0, 0.0};
-    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, middle, progress).mirrored_share, 1.0);
-    EXPECT_DOUBLE_EQ(measure_seams(tube, around, skeleton, beside, progress).mirrored_share, 0.0);
+    EXPECT_DOUBLE_EQ(seam_shares(tube, around, guides, middle, progress).mirrored, 1.0);
+    EXPECT_DOUBLE_EQ(seam_shares(tube, around, guides, beside, progress).mirrored, 0.0);
+    // Where a limb ends, a ring around it does.
+    SeamMarks ring(tube.twin.size(), 0);
+    SeamGuides border{skeleton, {}};
+    const double end = tube.points[0].z();
+    for (Index h = 0; h < tube.half_edge_count(); ++h) {
+        const Vec3& a = tube.points[at(tube.origin(h))];
+        const Vec3& b = tube.points[at(tube.target(h))];
+        if (around[at(h)] != 0 && std::abs(a.z()) < 0.5 * std::abs(end) && a.z() == b.z())
+            mark(tube, h, 1, ring);
+        if (ring[at(h)] != 0)
+            border.limb_borders.push_back({a, b});
+    }
+    EXPECT_DOUBLE_EQ(seam_shares(tube, ring, guides, {}, progress).guided, 0.0);
+    EXPECT_DOUBLE_EQ(seam_shares(tube, ring, border, {}, progress).guided, 1.0);
+    EXPECT_DOUBLE_EQ(seam_shares(tube, along, {{}, border.limb_borders}, {}, progress).guided, 0.0);
     // The edges of a box are creases, from outside; from inside they are grooves.
     const Mesh box = checks::gated(shapes::cube(8));
-    const std::vector<double> bends = bends_across_edges(box, progress);
+    const std::vector<EdgeShape> shape = edge_shapes(box, progress);
     for (Index h = 0; h < box.half_edge_count(); ++h) {
         const bool is_crease =
             box.face_normals[at(h / 3)].dot(box.face_normals[at(box.twin[at(h)] / 3)]) < 0.5;
-        EXPECT_NEAR(straying(1.0, bends[at(h)]), is_crease ? 0.0 : 1.0, 1e-12);
-        EXPECT_NEAR(straying(1.0, -bends[at(h)]), is_crease ? 0.0 : 1.0, 1e-12);
+        EXPECT_NEAR(straying(1.0, shape[at(h)].bend), is_crease ? 0.0 : 1.0, 1e-12);
+        EXPECT_NEAR(straying(1.0, -shape[at(h)].bend), is_crease ? 0.0 : 1.0, 1e-12);
     }
+}
+
+TEST(SeamGuides, FollowBonesOverTips) {
+    // One bone inside a ball: lines from pole to pole follow it everywhere.
+    const Mesh ball = checks::gated(shapes::sphere(4));
+    Skeleton skeleton;
+    skeleton.joints = {Vec3(0.0, 0.0, -0.2), Vec3(0.0, 0.0, 0.2)};
+    skeleton.bones = {{0, 1}};
+    const BoneWeights weights = bone_weights(ball, skeleton, Progress());
+    for (Index v = 0; v < ball.vertex_count(); ++v) {
+        const Vec3 normal = ball.points[at(v)].normalized();
+        const SkeletonDirection found = skeleton_direction(skeleton, weights, v, v, normal);
+        const double away = normal.head<2>().norm(); // from the poles
+        const Vec3 meridian = (Vec3::UnitZ() - normal.z() * normal).stableNormalized();
+        EXPECT_NEAR(found.direction.dot(normal), 0.0, 1e-12);
+        if (away > 0.05) {
+            EXPECT_NEAR(std::abs(found.direction.dot(meridian)), 1.0, 1e-9);
+        }
+        EXPECT_NEAR(found.agreement, std::min(1.0, away * away / 0.12), 1e-9);
+    }
+    // Bones in all directions of the surface have none together.
+    skeleton.joints.insert(skeleton.joints.end(), {Vec3(-0.2, 0.0, 0.0), Vec3(0.2, 0.0, 0.0)});
+    skeleton.bones.push_back({2, 3});
+    const BoneWeights even(1, {{0, 0.5}, {1, 0.5}});
+    EXPECT_NEAR(skeleton_direction(skeleton, even, 0, 0, Vec3::UnitY()).agreement, 0.0, 1e-12);
 }
 
 // The share of the seam length that has its mirror image within 2 % of the diagonal.
@@ -365,7 +406,9 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
         find_limbs(mesh, build_vertex_graph(mesh), mean_curvature(mesh), {tip}, Progress{});
     ASSERT_EQ(limbs.size(), 1U);
     SeamMarks seam(mesh.twin.size(), 0);
-    add_limb_seams(mesh, limbs, seam);
+    for (const Limb& limb : limbs)
+        for (const Index h : limb_border(mesh, limb))
+            mark(mesh, h, 1, seam);
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         if (seam[at(h)] != 0) {
             const double z = mesh.points[at(mesh.origin(h))].z() * mesh.unit_length + 1.0;

@@ -85,8 +85,8 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
                      {"largest_area_change", seams.max_area_change},
                      {"all_developable", seams.all_developable},
                      {"is_symmetric", seams.is_symmetric},
-                     {"mirrored_share", seams.seams.mirrored_share},
-                     {"guided_share", seams.seams.guided_share},
+                     {"mirrored_share", seams.shares.mirrored},
+                     {"guided_share", seams.shares.guided},
                      {"seam_length", seam_length(mesh, seams.charts)}};
     if (!seams.all_developable)
         output.notes.push_back("some patches change their area by more than max_area_change; a "
@@ -146,9 +146,10 @@ FilterDeclaration plush() {
         .result("is_symmetric", "whether the model was found to be symmetric")
         .result("mirrored_share", "of the seam length, that has its mirror image within 2 % of the "
                                   "model's diagonal; 0 without a mirror plane")
-        .result("guided_share",
-                "of the seam length, that runs within 30 degrees of the skeleton, on "
-                "creases or where limbs begin")
+        .result(
+            "guided_share",
+            "of the seam length, that runs within 30 degrees of the skeleton, as it lies on the "
+            "surface, on creases, or where limbs begin")
         .result("seam_length", "length of all cut edges, model units")
         .runs(run_plush);
 }

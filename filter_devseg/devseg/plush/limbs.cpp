@@ -177,16 +177,16 @@ std::vector<Limb> find_limbs(const Mesh& mesh, const VertexGraph& graph,
     return limbs;
 }
 
-void add_limb_seams(const Mesh& mesh, const std::vector<Limb>& limbs, SeamMarks& seam) {
-    for (const Limb& limb : limbs) {
-        std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
-        for (const Index f : limb.faces)
-            inside[at(f)] = 1;
-        for (const Index f : limb.faces)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                if (mesh.twin[at(h)] >= 0 && inside[at(mesh.twin[at(h)] / 3)] == 0)
-                    mark(mesh, h, 1, seam);
-    }
+std::vector<Index> limb_border(const Mesh& mesh, const Limb& limb) {
+    std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
+    for (const Index f : limb.faces)
+        inside[at(f)] = 1;
+    std::vector<Index> border;
+    for (const Index f : limb.faces)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+            if (mesh.twin[at(h)] >= 0 && inside[at(mesh.twin[at(h)] / 3)] == 0)
+                border.push_back(h);
+    return border;
 }
 
 } // namespace devseg

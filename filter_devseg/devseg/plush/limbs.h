@@ -22,7 +22,7 @@ std::vector<Limb> find_limbs(const Mesh& mesh, const VertexGraph& graph,
                              const std::vector<double>& curvature, const std::vector<Index>& tips,
                              const Progress& progress);
 
-/// Marks the border of each limb.
-void add_limb_seams(const Mesh& mesh, const std::vector<Limb>& limbs, SeamMarks& seam);
+/// The half-edges of its faces on the border of a limb.
+std::vector<Index> limb_border(const Mesh& mesh, const Limb& limb);
 
 } // namespace devseg

@@ -64,7 +64,8 @@ public:
     PlushSegmentation(const WorkingSurface& surface, const PlushOptions& options, Skeleton skeleton,
                       PlushSeams& result, Progress& progress)
         : surface_(surface), mesh_(surface.mesh), options_(options), skeleton_(std::move(skeleton)),
-          result_(result), progress_(progress), graph_(build_vertex_graph(mesh_)) {
+          result_(result), progress_(progress), graph_(build_vertex_graph(mesh_)),
+          limb_borders_(mesh_.twin.size(), 0) {
         weigh_edges();
     }
 
@@ -101,6 +102,17 @@ public:
     const VertexGraph& graph() const { return graph_; }
     const std::vector<double>& stray() const { return weights_.stray; }
     const Skeleton& skeleton() const { return skeleton_; }
+
+    /// What the seams of this surface follow.
+    SeamGuides guides() const {
+        SeamGuides guides{skeleton_, {}};
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (limb_borders_[at(h)] != 0)
+                guides.limb_borders.push_back(
+                    {mesh_.points[at(mesh_.origin(h))], mesh_.points[at(mesh_.target(h))]});
+        return guides;
+    }
+
     const WorkingSurface& surface() const { return surface_; }
 
 private:
@@ -152,7 +164,12 @@ private:
         const std::vector<Limb> limbs =
             find_limbs(mesh_, graph_, curvature_, limb_tips(), progress_);
         result_.limbs = std::max(result_.limbs, static_cast<Index>(limbs.size()));
-        add_limb_seams(mesh_, limbs, seam_);
+        for (const Limb& limb : limbs)
+            for (const Index h : limb_border(mesh_, limb)) {
+                mark(mesh_, h, 1, seam_);
+                limb_borders_[at(h)] = 1;
+            }
+        mirror_marks(surface_, limb_borders_);
         add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, progress_);
         clean_patches();
         progress_.begin_phase("cutting patches", 0.15);
@@ -223,6 +240,7 @@ private:
     std::vector<double> curvature_; // #V
     SeamWeights weights_;
     std::vector<Index> extrema_;
+    SeamMarks limb_borders_; // 3 #F, as they were found
     OpenPart open_;
     SeamMarks hard_; // 3 #F or empty
     double max_area_change_ = 0.0;
@@ -381,7 +399,7 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
                                              {options.max_area_change, false}, {}, seam, progress)
                                  .all_developable;
     measure_patches(mesh, seam, options.max_area_change, result, progress);
-    result.seams = measure_seams(mesh, seam, working.skeleton(), plane, progress);
+    result.shares = seam_shares(mesh, seam, working.guides(), plane, progress);
     return result;
 }
 

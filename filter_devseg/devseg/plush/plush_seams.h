@@ -30,7 +30,7 @@ struct PlushSeams {
     std::vector<double> area_change; // #F: of the accepted maps, |area in the plane / own area − 1|
     double max_area_change = 0.0;
     bool is_symmetric = false;
-    SeamMeasures seams;
+    SeamShares shares;
     Index extrema = 0;
     Index bones = 0;
     Index limbs = 0;

@@ -15,6 +15,7 @@ constexpr double window = 0.04;           // of the diagonal: over which a seam 
 constexpr double along = 30.0 * degree;   // from the skeleton
 constexpr double crease = 30.0 * degree;  // of bend
 constexpr double concave = 10.0 * degree; // of bend the other way
+constexpr double near_border = 0.015;     // of the diagonal
 constexpr double near_image = 0.02;       // of the diagonal
 constexpr double sample_distance = 0.005; // of the diagonal
 
@@ -31,23 +32,24 @@ double smooth_step(double from, double to, double x) {
 }
 
 // Mean normals beside edges.
-class Bends {
+class EdgeShapes {
 public:
-    explicit Bends(const Mesh& mesh)
+    explicit EdgeShapes(const Mesh& mesh)
         : mesh_(mesh), reach_(beside * diagonal_of(mesh)), seen_(mesh.faces.size(), -1) {}
 
-    double across(Index h) {
+    EdgeShape at_edge(Index h) {
         const Index twin = mesh_.twin[at(h)];
-        if (twin < 0)
-            return 0.0;
         const Side left = side_of(h);
+        if (twin < 0)
+            return {0.0, left.normal};
         const Side right = side_of(twin);
         const Vec3 edge =
             (mesh_.points[at(mesh_.target(h))] - mesh_.points[at(mesh_.origin(h))]).normalized();
         const double angle =
             std::atan2(left.normal.cross(right.normal).dot(edge), left.normal.dot(right.normal));
         // Large faces see more of a curved surface.
-        return angle * std::min(1.0, reach_ / (right.center - left.center).norm());
+        const double bend = angle * std::min(1.0, reach_ / (right.center - left.center).norm());
+        return {bend, (left.normal + right.normal).stableNormalized()};
     }
 
 private:
@@ -149,18 +151,31 @@ double mirrored_share(const std::vector<Sample>& samples, const MirrorPlane& pla
     return total > 0.0 ? mirrored / total : 0.0;
 }
 
+bool is_along_border(const Vec3& middle, const Vec3& direction,
+                     const std::vector<SeamGuides::Line>& borders, double reach) {
+    return std::any_of(borders.begin(), borders.end(), [&](const SeamGuides::Line& line) {
+        const Vec3 edge = line.to - line.from;
+        const double t = std::clamp((middle - line.from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+        return (line.from + t * edge - middle).squaredNorm() < reach * reach &&
+               std::abs(edge.dot(direction)) >= std::cos(along) * edge.norm();
+    });
+}
+
 } // namespace
 
-std::vector<double> bends_across_edges(const Mesh& mesh, const Progress& progress) {
-    Bends bends(mesh);
-    std::vector<double> bend(mesh.twin.size(), 0.0);
+std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress) {
+    EdgeShapes shapes(mesh);
+    std::vector<EdgeShape> result(mesh.twin.size());
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         if (h % 1024 == 0)
             progress.check();
-        if (mesh.twin[at(h)] > h)
-            bend[at(h)] = bend[at(mesh.twin[at(h)])] = bends.across(h);
+        const Index twin = mesh.twin[at(h)];
+        if (twin < h)
+            result[at(h)] = shapes.at_edge(h);
+        if (twin >= 0 && twin < h)
+            result[at(twin)] = result[at(h)];
     }
-    return bend;
+    return result;
 }
 
 double straying(double across, double bend) {
@@ -171,15 +186,30 @@ double straying(double across, double bend) {
         1.0 - bent);
 }
 
-SeamMeasures measure_seams(const Mesh& mesh, const SeamMarks& seam, const Skeleton& skeleton,
-                           const std::optional<MirrorPlane>& plane, const Progress& progress) {
+SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
+                       const std::optional<MirrorPlane>& plane, const Progress& progress) {
     const double diagonal = diagonal_of(mesh);
+    const Skeleton& skeleton = guides.skeleton;
     BoneWeights bones;
     if (!skeleton.empty())
         bones = bone_weights(mesh, skeleton, progress);
-    Bends bends(mesh);
+    EdgeShapes shapes(mesh);
     double guided = 0.0;
     double total = 0.0;
+    const auto is_guided = [&](Index h, const Vec3& direction) {
+        const Index a = mesh.origin(h);
+        const Index b = mesh.target(h);
+        const EdgeShape shape = shapes.at_edge(h);
+        if (shape.bend >= crease || shape.bend <= -concave)
+            return true;
+        const Vec3 lying = (direction - direction.dot(shape.normal) * shape.normal);
+        if (!skeleton.empty() &&
+            std::abs(skeleton_direction(skeleton, bones, a, b, shape.normal)
+                         .direction.dot(lying.stableNormalized())) >= std::cos(along))
+            return true;
+        return is_along_border(0.5 * (mesh.points[at(a)] + mesh.points[at(b)]), direction,
+                               guides.limb_borders, near_border * diagonal);
+    };
     for (const SeamSegment& segment :
          find_segments(mesh, seam, {}, std::vector<double>(seam.size(), 1.0))) {
         const std::vector<Vec3> direction = smooth_directions(mesh, segment, window * diagonal);
@@ -187,22 +217,15 @@ SeamMeasures measure_seams(const Mesh& mesh, const SeamMarks& seam, const Skelet
             progress.check();
             const Index h = segment.half_edges[i];
             total += mesh.edge_length(h);
-            bool is_along = false;
-            if (!skeleton.empty()) {
-                const Vec3 bone =
-                    bone_direction(skeleton, bones, mesh.origin(h), mesh.target(h)).direction;
-                is_along = std::abs(bone.dot(direction[i])) >= std::cos(along);
-            }
-            const double bend = bends.across(h);
-            if (is_along || bend >= crease || bend <= -concave)
+            if (is_guided(h, direction[i]))
                 guided += mesh.edge_length(h);
         }
     }
-    SeamMeasures result;
-    result.guided_share = total > 0.0 ? guided / total : 1.0;
+    SeamShares result;
+    result.guided = total > 0.0 ? guided / total : 1.0;
     if (plane)
-        result.mirrored_share = mirrored_share(sample_seams(mesh, seam, sample_distance * diagonal),
-                                               *plane, near_image * diagonal, progress);
+        result.mirrored = mirrored_share(sample_seams(mesh, seam, sample_distance * diagonal),
+                                         *plane, near_image * diagonal, progress);
     return result;
 }
 

@@ -9,27 +9,40 @@
 
 namespace devseg {
 
-/// How much the surface bends across each edge, 3 #F, radians, positive where it is convex: the
-/// angle between the mean normals on both sides, within 1.5 % of the mesh's diagonal. 0 on the
-/// boundary.
-std::vector<double> bends_across_edges(const Mesh& mesh, const Progress& progress);
-
-/// How far an edge is from where seams look natural, 0 … 1: 0 within 20 degrees of the skeleton's
-/// direction, on creases and in concave places, where limbs begin; 1 across smooth limbs. `across`:
-/// 1 − |cos| of the angle to the skeleton, times how much its bones agree.
-double straying(double across, double bend);
-
-/// What a maker looks at in a layout of seams.
-struct SeamMeasures {
-    // Share of the seam length that runs within 30 degrees of the skeleton (over 4 % of the
-    // diagonal, because seams follow edges), on creases of 30 degrees or in concave places.
-    double guided_share = 0.0;
-    // Share that has its mirror image within 2 % of the diagonal; 0 without a plane.
-    double mirrored_share = 0.0;
+/// The surface at an edge.
+struct EdgeShape {
+    double bend = 0.0;           // radians, positive where convex; 0 on the boundary
+    Vec3 normal = Vec3::UnitZ(); // unit
 };
 
-/// `skeleton` may be empty: then only creases and concave places count.
-SeamMeasures measure_seams(const Mesh& mesh, const SeamMarks& seam, const Skeleton& skeleton,
-                           const std::optional<MirrorPlane>& plane, const Progress& progress);
+/// Of each half-edge, 3 #F: by the mean normals on both sides, within 1.5 % of the mesh's diagonal.
+std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress);
+
+/// How far an edge is from where seams look natural, 0 … 1: 0 within 20 degrees of the skeleton's
+/// direction, on creases and in concave places; 1 across smooth limbs. `across`: 1 − |cos| of the
+/// angle to the skeleton, times how much its bones agree.
+double straying(double across, double bend);
+
+/// What seams follow: bones, or none, and the borders of limbs.
+struct SeamGuides {
+    struct Line {
+        Vec3 from;
+        Vec3 to;
+    };
+    Skeleton skeleton;
+    std::vector<Line> limb_borders;
+};
+
+/// What a maker looks at in a layout of seams.
+struct SeamShares {
+    // Of the seam length: within 30 degrees of the skeleton's direction on the surface, or of a
+    // limb's border that is within 1.5 % of the diagonal (directions over 4 % of the diagonal,
+    // because seams follow edges), on creases of 30 degrees or in concave places.
+    double guided = 0.0;
+    // Of the seam length: with a mirror image within 2 % of the diagonal; 0 without a plane.
+    double mirrored = 0.0;
+};
+SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
+                       const std::optional<MirrorPlane>& plane, const Progress& progress);
 
 } // namespace devseg

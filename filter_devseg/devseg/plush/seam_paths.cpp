@@ -19,7 +19,7 @@ constexpr double shared = 0.25;       // factor of edges that are seams already
 SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
                          const std::vector<double>& curvature, const Skeleton& skeleton,
                          const BoneWeights& bones, const Progress& progress) {
-    const std::vector<double> bends = bends_across_edges(mesh, progress);
+    const std::vector<EdgeShape> shapes = edge_shapes(mesh, progress);
     double longest = 0.0;
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         longest = std::max(longest, mesh.edge_length(h));
@@ -29,12 +29,14 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
         const Index b = std::max(mesh.origin(h), mesh.target(h));
         double along = 1.0;
         if (!skeleton.empty()) {
-            const BoneDirection bone = bone_direction(skeleton, bones, a, b);
-            const Vec3 edge = (mesh.points[at(b)] - mesh.points[at(a)]).normalized();
-            along = 1.0 - bone.agreement * std::abs(edge.dot(bone.direction));
+            const Vec3& normal = shapes[at(h)].normal;
+            const SkeletonDirection bone = skeleton_direction(skeleton, bones, a, b, normal);
+            const Vec3 edge = mesh.points[at(b)] - mesh.points[at(a)];
+            const Vec3 lying = (edge - edge.dot(normal) * normal).stableNormalized();
+            along = 1.0 - bone.agreement * std::abs(lying.dot(bone.direction));
         }
         const double curved = 1.0 / (1.0 + std::abs(curvature[at(a)]) + std::abs(curvature[at(b)]));
-        result.stray.push_back(straying(along, bends[at(h)]));
+        result.stray.push_back(straying(along, shapes[at(h)].bend));
         result.weight.push_back(
             (1.0 - stray_share + stray_share * result.stray.back()) *
             std::max(least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *

@@ -21,6 +21,9 @@ constexpr double least_weight = 1e-3;
 // Heat from a bone against heat along the surface: 1 in [BP07], where a stout body takes the heat
 // of its limbs.
 constexpr double conductance = 10.0;
+// Squared sine of the angle between bones and normal from which on bones have a direction on the
+// surface: about 20 degrees.
+constexpr double lying = 0.12;
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
     const Vec3 edge = b - a;
@@ -133,32 +136,29 @@ BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progr
     return weights;
 }
 
-BoneDirection bone_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
-                             Index b) {
-    // Bones have no sign: each is turned to agree with the strongest one.
-    Vec3 sum = Vec3::Zero();
-    std::vector<std::pair<Vec3, double>> parts;
-    for (const Index v : {a, b})
-        for (const auto& [bone, weight] : weights[at(v)]) {
+SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
+                                     Index b, const Vec3& normal) {
+    const Vec3 u = normal.unitOrthogonal();
+    const Vec3 v = normal.cross(u);
+    double uu = 0.0;
+    double uv = 0.0;
+    double vv = 0.0;
+    for (const Index vertex : {a, b})
+        for (const auto& [bone, weight] : weights[at(vertex)]) {
             const auto& [i, j] = skeleton.bones[at(bone)];
-            const Vec3 edge = (skeleton.joints[at(j)] - skeleton.joints[at(i)]).normalized();
-            parts.emplace_back(edge, 0.5 * weight);
+            const Vec3 along = (skeleton.joints[at(j)] - skeleton.joints[at(i)]).normalized();
+            uu += 0.5 * weight * along.dot(u) * along.dot(u);
+            uv += 0.5 * weight * along.dot(u) * along.dot(v);
+            vv += 0.5 * weight * along.dot(v) * along.dot(v);
         }
-    if (parts.empty())
-        return {};
-    const Vec3 reference = parts.front().first;
-    for (auto& [direction, weight] : parts) {
-        if (direction.dot(reference) < 0.0)
-            direction = -direction;
-        sum += weight * direction;
-    }
-    BoneDirection result;
-    if (!(sum.norm() > 0.0))
+    SkeletonDirection result;
+    const double difference = std::hypot(uu - vv, 2.0 * uv);
+    if (!(difference > 0.0))
         return result;
-    result.direction = sum.normalized();
-    for (const auto& [direction, weight] : parts)
-        result.agreement += weight * std::abs(direction.dot(result.direction));
-    result.agreement = std::min(1.0, result.agreement);
+    const double angle = 0.5 * std::atan2(2.0 * uv, uu - vv);
+    result.direction = std::cos(angle) * u + std::sin(angle) * v;
+    const double lies = std::clamp((uu + vv) / lying, 0.0, 1.0);
+    result.agreement = lies * difference / (uu + vv);
     return result;
 }
 

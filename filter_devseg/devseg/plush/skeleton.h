@@ -42,13 +42,18 @@ Skeleton read_skeleton(const std::string& path, const std::function<Vec3(const V
 using BoneWeights = std::vector<std::vector<std::pair<Index, double>>>;
 BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progress& progress);
 
-/// The direction of the skeleton near an edge [the paper's equations 4 and 6]: the mean of the
-/// bones' directions, and how much they agree (0 … 1).
-struct BoneDirection {
-    Vec3 direction = Vec3::Zero(); // unit, or zero
+/// The direction of the skeleton on the surface, and how much the bones agree on it (0 … 1; 0
+/// where bones stand upright on the surface or run all ways).
+struct SkeletonDirection {
+    Vec3 direction = Vec3::Zero(); // unit, across the normal; or zero
     double agreement = 0.0;
 };
-BoneDirection bone_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
-                             Index b);
+
+/// At an edge between two vertices, where the surface has the unit `normal`. The paper's equations
+/// 4 to 6 take the weighted mean of the bones; here they are projected onto the surface first, so
+/// that a line along an arm and over its tip follows the arm, and bones have no sign: the direction
+/// is the first principal axis of the weighted sum of p pᵀ over the projections p.
+SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
+                                     Index b, const Vec3& normal);
 
 } // namespace devseg
