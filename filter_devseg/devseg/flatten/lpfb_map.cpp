@@ -76,6 +76,12 @@ std::vector<Vec2> isometric_map(const FlatteningProblem& problem, double give_up
     return map.uv;
 }
 
+double overlapping_share(const ChartSurface& surface, const std::vector<Vec2>& uv,
+                         double tolerance) {
+    return static_cast<double>(overlapping_pairs(surface, uv, tolerance).size()) /
+           static_cast<double>(surface.face.size());
+}
+
 std::optional<LpfbMap> smaller_change(std::optional<LpfbMap> a, std::optional<LpfbMap> b) {
     return !a || (b && b->area_change < a->area_change) ? std::move(b) : std::move(a);
 }
@@ -131,8 +137,14 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
     try {
         const std::vector<Vec2> isometric =
             isometric_map(problem, options.give_up_energy, progress);
+        const bool checks_overlap = options.give_up_overlap.has_value();
+        if (checks_overlap && !isometric.empty() &&
+            overlapping_share(surface, isometric, tolerance) > *options.give_up_overlap)
+            return best;
         if (!isometric.empty()) {
             const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
+            if (checks_overlap && overlapping_share(surface, even, tolerance) > 0.0)
+                return best;
             auto bent = map_beside(problem, surface, even, tolerance, progress);
             if (is_enough(bent))
                 return bent;

@@ -29,8 +29,11 @@ struct SewingMapOptions {
     // enough: no other one is tried.
     double enough = 0.005;
     double enough_stretch = std::numeric_limits<double>::infinity();
-    // As-rigid-as-possible energy of a nearly isometric map above which the chart is given up.
+    // Of a nearly isometric map: as-rigid-as-possible energy, and pairs of overlapping faces over
+    // faces, above which the chart is given up. With a limit for overlaps it is also given up where
+    // areas cannot be evened out without any.
     double give_up_energy = std::numeric_limits<double>::infinity();
+    std::optional<double> give_up_overlap;
 };
 
 /// The LPFB map for sewing: with the angles that the boundary has on the surface, and beside a

@@ -25,7 +25,8 @@ constexpr double search_stretch = 1.02;
 // As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
 // length by 8 % in the mean.
 constexpr double hopeless_energy = 0.012;
-constexpr double usual_change = 0.1; // for smaller bounds in proportion to their square
+constexpr double hopeless_overlap = 0.03; // pairs of faces over faces, in such a map
+constexpr double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
 void describe(const ChartSurface& surface, const FlatteningProblem& problem,
               const std::vector<Vec2>& uv, PatchTrial& trial) {
@@ -73,8 +74,10 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     SewingMapOptions options;
     options.enough = bound;
     options.enough_stretch = stretch;
-    if (limits.is_search)
+    if (limits.is_search) {
         options.give_up_energy = hopeless_energy * strictness * strictness;
+        options.give_up_overlap = hopeless_overlap;
+    }
     const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
                                 options, progress);
     if (map) {

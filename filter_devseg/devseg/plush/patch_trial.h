@@ -54,8 +54,6 @@ public:
     bool accepts_all(const std::vector<std::vector<Index>>& patches,
                      const std::vector<std::uint8_t>& seam, const Progress& progress);
 
-    Index trials() const { return static_cast<Index>(known_.size()); }
-
 private:
     const WorkingSurface& surface_;
     const PatchLimits limits_;

@@ -92,9 +92,9 @@ public:
         removal.most_area = remnant;
         removal.least_neck = narrow_neck;
         progress_.begin_phase("joining patches", 0.04);
-        join_patches({surface_, hard_, weights_.weight, tester, tester, options_.max_iterations},
-                     removal, seam_, progress_);
-        result_.trials += tester.trials();
+        result_.trials += join_patches(
+            {surface_, hard_, weights_.weight, tester, tester, options_.max_iterations}, removal,
+            seam_, progress_);
         return seam_;
     }
 
@@ -216,18 +216,17 @@ private:
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
         progress_.begin_phase("removing seams", 0.25);
-        remove_seams(setting, removal, seam_, progress_);
+        result_.trials += remove_seams(setting, removal, seam_, progress_);
         progress_.begin_phase("joining patches", 0.15);
-        join_patches(setting, removal, seam_, progress_);
+        result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("straightening seams", 0.06);
         straighten_seams(setting, graph_, seam_, progress_);
         progress_.begin_phase("joining patches", 0.05);
         removal.most_area = small_patch;
         removal.least_neck = narrow_neck;
-        join_patches(setting, removal, seam_, progress_);
+        result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("shortening darts", 0.02);
-        shorten_darts(setting, seam_, progress_);
-        result_.trials += tester.trials() + strict.trials();
+        result_.trials += shorten_darts(setting, seam_, progress_);
     }
 
     const WorkingSurface& surface_;

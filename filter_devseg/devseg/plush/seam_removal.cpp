@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <mutex>
 #include <random>
 #include <set>
 #include <utility>
@@ -35,21 +36,43 @@ struct Window {
 };
 
 // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
-constexpr Window join_windows[] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85},  {0.15, 0.85},
-                                   {0.35, 1.0}, {0.0, 0.65},  {0.25, 0.75}, {0.55, 1.0},
-                                   {0.0, 0.45}, {0.35, 0.65}, {0.7, 1.0},   {0.0, 0.3},
-                                   {0.4, 0.6},  {0.2, 0.45},  {0.55, 0.8}};
+constexpr Window join_windows[] = {
+    {0.15, 1.0}, {0.0, 0.85},  {0.15, 0.85}, {0.35, 1.0}, {0.0, 0.65}, {0.25, 0.75}, {0.55, 1.0},
+    {0.0, 0.45}, {0.35, 0.65}, {0.7, 1.0},   {0.0, 0.3},  {0.4, 0.6},  {0.2, 0.45},  {0.55, 0.8}};
 // A dart keeps its outer end, which comes first.
 constexpr Window dart_windows[] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
 // A segment that goes with its mirror image, or parts of both, and the patches beside them.
 struct Removal {
     std::size_t segment = 0;
-    std::size_t image = 0;         // the same where a segment is its own mirror image
-    std::vector<Window> windows;   // to be tried, in this order
-    std::vector<Index> patches;    // that are joined or lose a dart
-    std::vector<Index> half_edges; // that go; empty = no window was accepted
+    std::size_t image = 0;                   // the same where a segment is its own mirror image
+    std::vector<Index> patches;              // that are joined or lose a dart
+    std::vector<std::vector<Index>> choices; // half-edges that could go, the best ones first
+    std::size_t taken = none;                // the first choice that is accepted
+
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
 };
+
+// One choice of one removal of a round.
+struct Choice {
+    std::size_t removal = 0;
+    std::size_t index = 0;
+};
+
+// The first choices of all removals, then the second ones, and so on.
+std::vector<Choice> in_turn(const std::vector<Removal>& round) {
+    std::vector<Choice> turns;
+    bool is_done = false;
+    for (std::size_t index = 0; !is_done; ++index) {
+        is_done = true;
+        for (std::size_t i = 0; i < round.size(); ++i)
+            if (index < round[i].choices.size()) {
+                turns.push_back({i, index});
+                is_done = false;
+            }
+    }
+    return turns;
+}
 
 class Remover {
 public:
@@ -58,7 +81,7 @@ public:
         : s_(setting), mesh_(setting.mesh()), mode_(mode), options_(options), seam_(seam),
           progress_(progress) {}
 
-    void run() {
+    Index run() {
         refresh();
         const double start = static_cast<double>(segments_.size());
         int rounds = 0;
@@ -69,9 +92,7 @@ public:
                 std::vector<Removal> round = next_round();
                 if (round.empty())
                     break;
-                parallel_for(
-                    static_cast<int>(round.size()),
-                    [&](int i) { try_windows(round[static_cast<std::size_t>(i)]); }, progress_);
+                try_choices(round);
                 bool removed = false;
                 for (const Removal& removal : round)
                     removed = apply(removal) || removed;
@@ -84,6 +105,7 @@ public:
             if (!changed)
                 break;
         }
+        return trials_;
     }
 
 private:
@@ -187,8 +209,10 @@ private:
             }
             for (const Index p : removal.patches)
                 taken[at(p)] = 1;
-            if (is_free)
+            if (is_free) {
+                find_choices(removal);
                 round.push_back(std::move(removal));
+            }
         }
         return round;
     }
@@ -228,20 +252,33 @@ private:
         Removal removal;
         removal.segment = i;
         removal.image = image_of(i);
-        if (mode_ == Mode::whole_segments) {
-            removal.windows = {{0.0, 1.0}};
-        } else if (mode_ == Mode::darts) {
-            for (const Window& w : dart_windows)
-                removal.windows.push_back(free_end(i) < 0 ? Window{1.0 - w.to, 1.0 - w.from} : w);
-        } else {
-            const double least =
-                options_.least_neck * std::sqrt(smaller_area(i)) / segments_[i].length;
-            for (const Window& w : join_windows)
-                if ((w.from == 0.0 && w.to == 1.0) ||
-                    (w.to - w.from >= least && (!is_crossing(i) || w.from == 1.0 - w.to)))
-                    removal.windows.push_back(w);
-        }
         return removal;
+    }
+
+    // The parts of a segment that could go, in the order in which they are tried.
+    std::vector<Window> windows_of(std::size_t i) const {
+        std::vector<Window> windows;
+        if (mode_ == Mode::darts) {
+            for (const Window& w : dart_windows)
+                windows.push_back(free_end(i) < 0 ? Window{1.0 - w.to, 1.0 - w.from} : w);
+            return windows;
+        }
+        windows = {{0.0, 1.0}};
+        if (mode_ == Mode::whole_segments || is_large_together(i))
+            return windows; // nearly flat patches need no darts
+        const double least = options_.least_neck * std::sqrt(smaller_area(i)) / segments_[i].length;
+        for (const Window& w : join_windows)
+            if (w.to - w.from >= least && (!is_crossing(i) || w.from == 1.0 - w.to))
+                windows.push_back(w);
+        return windows;
+    }
+
+    void find_choices(Removal& removal) const {
+        for (const Window& window : windows_of(removal.segment)) {
+            std::vector<Index> edges = edges_within(removal, window);
+            if (!edges.empty() && (removal.choices.empty() || edges != removal.choices.back()))
+                removal.choices.push_back(std::move(edges));
+        }
     }
 
     // Of the segment, and their mirror images.
@@ -270,34 +307,48 @@ private:
         return patches_of(mesh_, marks, open);
     }
 
-    void try_windows(Removal& removal) const {
-        const bool is_large = is_large_together(removal.segment);
-        PatchTester& tester = is_large ? s_.strict_tester : s_.tester;
-        if (is_large && removal.windows.front().from == 0.0 && removal.windows.front().to == 1.0)
-            removal.windows.resize(1); // nearly flat patches need no darts
-        std::vector<Index> tried;
-        for (const Window& window : removal.windows) {
-            std::vector<Index> edges = edges_within(removal, window);
-            if (edges.empty() || edges == tried)
-                continue;
-            SeamMarks marks = seam_;
-            for (const Index h : edges)
-                mark(mesh_, h, 0, marks);
-            if (tester.accepts_all(flood(removal, marks), marks, progress_)) {
-                removal.half_edges = std::move(edges);
-                return;
-            }
-            tried = std::move(edges);
-        }
+    // Later choices are tried before it is known that they are needed, which changes nothing but
+    // the time.
+    void try_choices(std::vector<Removal>& round) {
+        const std::vector<Choice> turns = in_turn(round);
+        std::mutex mutex;
+        parallel_for(
+            static_cast<int>(turns.size()),
+            [&](int i) {
+                const Choice& choice = turns[static_cast<std::size_t>(i)];
+                Removal& removal = round[choice.removal];
+                {
+                    const std::lock_guard<std::mutex> lock(mutex);
+                    if (removal.taken < choice.index)
+                        return;
+                }
+                if (!works(removal, removal.choices[choice.index]))
+                    return;
+                const std::lock_guard<std::mutex> lock(mutex);
+                removal.taken = std::min(removal.taken, choice.index);
+            },
+            progress_);
+        for (const Removal& removal : round)
+            trials_ += static_cast<Index>(removal.taken == Removal::none ? removal.choices.size()
+                                                                         : removal.taken + 1);
+    }
+
+    bool works(const Removal& removal, const std::vector<Index>& edges) const {
+        PatchTester& tester = is_large_together(removal.segment) ? s_.strict_tester : s_.tester;
+        SeamMarks marks = seam_;
+        for (const Index h : edges)
+            mark(mesh_, h, 0, marks);
+        return tester.accepts_all(flood(removal, marks), marks, progress_);
     }
 
     bool apply(const Removal& removal) {
-        for (const Index h : removal.half_edges)
-            mark(mesh_, h, 0, seam_);
-        if (removal.half_edges.empty())
+        if (removal.taken != Removal::none)
+            for (const Index h : removal.choices[removal.taken])
+                mark(mesh_, h, 0, seam_);
+        else
             for (const std::size_t k : {removal.segment, removal.image})
                 failed_.insert(key_of(mesh_, segments_[k]));
-        return !removal.half_edges.empty();
+        return removal.taken != Removal::none;
     }
 
     const SeamSetting& s_;
@@ -313,23 +364,24 @@ private:
     std::vector<std::size_t> segment_of_; // 3 #F, of seam edges
     std::vector<Index> degree_;           // #V
     std::set<Key> failed_;
+    Index trials_ = 0;
 };
 
 } // namespace
 
-void remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                  Progress& progress) {
-    Remover(setting, Mode::whole_segments, options, seam, progress).run();
+Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                   Progress& progress) {
+    return Remover(setting, Mode::whole_segments, options, seam, progress).run();
 }
 
-void join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                  Progress& progress) {
-    Remover(setting, Mode::joins, options, seam, progress).run();
+Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                   Progress& progress) {
+    return Remover(setting, Mode::joins, options, seam, progress).run();
 }
 
-void shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
     const RemovalOptions options;
-    Remover(setting, Mode::darts, options, seam, progress).run();
+    return Remover(setting, Mode::darts, options, seam, progress).run();
 }
 
 } // namespace devseg

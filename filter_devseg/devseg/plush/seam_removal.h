@@ -32,16 +32,17 @@ struct RemovalOptions {
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all
-/// patches that grow stay developable; seams that end inside a patch are darts.
-void remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                  Progress& progress);
+/// patches that grow stay developable; seams that end inside a patch are darts. Returns how many
+/// removals were tried, as do the others.
+Index remove_seams(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                   Progress& progress);
 
 /// Joins patches, the smallest first, where only a part of the seam between them can be removed:
 /// what stays of it are darts. The part is as long as possible.
-void join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
-                  Progress& progress);
+Index join_patches(const SeamSetting& setting, const RemovalOptions& options, SeamMarks& seam,
+                   Progress& progress);
 
 /// Removes darts, or their inner ends, where patches stay developable without them.
-void shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
+Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg
