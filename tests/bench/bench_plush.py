@@ -1,28 +1,35 @@
 """Plush seams on public models: patches, area change, symmetry, direction and the sewn preview.
 
-    bench_plush.py DATA/public [NAME...]
+    bench_plush.py DATA/public [--picture FILE] [NAME...]
+
+With a picture: each model, segmented by D-Charts into as many charts, and by Plush Toy Seams.
 
 Symmetric: share of the seam length whose mirror image is within 2 % of the diagonal of a seam, in
 the filter's plane; measured here, in the best of the three planes through the middle of the box.
 Guided: as the filter tells, by its skeleton; and measured here: share of the seam length within
 30 degrees of the axis of the body part around it (the direction in which the normals within a tenth
-of the diagonal point least), on edges that bend by more than 15 degrees, or on concave ones.
+of the diagonal point least), on edges that bend by more than 15 degrees, or on concave ones; of the
+D-Charts as well.
 """
 
 from __future__ import annotations
 
+import argparse
 import resource
-import sys
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pymeshlab
+from PIL import Image
 from scipy.spatial import cKDTree
 
 import devseg
+from devseg.host import mesh_data
+from devseg.render import render_meshes
 
+D_CHARTS = "compute_segmentation_dcharts_per_face"
 PLUSH = "compute_segmentation_plush_seams_per_face"
 FLATTEN = "compute_texcoord_parametrization_charts_per_wedge"
 NAMES = ("teddy", "penguin", "triceratops", "horse", "cheburashka", "bull")
@@ -97,34 +104,65 @@ def processor_seconds() -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def main() -> None:
-    devseg.load_plugins()
-    folder = Path(sys.argv[1])
+def measure(path: Path, name: str) -> Image.Image:
+    """Prints a row of the table; returns the model with D-Charts and with plush seams."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(path))
+    start, used = time.perf_counter(), processor_seconds()
+    found = meshes.apply_filter(PLUSH)
+    seconds, used = time.perf_counter() - start, processor_seconds() - used
+    mesh = meshes.current_mesh()
+    points, faces, edges = mesh.vertex_matrix(), mesh.face_matrix(), seam_edges(mesh)
+    meshes.apply_filter(FLATTEN, method="LPFB")
+    plush = mesh_data(mesh)
+    measures = meshes.apply_filter("get_parametrization_measures")
+    preview = meshes.apply_filter("generate_sewn_preview")
+    meshes.load_new_mesh(str(path))
+    meshes.apply_filter(D_CHARTS, charts_number=found["charts_number"])
+    other = meshes.current_mesh()
+    other_edges = seam_edges(other)
+    meshes.apply_filter(FLATTEN)
     print(
-        "model patches darts area symmetric of-box guided by-normals preview seconds processor",
+        f"{name} {found['charts_number']} {found['darts_number']} "
+        f"{measures['max_area_change']:.3f} "
+        f"{found['mirrored_share']:.2f} {symmetric_share(points, edges):.2f} "
+        f"{found['guided_share']:.2f} {guided_share(points, faces, edges):.2f} "
+        f"{guided_share(points, faces, other_edges):.2f} "
+        f"{preview['mean_distance_share']:.4f} "
+        f"{seconds:.1f} {used:.1f}",
         flush=True,
     )
-    for name in sys.argv[2:] or NAMES:
-        path = next(p for p in sorted(folder.iterdir()) if p.name.startswith(name))
-        meshes = pymeshlab.MeshSet()
-        meshes.load_new_mesh(str(path))
-        start, used = time.perf_counter(), processor_seconds()
-        found = meshes.apply_filter(PLUSH)
-        seconds, used = time.perf_counter() - start, processor_seconds() - used
-        mesh = meshes.current_mesh()
-        points, faces, edges = mesh.vertex_matrix(), mesh.face_matrix(), seam_edges(mesh)
-        meshes.apply_filter(FLATTEN, method="LPFB")
-        measures = meshes.apply_filter("get_parametrization_measures")
-        preview = meshes.apply_filter("generate_sewn_preview")
-        print(
-            f"{name} {found['charts_number']} {found['darts_number']} "
-            f"{measures['max_area_change']:.3f} "
-            f"{found['mirrored_share']:.2f} {symmetric_share(points, edges):.2f} "
-            f"{found['guided_share']:.2f} {guided_share(points, faces, edges):.2f} "
-            f"{preview['mean_distance_share']:.4f} "
-            f"{seconds:.1f} {used:.1f}",
-            flush=True,
-        )
+    return render_meshes([mesh_data(other), plush], ["D-Charts", "plush seams"], size=360)
+
+
+def in_columns(pictures: list[Image.Image], columns: int) -> Image.Image:
+    """Pictures of one size in rows, from left to right."""
+    width, height = pictures[0].size
+    rows = -(-len(pictures) // columns)
+    whole = Image.new("RGB", (width * columns, height * rows), "white")
+    for i, picture in enumerate(pictures):
+        whole.paste(picture, (i % columns * width, i // columns * height))
+    return whole
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("names", nargs="*", default=NAMES)
+    parser.add_argument("--picture", type=Path)
+    options = parser.parse_args()
+    devseg.load_plugins()
+    print(
+        "model patches darts area symmetric of-box guided by-normals d-charts preview seconds "
+        "processor",
+        flush=True,
+    )
+    pictures = []
+    for name in options.names:
+        path = next(p for p in sorted(options.folder.iterdir()) if p.name.startswith(name))
+        pictures.append(measure(path, name))
+    if options.picture is not None:
+        in_columns(pictures, 2).quantize(128).save(options.picture, optimize=True)
 
 
 if __name__ == "__main__":
