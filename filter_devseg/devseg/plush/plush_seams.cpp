@@ -23,10 +23,12 @@ namespace {
 
 constexpr double symmetric_enough = 0.03; // of the diagonal
 constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
-// Of the surface on which seams are decided: with its mirror image, and without, where what is
-// saved is less than what carrying seams costs.
+// Of the surface on which seams are decided: with its mirror image, and without.
 constexpr Index mirrored_faces = 6000;
-constexpr Index plain_faces = 15000;
+constexpr Index plain_faces = 9000;
+// Models without a mirror image up to this size are their own working surface: what is saved
+// would be less than what carrying seams costs.
+constexpr Index small_model = 15000;
 // Of the bound: what is used of it on another surface than the model, at first, and in each round
 // of deciding again.
 constexpr double margin = 0.75;
@@ -46,6 +48,8 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
     if (plane)
         if (auto surface = mirrored_working_surface(mesh, *plane, mirrored_faces, progress))
             return std::move(*surface);
+    if (mesh.face_count() <= small_model)
+        return {mesh, {}};
     return plain_working_surface(mesh, plain_faces, progress);
 }
 
