@@ -1,6 +1,6 @@
 // Every filter can be cancelled at any time, and says so soon. DEVSEG_CANCEL_FACES makes the mesh
-// larger: the time holds for a million faces. DEVSEG_CANCEL_SECONDS bounds when the last click
-// comes.
+// larger: the time holds for a million faces. DEVSEG_CANCEL_FIRST and DEVSEG_CANCEL_SECONDS bound
+// when the first and the last click come.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -112,6 +112,7 @@ std::vector<Work> all_work(const std::string& file) {
 TEST(Cancel, EveryFilterStopsSoonAndLeavesNoFile) {
     const TemporaryFolder folder;
     const auto faces = static_cast<Index>(from_environment("DEVSEG_CANCEL_FACES", 8000.0));
+    const double first_click = from_environment("DEVSEG_CANCEL_FIRST", 0.001);
     const double latest_click = from_environment("DEVSEG_CANCEL_SECONDS", 1e6);
     HostMesh segmented = checks::host_of(bumpy_torus(faces));
     checks::take_charts(segmented, checks::run("Segmentation: D-Charts", segmented));
@@ -135,7 +136,7 @@ TEST(Cancel, EveryFilterStopsSoonAndLeavesNoFile) {
             const HostMesh& host = needs_layout ? flat
                                    : charted    ? segmented
                                                 : checks::host_of(segmented.geometry);
-            double delay = 0.001;
+            double delay = first_click;
             for (int i = 0; i < 200 && delay < latest_click; ++i) {
                 std::string phase;
                 const Stop stop = cancel_after(delay, *filter, host, values, phase);

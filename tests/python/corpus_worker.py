@@ -156,7 +156,6 @@ class Corpus:
         from devseg.cli import main
 
         out = Path(self.order["folder"]) / "out"
-        shutil.rmtree(out, ignore_errors=True)  # of a worker that was stopped
         formats = self.order["formats"]
         arguments = ["run", str(path), "-o", str(out), "--method", method, "--formats", formats]
         said, complained = io.StringIO(), io.StringIO()

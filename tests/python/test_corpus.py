@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -67,9 +68,9 @@ class Worker:
 
     def __init__(self, folder: Path, order: dict[str, Any]) -> None:
         self.answer = folder / "answer.jsonl"
-        scratch = folder / "scratch"
-        scratch.mkdir(parents=True, exist_ok=True)
-        self.order = {**order, "answer": str(self.answer), "folder": str(scratch)}
+        self.scratch = folder / "scratch"
+        folder.mkdir(exist_ok=True)
+        self.order = {**order, "answer": str(self.answer), "folder": str(self.scratch)}
         self.failures: list[str] = []
 
     def run(self, files: list[Path]) -> list[dict[str, Any]]:
@@ -82,6 +83,8 @@ class Worker:
 
     def _run_until_failure(self, files: list[Path]) -> int:
         """Returns how many files are finished with, the one that failed among them."""
+        shutil.rmtree(self.scratch, ignore_errors=True)  # of a process that was stopped
+        self.scratch.mkdir()
         process = subprocess.Popen(
             [sys.executable, str(Path(__file__).with_name("corpus_worker.py"))],
             stdin=subprocess.PIPE,
@@ -217,9 +220,11 @@ def test_a_crash_and_a_hang_are_noticed(tmp_path: Path, monkeypatch: pytest.Monk
         "        file.write(json.dumps(record) + '\\n')\n"
         "for file in order['files']:\n"
         "    tell(begin='a step', file=file)\n"
+        "    assert not os.listdir(order['folder'])\n"
         "    if 'crash' in file:\n"
         "        os.abort()\n"
         "    if 'hang' in file:\n"
+        "        os.mkdir(order['folder'] + '/left')\n"
         "        time.sleep(100)\n"
         "    tell(end='a step', file=file)\n"
         "    tell(done=file)\n"

@@ -90,5 +90,42 @@ TEST(Peaks, AnIsometryStaysAsItIs) {
     EXPECT_EQ(after, before);
 }
 
+// A plate with a fold across: a row of needles pressed to a hundredth of their width, which single
+// vertices cannot leave.
+TEST(Peaks, NeedlesAreSettledTogether) {
+    RawMesh raw = shapes::grid(60, 60, 60.0, 60.0);
+    const auto index = [](Index x, Index y) { return at(y * 61 + x); };
+    for (Index x = 26; x <= 34; ++x) // a row of low faces
+        raw.points[index(x, 31)].y() -= 0.98;
+    const checks::Disk disk(raw);
+    const std::vector<Vec2> best = isometric(disk.problem);
+    ASSERT_LT(worst(disk.problem, best), 1.001);
+    std::vector<Vec2> before = best;
+    for (Index x = 27; x <= 33; ++x) {
+        const Vec2 across = best[index(x, 31)] - best[index(x, 30)];
+        before[index(x, 31)] -= (x % 2 == 0 ? 0.99 : 0.9) * across;
+    }
+    ASSERT_EQ(checks::count_flips(disk.problem.faces, before), 0);
+    ASSERT_GT(worst(disk.problem, before), 20.0);
+    std::vector<Vec2> after = before;
+    settle_peaks(disk.problem, disk.surface.twin, after, Progress());
+    EXPECT_EQ(checks::count_flips(disk.problem.faces, after), 0);
+    EXPECT_LT(worst(disk.problem, after), 1.01);
+    EXPECT_LT(symmetric_dirichlet_energy(disk.problem, after),
+              symmetric_dirichlet_energy(disk.problem, before));
+    for (const Index v : disk.problem.boundary)
+        EXPECT_EQ(after[at(v)], before[at(v)]);
+}
+
+TEST(Peaks, EvenStretchIsNothingToSettle) {
+    const checks::Disk disk(shapes::grid(10, 10));
+    std::vector<Vec2> before = isometric(disk.problem);
+    for (Vec2& p : before)
+        p.x() *= 1.5;
+    std::vector<Vec2> after = before;
+    settle_peaks(disk.problem, disk.surface.twin, after, Progress());
+    EXPECT_EQ(after, before);
+}
+
 } // namespace
 } // namespace devseg

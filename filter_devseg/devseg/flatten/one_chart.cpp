@@ -42,9 +42,10 @@ constexpr double collapsed = 1e-5;
 // slits.
 constexpr double blown_up = 100.0;
 
-// Coarse-to-fine maps of larger charts are taken as they are: their energy is within 1e-4 of the
-// minimum, and one factorization of the whole chart would cost more than all levels together.
-constexpr Index most_polished_faces = 120000;
+// Coarse-to-fine maps of larger charts are settled around needles and then taken as they are: their
+// energy is within 1e-4 of the minimum, and factorizations of the whole chart, to polish it or to
+// push its parts away from each other, would cost more than all levels together.
+constexpr Index most_polished_faces = 60000;
 // Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
 constexpr double coarse_gap = 4e-3;
 
@@ -110,6 +111,8 @@ void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& proble
     }
     bool refined = false;
     chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
+    if (refined)
+        settle_peaks(problem, chart.surface.twin, chart.uv, progress);
     if (!refined || chart.surface.face_count() <= most_polished_faces) {
         SymmetricDirichletResult result =
             minimise_symmetric_dirichlet(problem, chart.uv, SymmetricDirichletOptions{}, progress);

@@ -35,6 +35,12 @@ constexpr int many_sweeps = 100;
 constexpr double most_moves = 4e5; // of vertices: less than that in all sweeps
 constexpr int least_sweeps = 10;
 
+// Faces that solvers of single vertices leave behind: needles, whose vertices must move together.
+constexpr double standing_out = 1.3; // stretch over that of the usual faces
+constexpr int settled_rings = 6;
+constexpr std::size_t least_settled = 100; // faces of which the region is made,
+constexpr std::size_t settled_part = 2000; // or one of so many
+
 double largest_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double largest = 1.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
@@ -69,21 +75,29 @@ Relief choose_relief(double peak, double usual) {
             peak_exponent / (density - 1.0)};
 }
 
-// Vertices of the faces above the limit and of some rings around them, each with a half-edge that
-// leaves it.
-std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& problem,
-                                                   const std::vector<Index>& twin,
-                                                   const std::vector<double>& stretches,
-                                                   const Relief& relief) {
-    std::vector<std::uint8_t> seen(problem.faces.size(), 0);
-    std::vector<Index> ring;
+std::vector<double> stretches_of(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    std::vector<double> stretches(problem.faces.size());
     for (std::size_t f = 0; f < stretches.size(); ++f)
-        if (stretches[f] > relief.limit) {
-            seen[f] = 1;
-            ring.push_back(static_cast<Index>(f));
-        }
-    std::vector<Index> region = ring;
-    for (int depth = 0; depth < relief.rings; ++depth) {
+        stretches[f] = face_stretch(problem, uv, f);
+    return stretches;
+}
+
+std::vector<Index> faces_above(double limit, const std::vector<double>& stretches) {
+    std::vector<Index> faces;
+    for (std::size_t f = 0; f < stretches.size(); ++f)
+        if (stretches[f] > limit)
+            faces.push_back(static_cast<Index>(f));
+    return faces;
+}
+
+// The faces with some rings around them.
+std::vector<Index> with_rings(const std::vector<Index>& twin, std::vector<Index> faces, int rings) {
+    std::vector<std::uint8_t> seen(twin.size() / 3, 0);
+    for (const Index f : faces)
+        seen[at(f)] = 1;
+    std::vector<Index> region = faces;
+    std::vector<Index>& ring = faces;
+    for (int depth = 0; depth < rings; ++depth) {
         std::vector<Index> next;
         for (const Index f : ring)
             for (Index h = 3 * f; h < 3 * f + 3; ++h)
@@ -95,8 +109,17 @@ std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& prob
         region.insert(region.end(), next.begin(), next.end());
         ring = std::move(next);
     }
+    return region;
+}
+
+// Vertices of the faces above the limit and of some rings around them, each with a half-edge that
+// leaves it.
+std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& problem,
+                                                   const std::vector<Index>& twin,
+                                                   const std::vector<double>& stretches,
+                                                   const Relief& relief) {
     std::vector<std::pair<Index, Index>> vertices;
-    for (const Index f : region)
+    for (const Index f : with_rings(twin, faces_above(relief.limit, stretches), relief.rings))
         for (Index k = 0; k < 3; ++k)
             vertices.emplace_back(problem.faces[at(f)][at(k)], 3 * f + k);
     std::sort(vertices.begin(), vertices.end());
@@ -106,13 +129,72 @@ std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& prob
     return vertices;
 }
 
+// Some faces of a chart as a problem of its own, in which the vertices of all others stay.
+struct Part {
+    FlatteningProblem problem; // without boundary
+    std::vector<Index> vertex; // #v of the part: index in the chart
+    SymmetricDirichletOptions options;
+};
+
+Part part_of(const FlatteningProblem& problem, const std::vector<Index>& faces) {
+    Part part;
+    std::vector<std::uint8_t> inside(problem.faces.size(), 0);
+    for (const Index f : faces)
+        inside[at(f)] = 1;
+    std::vector<Index> number(at(problem.vertex_count), -1);
+    for (const Index f : faces) {
+        Triangle t = problem.faces[at(f)];
+        for (Index& v : t) {
+            if (number[at(v)] < 0) {
+                number[at(v)] = static_cast<Index>(part.vertex.size());
+                part.vertex.push_back(v);
+            }
+            v = number[at(v)];
+        }
+        part.problem.faces.push_back(t);
+        part.problem.edges.push_back(problem.edges[at(f)]);
+        part.problem.inverse.push_back(problem.inverse[at(f)]);
+        part.problem.area.push_back(problem.area[at(f)]);
+        part.problem.cotangent.push_back(problem.cotangent[at(f)]);
+        part.problem.total_area += problem.area[at(f)];
+    }
+    part.problem.vertex_count = static_cast<Index>(part.vertex.size());
+    part.options.fixed.assign(part.vertex.size(), 0);
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        for (const Index v : problem.faces[f])
+            if (inside[f] == 0 && number[at(v)] >= 0)
+                part.options.fixed[at(number[at(v)])] = 1;
+    return part;
+}
+
 } // namespace
+
+void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+                  std::vector<Vec2>& uv, const Progress& progress) {
+    const std::vector<double> stretches = stretches_of(problem, uv);
+    std::vector<Index> faces =
+        faces_above(standing_out * usual_stretch(problem, stretches), stretches);
+    if (faces.empty())
+        return;
+    const std::size_t most = std::max(least_settled, problem.faces.size() / settled_part);
+    if (faces.size() > most) {
+        std::stable_sort(faces.begin(), faces.end(),
+                         [&](Index a, Index b) { return stretches[at(a)] > stretches[at(b)]; });
+        faces.resize(most);
+    }
+    const Part part = part_of(problem, with_rings(twin, std::move(faces), settled_rings));
+    std::vector<Vec2> start;
+    for (const Index v : part.vertex)
+        start.push_back(uv[at(v)]);
+    const SymmetricDirichletResult settled =
+        minimise_symmetric_dirichlet(part.problem, start, part.options, progress);
+    for (std::size_t i = 0; i < part.vertex.size(); ++i)
+        uv[at(part.vertex[i])] = settled.uv[i];
+}
 
 void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
                    bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress) {
-    std::vector<double> stretches(problem.faces.size());
-    for (std::size_t f = 0; f < stretches.size(); ++f)
-        stretches[f] = face_stretch(problem, uv, f);
+    const std::vector<double> stretches = stretches_of(problem, uv);
     const double peak = *std::max_element(stretches.begin(), stretches.end());
     if (peak <= harmless)
         return;
