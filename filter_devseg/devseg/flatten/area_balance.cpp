@@ -147,15 +147,9 @@ AreaChange measure_area_change(const FlatteningProblem& problem, const std::vect
 
 namespace {
 
-// The faces around those that change most, as a problem of its own: its border stays.
-struct Region {
-    FlatteningProblem problem;
-    std::vector<Index> vertex;       // number in the whole
-    std::vector<std::uint8_t> fixed; // #v
-};
-
-Region region_around_uneven(const FlatteningProblem& whole, const std::vector<Vec2>& uv,
-                            const BalancedEnergy& energy) {
+// The faces around those that change most: the border of their part, and the chart's, stay.
+PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::vector<Vec2>& uv,
+                                    const BalancedEnergy& energy) {
     std::vector<std::uint8_t> inside(uv.size(), 0);
     const auto take = [&](std::size_t f) {
         for (const Index v : whole.faces[f])
@@ -177,28 +171,15 @@ Region region_around_uneven(const FlatteningProblem& whole, const std::vector<Ve
     }
     for (const Index v : whole.boundary)
         inside[at(v)] = 0;
-    Region region;
-    std::vector<Index> number(uv.size(), -1);
+    std::vector<Index> faces;
     for (std::size_t f = 0; f < whole.faces.size(); ++f) {
-        Triangle t = whole.faces[f];
-        if (inside[at(t[0])] == 0 && inside[at(t[1])] == 0 && inside[at(t[2])] == 0)
-            continue;
-        for (Index& v : t) {
-            if (number[at(v)] < 0) {
-                number[at(v)] = static_cast<Index>(region.vertex.size());
-                region.vertex.push_back(v);
-                region.fixed.push_back(inside[at(v)] == 0 ? 1 : 0);
-            }
-            v = number[at(v)];
-        }
-        region.problem.faces.push_back(t);
-        region.problem.edges.push_back(whole.edges[f]);
-        region.problem.inverse.push_back(whole.inverse[f]);
-        region.problem.area.push_back(whole.area[f]);
-        region.problem.cotangent.push_back(whole.cotangent[f]);
-        region.problem.total_area += whole.area[f];
+        const Triangle& t = whole.faces[f];
+        if (inside[at(t[0])] != 0 || inside[at(t[1])] != 0 || inside[at(t[2])] != 0)
+            faces.push_back(static_cast<Index>(f));
     }
-    region.problem.vertex_count = static_cast<Index>(region.vertex.size());
+    PartialProblem region = part_of(whole, faces);
+    for (std::size_t v = 0; v < region.vertex.size(); ++v)
+        region.fixed[v] = inside[at(region.vertex[v])] == 0 ? 1 : 0;
     return region;
 }
 
@@ -208,7 +189,7 @@ void hold(const std::vector<std::uint8_t>& fixed, Positions& rows) {
             rows.row(static_cast<Eigen::Index>(v)).setZero();
 }
 
-void descend(const Region& region, const BalancedEnergy& energy, Positions& x,
+void descend(const PartialProblem& region, const BalancedEnergy& energy, Positions& x,
              const Progress& progress) {
     ProjectedNewton newton(
         region.problem, region.fixed,
@@ -245,7 +226,7 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
     if (is_even(problem, uv))
         return;
     BalancedEnergy energy(map_area(problem, uv) / problem.total_area);
-    const Region region = region_around_uneven(problem, uv, energy);
+    const PartialProblem region = region_around_uneven(problem, uv, energy);
     if (region.vertex.empty())
         return;
     Positions x(region.problem.vertex_count, 2);
@@ -267,7 +248,7 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
 std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
                                         const std::vector<Vec2>& uv, const Progress& progress) {
     BalancedEnergy energy(1.0);
-    const Region region{problem, {}, {}};
+    const PartialProblem region{problem, {}, {}};
     Positions x(problem.vertex_count, 2);
     for (std::size_t v = 0; v < uv.size(); ++v)
         x.row(static_cast<Eigen::Index>(v)) = uv[v].transpose();

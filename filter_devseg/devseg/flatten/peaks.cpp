@@ -129,44 +129,6 @@ std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& prob
     return vertices;
 }
 
-// Some faces of a chart as a problem of its own, in which the vertices of all others stay.
-struct Part {
-    FlatteningProblem problem; // without boundary
-    std::vector<Index> vertex; // #v of the part: index in the chart
-    SymmetricDirichletOptions options;
-};
-
-Part part_of(const FlatteningProblem& problem, const std::vector<Index>& faces) {
-    Part part;
-    std::vector<std::uint8_t> inside(problem.faces.size(), 0);
-    for (const Index f : faces)
-        inside[at(f)] = 1;
-    std::vector<Index> number(at(problem.vertex_count), -1);
-    for (const Index f : faces) {
-        Triangle t = problem.faces[at(f)];
-        for (Index& v : t) {
-            if (number[at(v)] < 0) {
-                number[at(v)] = static_cast<Index>(part.vertex.size());
-                part.vertex.push_back(v);
-            }
-            v = number[at(v)];
-        }
-        part.problem.faces.push_back(t);
-        part.problem.edges.push_back(problem.edges[at(f)]);
-        part.problem.inverse.push_back(problem.inverse[at(f)]);
-        part.problem.area.push_back(problem.area[at(f)]);
-        part.problem.cotangent.push_back(problem.cotangent[at(f)]);
-        part.problem.total_area += problem.area[at(f)];
-    }
-    part.problem.vertex_count = static_cast<Index>(part.vertex.size());
-    part.options.fixed.assign(part.vertex.size(), 0);
-    for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        for (const Index v : problem.faces[f])
-            if (inside[f] == 0 && number[at(v)] >= 0)
-                part.options.fixed[at(number[at(v)])] = 1;
-    return part;
-}
-
 } // namespace
 
 void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
@@ -182,12 +144,14 @@ void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& tw
                          [&](Index a, Index b) { return stretches[at(a)] > stretches[at(b)]; });
         faces.resize(most);
     }
-    const Part part = part_of(problem, with_rings(twin, std::move(faces), settled_rings));
+    const PartialProblem part = part_of(problem, with_rings(twin, std::move(faces), settled_rings));
+    SymmetricDirichletOptions options;
+    options.fixed = part.fixed;
     std::vector<Vec2> start;
     for (const Index v : part.vertex)
         start.push_back(uv[at(v)]);
     const SymmetricDirichletResult settled =
-        minimise_symmetric_dirichlet(part.problem, start, part.options, progress);
+        minimise_symmetric_dirichlet(part.problem, start, options, progress);
     for (std::size_t i = 0; i < part.vertex.size(); ++i)
         uv[at(part.vertex[i])] = settled.uv[i];
 }

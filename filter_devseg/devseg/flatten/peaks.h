@@ -16,7 +16,6 @@ namespace devseg {
 void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
                    bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress);
 
-
 /// Brings the vertices around faces that stand out to the least symmetric Dirichlet energy, all
 /// together, while the rest of the map stays: for maps that were relaxed vertex by vertex, which
 /// leaves needles behind. No face flips, and the energy does not rise.

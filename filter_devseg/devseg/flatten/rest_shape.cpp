@@ -89,4 +89,35 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& 
     return problem;
 }
 
+PartialProblem part_of(const FlatteningProblem& whole, const std::vector<Index>& faces) {
+    PartialProblem part;
+    FlatteningProblem& problem = part.problem;
+    std::vector<std::uint8_t> inside(whole.faces.size(), 0);
+    std::vector<Index> number(at(whole.vertex_count), -1);
+    for (const Index f : faces) {
+        inside[at(f)] = 1;
+        Triangle t = whole.faces[at(f)];
+        for (Index& v : t) {
+            if (number[at(v)] < 0) {
+                number[at(v)] = static_cast<Index>(part.vertex.size());
+                part.vertex.push_back(v);
+            }
+            v = number[at(v)];
+        }
+        problem.faces.push_back(t);
+        problem.edges.push_back(whole.edges[at(f)]);
+        problem.inverse.push_back(whole.inverse[at(f)]);
+        problem.area.push_back(whole.area[at(f)]);
+        problem.cotangent.push_back(whole.cotangent[at(f)]);
+        problem.total_area += whole.area[at(f)];
+    }
+    problem.vertex_count = static_cast<Index>(part.vertex.size());
+    part.fixed.assign(part.vertex.size(), 0);
+    for (std::size_t f = 0; f < whole.faces.size(); ++f)
+        for (const Index v : whole.faces[f])
+            if (inside[f] == 0 && number[at(v)] >= 0)
+                part.fixed[at(number[at(v)])] = 1;
+    return part;
+}
+
 } // namespace devseg

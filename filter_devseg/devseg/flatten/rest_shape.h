@@ -2,6 +2,7 @@
 // flattening method compares its map with.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,5 +41,13 @@ RestTriangle make_rest_triangle(std::array<double, 3> length, double floor);
 /// (all three lengths grow by the same amount, as in intrinsic mollification), so that every
 /// energy and angle stays finite.
 FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& surface);
+
+/// Some faces of a chart as a problem of its own, without a boundary.
+struct PartialProblem {
+    FlatteningProblem problem;
+    std::vector<Index> vertex;       // #v: its index in the chart
+    std::vector<std::uint8_t> fixed; // #v: 1 for those of other faces too
+};
+PartialProblem part_of(const FlatteningProblem& whole, const std::vector<Index>& faces);
 
 } // namespace devseg
