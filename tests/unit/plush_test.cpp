@@ -314,7 +314,8 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     for (Vec3& p : raw.points)
         p.x() += 0.3 * p.y() * p.y(); // bent: left and right stay, front and back differ
     const Mesh mesh = checks::gated(raw);
-    const auto plane = find_mirror_plane(mesh, 0.02, Progress{});
+    Progress progress;
+    const auto plane = find_mirror_plane(mesh, 0.02, progress);
     ASSERT_TRUE(plane.has_value());
     EXPECT_LT(plane->deviation, 1e-3);
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
@@ -344,7 +345,8 @@ TEST(Symmetry, NoPlaneWhereThereIsNone) {
     RawMesh raw = shapes::sphere(3);
     for (Vec3& p : raw.points)
         p += 0.5 * Vec3(std::sin(2.0 * p.y() + p.z()), std::sin(3.0 * p.z() + 1.0), p.x() * p.y());
-    EXPECT_FALSE(find_mirror_plane(checks::gated(raw), 0.01, Progress{}).has_value());
+    Progress progress;
+    EXPECT_FALSE(find_mirror_plane(checks::gated(raw), 0.01, progress).has_value());
 }
 
 TEST(Skeleton, BonesOfCapsuleLieAlongItsAxis) {

@@ -45,7 +45,10 @@ public:
           may_border_(boundary_vertices(to)), reach_(reach * mean_edge(from)),
           leaning_(leaning * mean_edge(to) *
                    std::clamp(2.0 * (mean_edge(from) / mean_edge(to) - 1.0), least_leaning, 1.0)),
-          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {}
+          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
+        for (Index h = 0; h < to.half_edge_count(); ++h)
+            cost_.push_back(cost_of(h, reach_));
+    }
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
         const std::vector<double> even(seam.size(), 1.0);
@@ -118,7 +121,13 @@ private:
         }
     }
 
-    // Sets the cost of all edges; returns the vertices near the line.
+    double cost_of(Index h, double away) const {
+        const double d = away / leaning_;
+        return to_.edge_length(h) * (1.0 + d * d) *
+               (1.0 - stray_share + stray_share * stray_[at(h)]);
+    }
+
+    // Sets the cost of the edges near the line; returns the vertices there.
     std::vector<std::uint8_t> lean_towards(const std::vector<Index>& line) {
         std::vector<Vec3> points;
         for (const Index v : line)
@@ -143,12 +152,16 @@ private:
         for (std::size_t k = 0; k < queue.size(); ++k)
             for (Index i = graph_.begin[at(queue[k])]; i < graph_.begin[at(queue[k]) + 1]; ++i)
                 visit(graph_.vertex[at(i)]);
-        cost_.assign(to_.twin.size(), 0.0);
-        for (Index h = 0; h < to_.half_edge_count(); ++h) {
-            const double d = 0.5 * (away[at(to_.origin(h))] + away[at(to_.target(h))]) / leaning_;
-            cost_[at(h)] = to_.edge_length(h) * (1.0 + d * d) *
-                           (1.0 - stray_share + stray_share * stray_[at(h)]);
-        }
+        for (const Index h : near_)
+            cost_[at(h)] = cost_of(h, reach_);
+        near_.clear();
+        for (const Index v : queue)
+            for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
+                const Index h = graph_.half_edge[at(i)];
+                cost_[at(h)] =
+                    cost_of(h, 0.5 * (away[at(to_.origin(h))] + away[at(to_.target(h))]));
+                near_.push_back(h);
+            }
         strip[at(place(line.front()))] = strip[at(place(line.back()))] = 1;
         return strip;
     }
@@ -167,6 +180,7 @@ private:
     std::vector<std::uint8_t> taken_; // #V of to: on a seam, or an end of one
     std::vector<Index> place_;        // #V of from: nearest vertex of to
     std::vector<double> cost_;        // 3 #F of to
+    std::vector<Index> near_;         // half-edges of to that are near the line of the last turn
 };
 
 } // namespace

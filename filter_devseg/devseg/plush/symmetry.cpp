@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "devseg/mesh/surface_search.h"
+#include "devseg/parallel.h"
 
 namespace devseg {
 
@@ -88,53 +89,87 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
     return planes;
 }
 
-} // namespace
-
-std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
-                                             const Progress& progress) {
-    const SurfaceSearch search(mesh);
-    Eigen::AlignedBox3d box;
-    std::vector<Index> vertices;
-    const Index stride = std::max<Index>(1, mesh.vertex_count() / samples);
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
-        box.extend(mesh.points[at(v)]);
-        if (v % stride == 0 && search.leaving(v) >= 0)
-            vertices.push_back(v);
+class PlaneFinder {
+public:
+    PlaneFinder(const Mesh& mesh, double tolerance, const Progress& progress)
+        : mesh_(mesh), tolerance_(tolerance), progress_(progress), search_(mesh) {
+        Eigen::AlignedBox3d box;
+        const Index stride = std::max<Index>(1, mesh.vertex_count() / samples);
+        for (Index v = 0; v < mesh.vertex_count(); ++v) {
+            box.extend(mesh.points[at(v)]);
+            if (v % stride == 0 && search_.leaving(v) >= 0)
+                vertices_.push_back(v);
+        }
+        diagonal_ = box.diagonal().norm();
     }
-    const double diagonal = box.diagonal().norm();
-    const auto extent = [&](const MirrorPlane& plane) {
-        double farthest = 0.0;
-        for (const Index v : vertices)
-            farthest = std::max(farthest, std::abs(plane.height(mesh.points[at(v)])));
-        return farthest;
-    };
-    std::optional<MirrorPlane> best;
-    for (MirrorPlane plane : first_guesses(mesh)) {
+
+    // The best plane on the way from a guess.
+    std::optional<MirrorPlane> follow(MirrorPlane plane) const {
+        std::optional<MirrorPlane> best;
         for (int round = 0; round < most_rounds; ++round) {
-            progress.check();
-            const std::vector<Pairing> pairs = pair_up(mesh, search, vertices, plane);
+            progress_.check();
+            const std::vector<Pairing> pairs = pair_up(mesh_, search_, vertices_, plane);
             const auto count =
                 static_cast<std::size_t>(trusted * static_cast<double>(pairs.size()));
             if (count < 3)
                 break;
-            plane.deviation = pairs[pairs.size() * 9 / 10].distance / diagonal;
-            if (pairs.size() < vertices.size() * 9 / 10)
+            plane.deviation = pairs[pairs.size() * 9 / 10].distance / diagonal_;
+            if (pairs.size() < vertices_.size() * 9 / 10)
                 plane.deviation = 1.0;
-            // A flat model is near to its mirror image front to back: how far it reaches to both
-            // sides of the plane is compared with.
-            if (plane.deviation <= tolerance &&
-                (!best || plane.deviation / extent(plane) < best->deviation / extent(*best)))
+            if (plane.deviation <= tolerance_ && is_better(plane, best))
                 best = plane;
             const MirrorPlane next = fit_plane(pairs, count);
             const bool is_settled = (next.normal - plane.normal).norm() < 1e-5 &&
-                                    std::abs(next.offset - plane.offset) < 1e-5 * diagonal;
+                                    std::abs(next.offset - plane.offset) < 1e-5 * diagonal_;
             // A guess that does not come near is not followed to its end.
-            if (is_settled || (round == 5 && plane.deviation > 4.0 * tolerance))
+            if (is_settled || (round == 5 && plane.deviation > 4.0 * tolerance_))
                 break;
             plane.normal = next.normal;
             plane.offset = next.offset;
         }
+        return best;
     }
+
+    // A flat model is near to its mirror image front to back: how far it reaches to both sides of
+    // the plane is compared with.
+    bool is_better(const MirrorPlane& plane, const std::optional<MirrorPlane>& best) const {
+        return !best || plane.deviation / extent(plane) < best->deviation / extent(*best);
+    }
+
+private:
+    double extent(const MirrorPlane& plane) const {
+        double farthest = 0.0;
+        for (const Index v : vertices_)
+            farthest = std::max(farthest, std::abs(plane.height(mesh_.points[at(v)])));
+        return farthest;
+    }
+
+    const Mesh& mesh_;
+    const double tolerance_;
+    const Progress& progress_;
+    const SurfaceSearch search_;
+    std::vector<Index> vertices_; // samples
+    double diagonal_ = 0.0;
+};
+
+} // namespace
+
+std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
+                                             Progress& progress) {
+    const PlaneFinder finder(mesh, tolerance, progress);
+    const std::vector<MirrorPlane> guesses = first_guesses(mesh);
+    std::vector<std::optional<MirrorPlane>> found(guesses.size());
+    parallel_for(
+        static_cast<int>(guesses.size()),
+        [&](int i) {
+            found[static_cast<std::size_t>(i)] =
+                finder.follow(guesses[static_cast<std::size_t>(i)]);
+        },
+        progress);
+    std::optional<MirrorPlane> best;
+    for (const std::optional<MirrorPlane>& plane : found)
+        if (plane && finder.is_better(*plane, best))
+            best = plane;
     return best;
 }
 

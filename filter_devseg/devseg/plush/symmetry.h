@@ -23,6 +23,6 @@ struct MirrorPlane {
 /// its mirror image; nothing where more than a tenth of the surface is farther from its mirror
 /// image than `tolerance` times the diagonal.
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
-                                             const Progress& progress);
+                                             Progress& progress);
 
 } // namespace devseg
