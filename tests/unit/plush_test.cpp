@@ -1,4 +1,5 @@
 #include "devseg/plush/plush_seams.h"
+#include "devseg/plush/seam_removal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -307,6 +308,31 @@ TEST(PlushSeams, RefusesAndCancels) {
         Progress progress([&](double fraction, const char*) { return fraction < when; });
         EXPECT_THROW(segment_plush_seams(mesh, PlushOptions{}, {}, {}, progress), Cancelled);
     }
+}
+
+TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
+    // Two halves of a plate: all of the seam between them can go, and parts of it as well.
+    const WorkingSurface surface{checks::gated(shapes::grid(20, 20, 1.0, 1.0)), {}};
+    const Mesh& mesh = surface.mesh;
+    double middle = 0.0;
+    for (const Vec3& p : mesh.points)
+        middle += p.x() / static_cast<double>(mesh.points.size());
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (std::abs(mesh.points[at(mesh.origin(h))].x() - middle) < 1e-9 &&
+            std::abs(mesh.points[at(mesh.target(h))].x() - middle) < 1e-9)
+            mark(mesh, h, 1, seam);
+    ASSERT_EQ(find_patches(mesh, seam).count, 2);
+    const SeamMarks hard;
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    PatchTester tester(surface, {0.15, true});
+    Progress progress;
+    RemovalOptions options;
+    options.most_together = 1.1; // no patch is large
+    const Index trials =
+        join_patches({surface, hard, weight, tester, tester}, options, seam, progress);
+    EXPECT_EQ(trials, 1); // those that were made besides do not count
+    EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
 }
 
 TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {

@@ -202,7 +202,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
         const EdgeShape shape = shapes.at_edge(h);
         if (shape.bend >= crease || shape.bend <= -concave)
             return true;
-        const Vec3 lying = (direction - direction.dot(shape.normal) * shape.normal);
+        const Vec3 lying = direction - direction.dot(shape.normal) * shape.normal;
         if (!skeleton.empty() &&
             std::abs(skeleton_direction(skeleton, bones, a, b, shape.normal)
                          .direction.dot(lying.stableNormalized())) >= std::cos(along))
