@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "devseg/mesh/own_frame.h"
 #include "devseg/mesh/surface_search.h"
 #include "devseg/parallel.h"
 #include "devseg/plush/carry_seams.h"
@@ -368,15 +369,10 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     return on_model.without_small_patches(part.seam, {}, options.max_area_change);
 }
 
-} // namespace
-
-PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
-                               const std::vector<std::uint8_t>& hard, Progress& progress) {
-    check_range("max_area_change", options.max_area_change, 0.0, 1.0,
-                "a number above 0 and at most 1");
-    if (options.max_extrema < 0)
-        refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
-    check_rounds(options.max_iterations, options.random_seed);
+// What is measured comes near to bounds, and what follows from it would depend on how the model is
+// turned: here the mesh and the skeleton are in the model's own frame.
+PlushSeams segment_in_own_frame(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
+                                const SeamMarks& hard, Progress& progress) {
     PlushSeams result;
     const WorkingSurface model{mesh, {}};
     progress.begin_phase("finding symmetry", 0.06);
@@ -404,6 +400,22 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     measure_patches(mesh, seam, options.max_area_change, result, progress);
     result.shares = seam_shares(mesh, seam, working.guides(), plane, progress);
     return result;
+}
+
+} // namespace
+
+PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
+                               const std::vector<std::uint8_t>& hard, Progress& progress) {
+    check_range("max_area_change", options.max_area_change, 0.0, 1.0,
+                "a number above 0 and at most 1");
+    if (options.max_extrema < 0)
+        refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
+    check_rounds(options.max_iterations, options.random_seed);
+    const OwnFrame frame = own_frame(mesh);
+    for (Vec3& joint : skeleton.joints)
+        joint = frame.to_frame(joint);
+    return segment_in_own_frame(in_frame(mesh, frame), options, std::move(skeleton), hard,
+                                progress);
 }
 
 } // namespace devseg

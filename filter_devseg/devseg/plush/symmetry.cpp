@@ -82,10 +82,16 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
         box.extend(p);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
     std::vector<MirrorPlane> planes;
+    const Eigen::Matrix3d& axes = solver.eigenvectors();
+    std::vector<Vec3> normals;
     for (int k = 0; k < 3; ++k)
-        for (const Vec3& normal : {Vec3(Vec3::Unit(k)), Vec3(solver.eigenvectors().col(k))})
-            for (const Vec3& point : {center, Vec3(box.center())})
-                planes.push_back({normal, normal.dot(point), 0.0});
+        for (const Vec3& normal :
+             {Vec3(axes.col(k)), Vec3((axes.col(k) + axes.col((k + 1) % 3)).normalized()),
+              Vec3((axes.col(k) - axes.col((k + 1) % 3)).normalized())})
+            normals.push_back(normal);
+    for (const Vec3& normal : normals)
+        for (const Vec3& point : {center, Vec3(box.center())})
+            planes.push_back({normal, normal.dot(point), 0.0});
     return planes;
 }
 

@@ -19,8 +19,8 @@ struct MirrorPlane {
     Vec3 reflect(const Vec3& p) const { return p - 2.0 * height(p) * normal; }
 };
 
-/// The best plane that is found from the principal and coordinate axes by fitting the surface to
-/// its mirror image; nothing where more than a tenth of the surface is farther from its mirror
+/// The best plane that is found from the principal axes and halfway between them, by fitting to
+/// the mirror image; nothing where more than a tenth of the surface is farther from its mirror
 /// image than `tolerance` times the diagonal.
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              Progress& progress);

@@ -1,0 +1,64 @@
+#include "devseg/mesh/own_frame.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace devseg {
+
+namespace {
+
+constexpr double golden_ratio = 0.61803398874989485; // multiples of it spread evenly over 0 … 1
+constexpr double unevenness = 0.2;
+constexpr double grid = 0x1p-24; // internal units
+
+double weight(const Mesh& mesh, Index f) {
+    const double spread = golden_ratio * f - std::floor(golden_ratio * f);
+    return mesh.face_areas[at(f)] * (1.0 + unevenness * (spread - 0.5));
+}
+
+} // namespace
+
+OwnFrame own_frame(const Mesh& mesh) {
+    OwnFrame frame;
+    double total = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        frame.center += weight(mesh, f) * mesh.face_centers[at(f)];
+        total += weight(mesh, f);
+    }
+    if (!(total > 0.0))
+        return frame;
+    frame.center /= total;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const Vec3 d = mesh.face_centers[at(f)] - frame.center;
+        spread += weight(mesh, f) * d * d.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+    for (int k = 0; k < 2; ++k) {
+        const Vec3 axis = solver.eigenvectors().col(2 - k);
+        double third = 0.0;
+        for (Index f = 0; f < mesh.face_count(); ++f) {
+            const double d = axis.dot(mesh.face_centers[at(f)] - frame.center);
+            third += weight(mesh, f) * d * d * d;
+        }
+        frame.axes.row(k) = third < 0.0 ? -axis : axis;
+    }
+    frame.axes.row(2) = frame.axes.row(0).cross(frame.axes.row(1));
+    return frame;
+}
+
+Vec3 OwnFrame::to_frame(const Vec3& p) const {
+    const Vec3 local = axes * (p - center);
+    return (local / grid).array().round() * grid;
+}
+
+Mesh in_frame(const Mesh& mesh, const OwnFrame& frame) {
+    Mesh result = mesh;
+    for (Vec3& p : result.points)
+        p = frame.to_frame(p);
+    compute_face_geometry(result);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,29 @@
+// A mesh in its own frame, so that results do not depend on how a model is turned or moved.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "devseg/mesh/mesh.h"
+
+namespace devseg {
+
+/// The principal axes of a surface, about its centre of area.
+struct OwnFrame {
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); // rows, right-handed, longest first
+    Vec3 center = Vec3::Zero();
+
+    /// Rounded to a grid of 2⁻²⁴ internal units, as fine as single precision: points that are
+    /// turned and moved with the surface are the same to the last bit, but for a coordinate that
+    /// happens to lie in the middle of two grid points.
+    Vec3 to_frame(const Vec3& p) const;
+};
+
+/// Each axis points to where the surface reaches farther (the sign of its third moment). Faces
+/// count up to a tenth more or less by their numbers, so that spheres, cubes and mirror images have
+/// one frame, too.
+OwnFrame own_frame(const Mesh& mesh);
+
+/// The mesh with all points in the frame.
+Mesh in_frame(const Mesh& mesh, const OwnFrame& frame);
+
+} // namespace devseg
