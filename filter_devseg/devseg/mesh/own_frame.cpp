@@ -10,7 +10,7 @@ namespace {
 
 constexpr double golden_ratio = 0.61803398874989485; // multiples of it spread evenly over 0 … 1
 constexpr double unevenness = 0.2;
-constexpr double grid = 0x1p-24; // internal units
+constexpr double grid = 0x1p-24; // units of the frame
 
 double weight(const Mesh& mesh, Index f) {
     const double spread = golden_ratio * f - std::floor(golden_ratio * f);
@@ -29,6 +29,7 @@ OwnFrame own_frame(const Mesh& mesh) {
     if (!(total > 0.0))
         return frame;
     frame.center /= total;
+    frame.unit = std::sqrt(mesh.total_area);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const Vec3 d = mesh.face_centers[at(f)] - frame.center;
@@ -49,12 +50,13 @@ OwnFrame own_frame(const Mesh& mesh) {
 }
 
 Vec3 OwnFrame::to_frame(const Vec3& p) const {
-    const Vec3 local = axes * (p - center);
+    const Vec3 local = axes * (p - center) / unit;
     return (local / grid).array().round() * grid;
 }
 
 Mesh in_frame(const Mesh& mesh, const OwnFrame& frame) {
     Mesh result = mesh;
+    result.unit_length *= frame.unit;
     for (Vec3& p : result.points)
         p = frame.to_frame(p);
     compute_face_geometry(result);

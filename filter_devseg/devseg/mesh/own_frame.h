@@ -7,14 +7,15 @@
 
 namespace devseg {
 
-/// The principal axes of a surface, about its centre of area.
+/// The principal axes of a surface about its centre, and its size.
 struct OwnFrame {
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); // rows, right-handed, longest first
     Vec3 center = Vec3::Zero();
+    double unit = 1.0; // internal units of the mesh: the root of its area
 
-    /// Rounded to a grid of 2⁻²⁴ internal units, as fine as single precision: points that are
-    /// turned and moved with the surface are the same to the last bit, but for a coordinate that
-    /// happens to lie in the middle of two grid points.
+    /// In units of the frame, rounded to a grid of 2⁻²⁴, as fine as single precision: points that
+    /// are turned, moved and scaled with the surface are the same to the last bit, but for a
+    /// coordinate that happens to lie in the middle of two grid points.
     Vec3 to_frame(const Vec3& p) const;
 };
 
