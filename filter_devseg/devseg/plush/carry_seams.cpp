@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devseg/mesh/surface_search.h"
+#include "devseg/plush/seam_curves.h"
 
 namespace devseg {
 
@@ -51,6 +52,7 @@ public:
     }
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
+        points_ = smooth_seams(from_, seam);
         const std::vector<double> even(seam.size(), 1.0);
         std::vector<SeamSegment> segments = find_segments(from_, seam, {}, even);
         std::stable_sort(
@@ -90,7 +92,7 @@ private:
 
     Index place(Index v) {
         if (place_[at(v)] < 0)
-            place_[at(v)] = search_.vertex(from_.points[at(v)], normal_[at(v)], [&](Index u) {
+            place_[at(v)] = search_.vertex(points_[at(v)], normal_[at(v)], [&](Index u) {
                 return on_border_[at(v)] == 0 || may_border_[at(u)] != 0;
             });
         return place_[at(v)];
@@ -131,7 +133,7 @@ private:
     std::vector<std::uint8_t> lean_towards(const std::vector<Index>& line) {
         std::vector<Vec3> points;
         for (const Index v : line)
-            points.push_back(from_.points[at(v)]);
+            points.push_back(points_[at(v)]);
         std::vector<double> away(to_.points.size(), reach_);
         std::vector<std::uint8_t> strip(to_.points.size(), 0);
         std::vector<Index> queue;
@@ -171,6 +173,7 @@ private:
     const VertexGraph& graph_;
     const std::vector<double>& stray_; // 3 #F of to
     const SurfaceSearch search_;
+    std::vector<Vec3> points_;                   // #V of from: on smooth seams
     const std::vector<Vec3> normal_;             // #V of from
     const std::vector<std::uint8_t> on_border_;  // #V of from
     const std::vector<std::uint8_t> may_border_; // #V of to
