@@ -7,7 +7,7 @@ namespace devseg {
 
 namespace {
 
-constexpr int rounds = 12;
+constexpr int rounds = 3;
 constexpr int rounds_on_surface = 3; // after so many rounds points go back to the surface
 
 // The vertices that pull at each vertex of a seam; none at those that stay.

@@ -12,9 +12,11 @@ namespace devseg {
 
 namespace {
 
-constexpr Index samples = 1500; // points that are mirrored while a plane is fitted
-constexpr int most_rounds = 30; // of fitting
-constexpr double trusted = 0.8; // share of the points, the nearest, that a plane is fitted to
+constexpr Index samples = 1500;      // points that are mirrored while a plane is fitted
+constexpr Index few_samples = 250;   // while planes are compared at first
+constexpr std::size_t promising = 3; // planes that are fitted to all samples
+constexpr int most_rounds = 30;      // of fitting
+constexpr double trusted = 0.8;      // share of the points, the nearest, that a plane is fitted to
 
 Vec3 reflect_direction(const MirrorPlane& plane, const Vec3& d) {
     return d - 2.0 * plane.normal.dot(d) * plane.normal;
@@ -97,20 +99,46 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
 
 class PlaneFinder {
 public:
-    PlaneFinder(const Mesh& mesh, double tolerance, const Progress& progress)
-        : mesh_(mesh), tolerance_(tolerance), progress_(progress), search_(mesh) {
+    PlaneFinder(const Mesh& mesh, Progress& progress)
+        : mesh_(mesh), progress_(progress), search_(mesh) {
         Eigen::AlignedBox3d box;
-        const Index stride = std::max<Index>(1, mesh.vertex_count() / samples);
-        for (Index v = 0; v < mesh.vertex_count(); ++v) {
-            box.extend(mesh.points[at(v)]);
-            if (v % stride == 0 && search_.leaving(v) >= 0)
-                vertices_.push_back(v);
-        }
+        for (const Vec3& p : mesh.points)
+            box.extend(p);
         diagonal_ = box.diagonal().norm();
+        take_samples(samples);
     }
 
+    void take_samples(Index count) {
+        vertices_.clear();
+        const Index stride = std::max<Index>(1, mesh_.vertex_count() / count);
+        for (Index v = 0; v < mesh_.vertex_count(); v += stride)
+            if (search_.leaving(v) >= 0)
+                vertices_.push_back(v);
+    }
+
+    // The best planes on the ways from guesses, within the tolerance.
+    std::vector<MirrorPlane> follow_all(const std::vector<MirrorPlane>& guesses,
+                                        double tolerance) const {
+        std::vector<std::optional<MirrorPlane>> found(guesses.size());
+        parallel_for(
+            static_cast<int>(guesses.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                found[k] = follow(guesses[k], tolerance);
+            },
+            progress_);
+        std::vector<MirrorPlane> planes;
+        for (const auto& plane : found)
+            if (plane)
+                planes.push_back(*plane);
+        std::stable_sort(planes.begin(), planes.end(),
+                         [&](const auto& a, const auto& b) { return is_better(a, b); });
+        return planes;
+    }
+
+private:
     // The best plane on the way from a guess.
-    std::optional<MirrorPlane> follow(MirrorPlane plane) const {
+    std::optional<MirrorPlane> follow(MirrorPlane plane, double tolerance) const {
         std::optional<MirrorPlane> best;
         for (int round = 0; round < most_rounds; ++round) {
             progress_.check();
@@ -122,13 +150,13 @@ public:
             plane.deviation = pairs[pairs.size() * 9 / 10].distance / diagonal_;
             if (pairs.size() < vertices_.size() * 9 / 10)
                 plane.deviation = 1.0;
-            if (plane.deviation <= tolerance_ && is_better(plane, best))
+            if (plane.deviation <= tolerance && (!best || is_better(plane, *best)))
                 best = plane;
             const MirrorPlane next = fit_plane(pairs, count);
             const bool is_settled = (next.normal - plane.normal).norm() < 1e-5 &&
                                     std::abs(next.offset - plane.offset) < 1e-5 * diagonal_;
             // A guess that does not come near is not followed to its end.
-            if (is_settled || (round == 5 && plane.deviation > 4.0 * tolerance_))
+            if (is_settled || (round == 5 && plane.deviation > 4.0 * tolerance))
                 break;
             plane.normal = next.normal;
             plane.offset = next.offset;
@@ -138,11 +166,10 @@ public:
 
     // A flat model is near to its mirror image front to back: how far it reaches to both sides of
     // the plane is compared with.
-    bool is_better(const MirrorPlane& plane, const std::optional<MirrorPlane>& best) const {
-        return !best || plane.deviation / extent(plane) < best->deviation / extent(*best);
+    bool is_better(const MirrorPlane& plane, const MirrorPlane& other) const {
+        return plane.deviation / extent(plane) < other.deviation / extent(other);
     }
 
-private:
     double extent(const MirrorPlane& plane) const {
         double farthest = 0.0;
         for (const Index v : vertices_)
@@ -151,8 +178,7 @@ private:
     }
 
     const Mesh& mesh_;
-    const double tolerance_;
-    const Progress& progress_;
+    Progress& progress_;
     const SurfaceSearch search_;
     std::vector<Index> vertices_; // samples
     double diagonal_ = 0.0;
@@ -162,21 +188,16 @@ private:
 
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              Progress& progress) {
-    const PlaneFinder finder(mesh, tolerance, progress);
-    const std::vector<MirrorPlane> guesses = first_guesses(mesh);
-    std::vector<std::optional<MirrorPlane>> found(guesses.size());
-    parallel_for(
-        static_cast<int>(guesses.size()),
-        [&](int i) {
-            found[static_cast<std::size_t>(i)] =
-                finder.follow(guesses[static_cast<std::size_t>(i)]);
-        },
-        progress);
-    std::optional<MirrorPlane> best;
-    for (const std::optional<MirrorPlane>& plane : found)
-        if (plane && finder.is_better(*plane, best))
-            best = plane;
-    return best;
+    PlaneFinder finder(mesh, progress);
+    finder.take_samples(few_samples);
+    std::vector<MirrorPlane> planes = finder.follow_all(first_guesses(mesh), 2.0 * tolerance);
+    if (planes.size() > promising)
+        planes.resize(promising);
+    finder.take_samples(samples);
+    planes = finder.follow_all(planes, tolerance);
+    if (planes.empty())
+        return std::nullopt;
+    return planes.front();
 }
 
 } // namespace devseg
