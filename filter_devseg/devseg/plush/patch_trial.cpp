@@ -93,6 +93,18 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     return trial;
 }
 
+PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
+                            const std::vector<std::uint8_t>& seam) {
+    PatchTrial trial;
+    const ChartSurface surface = extract_surface(mesh, faces, seam);
+    trial.is_disk = surface.is_disk();
+    if (!trial.is_disk)
+        return trial;
+    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+    describe(surface, problem, any_map(problem), trial);
+    return trial;
+}
+
 bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
                           const Progress& progress) {
     std::vector<Index> patch = faces;

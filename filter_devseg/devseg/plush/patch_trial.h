@@ -41,6 +41,10 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, const PatchLimits& limits, bool details,
                      const Progress& progress);
 
+/// How a conformal map of a disk, scaled to its area, changes the areas of its faces.
+PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
+                            const std::vector<std::uint8_t>& seam);
+
 /// Trials on one surface. None is made twice: a patch and its mirror image are one. Threads may
 /// share it.
 class PatchTester {

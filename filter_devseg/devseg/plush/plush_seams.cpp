@@ -9,6 +9,7 @@
 #include "devseg/mesh/surface_search.h"
 #include "devseg/parallel.h"
 #include "devseg/plush/carry_seams.h"
+#include "devseg/plush/darts.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/local_seams.h"
 #include "devseg/plush/patch_trial.h"
@@ -276,28 +277,30 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
         result.darts += degree == 1 ? 1 : 0;
 }
 
-// The patches that are not developable, where seams are to be decided again.
-OpenPart failing_part(const WorkingSurface& model, SeamMarks seam, double max_area_change,
+// The patches that are not developable, where seams are to be decided again. Those that a few darts
+// make developable get them.
+OpenPart failing_part(const WorkingSurface& model, const VertexGraph& graph,
+                      const std::vector<double>& cost, SeamMarks seam, double max_area_change,
                       Progress& progress) {
     const FaceComponents patches = find_patches(model.mesh, seam);
     std::vector<std::vector<Index>> faces(at(patches.count));
     for (Index f = 0; f < model.mesh.face_count(); ++f)
         faces[at(patches.label[at(f)])].push_back(f);
-    std::vector<std::uint8_t> fails(faces.size(), 0);
+    std::vector<std::optional<std::vector<Index>>> darts(faces.size());
     parallel_for(
         patches.count,
         [&](int p) {
-            fails[at(p)] =
-                try_patch(model.mesh, faces[at(p)], seam, {max_area_change, false}, false, progress)
-                        .accepted
-                    ? 0
-                    : 1;
+            darts[at(p)] = find_darts(model.mesh, graph, cost, faces[at(p)], seam,
+                                      {max_area_change, false}, progress);
         },
         progress);
     OpenPart part;
     part.seam = std::move(seam);
+    for (const auto& lines : darts)
+        for (const Index h : lines.value_or(std::vector<Index>{}))
+            mark(model.mesh, h, 1, part.seam);
     for (const Index p : patches.label)
-        part.faces.push_back(fails[at(p)]);
+        part.faces.push_back(darts[at(p)] ? 0 : 1);
     return part;
 }
 
@@ -347,6 +350,9 @@ bool has_open_faces(const OpenPart& part) {
 SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
+    std::vector<double> cost;
+    for (Index h = 0; h < model.mesh.half_edge_count(); ++h)
+        cost.push_back(model.mesh.edge_length(h) * (0.2 + 0.8 * on_model.stray()[at(h)]));
     double bound = margin * options.max_area_change;
     SeamMarks seam = working.decide({}, {}, bound);
     OpenPart part;
@@ -355,7 +361,8 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, on_model.graph(),
                                         on_model.stray(), progress);
         cut_corners(model.mesh, carried);
-        part = failing_part(model, std::move(carried), options.max_area_change, progress);
+        part = failing_part(model, on_model.graph(), cost, std::move(carried),
+                            options.max_area_change, progress);
         if (!has_open_faces(part) || round == second_thoughts)
             break;
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
