@@ -59,23 +59,6 @@ std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSur
         tolerance);
 }
 
-// A nearly isometric map; empty where it is given up.
-std::vector<Vec2> isometric_map(const FlatteningProblem& problem, double give_up_energy,
-                                const Progress& progress) {
-    std::vector<Vec2> start = flatten_lscm(problem);
-    if (count_flips(problem, start) > 0)
-        start = flatten_tutte(problem);
-    if (count_flips(problem, start) > 0)
-        return {};
-    scale_to_area(problem, start);
-    ArapOptions options;
-    options.max_rounds = isometric_steps;
-    ArapResult map = minimise_arap(problem, start, options, progress);
-    if (map.energy > give_up_energy || map.flips > 0)
-        return {};
-    return map.uv;
-}
-
 double overlapping_share(const ChartSurface& surface, const std::vector<Vec2>& uv,
                          double tolerance) {
     return static_cast<double>(overlapping_pairs(surface, uv, tolerance).size()) /
@@ -100,6 +83,22 @@ std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartS
 }
 
 } // namespace
+
+std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
+                                       const Progress& progress) {
+    std::vector<Vec2> start = flatten_lscm(problem);
+    if (count_flips(problem, start) > 0)
+        start = flatten_tutte(problem);
+    if (count_flips(problem, start) > 0)
+        return {};
+    scale_to_area(problem, start);
+    ArapOptions options;
+    options.max_rounds = isometric_steps;
+    ArapResult map = minimise_arap(problem, start, options, progress);
+    if (map.energy > give_up_energy || map.flips > 0)
+        return {};
+    return map.uv;
+}
 
 std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
                                    const Progress& progress) {
@@ -136,7 +135,7 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
         return best;
     try {
         const std::vector<Vec2> isometric =
-            isometric_map(problem, options.give_up_energy, progress);
+            nearly_isometric_map(problem, options.give_up_energy, progress);
         const bool checks_overlap = options.give_up_overlap.has_value();
         if (checks_overlap && !isometric.empty() &&
             overlapping_share(surface, isometric, tolerance) > *options.give_up_overlap)

@@ -36,6 +36,11 @@ struct SewingMapOptions {
     std::optional<double> give_up_overlap;
 };
 
+/// A map by a few as-rigid-as-possible steps; empty where its energy is above a limit, or faces are
+/// flipped.
+std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
+                                       const Progress& progress);
+
 /// The LPFB map for sewing: with the angles that the boundary has on the surface, and beside a
 /// nearly isometric map whose areas were evened out while its boundary bends; the one in which
 /// areas change less. The inside is the harmonic one where that is nearly an isometry; else it is

@@ -9,9 +9,9 @@
 #include "devseg/mesh/surface_search.h"
 #include "devseg/parallel.h"
 #include "devseg/plush/carry_seams.h"
-#include "devseg/plush/darts.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/local_seams.h"
+#include "devseg/plush/mend_patches.h"
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_removal.h"
 #include "devseg/plush/seam_smoothing.h"
@@ -277,7 +277,7 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
         result.darts += degree == 1 ? 1 : 0;
 }
 
-// The patches that are not developable, where seams are to be decided again. Those that a few darts
+// The patches that are not developable, where seams are to be decided again. Those that a few cuts
 // make developable get them.
 OpenPart failing_part(const WorkingSurface& model, const VertexGraph& graph,
                       const std::vector<double>& cost, SeamMarks seam, double max_area_change,
@@ -286,21 +286,21 @@ OpenPart failing_part(const WorkingSurface& model, const VertexGraph& graph,
     std::vector<std::vector<Index>> faces(at(patches.count));
     for (Index f = 0; f < model.mesh.face_count(); ++f)
         faces[at(patches.label[at(f)])].push_back(f);
-    std::vector<std::optional<std::vector<Index>>> darts(faces.size());
+    std::vector<std::optional<std::vector<Index>>> cuts(faces.size());
     parallel_for(
         patches.count,
         [&](int p) {
-            darts[at(p)] = find_darts(model.mesh, graph, cost, faces[at(p)], seam,
-                                      {max_area_change, false}, progress);
+            cuts[at(p)] = mend_patch(model.mesh, graph, cost, faces[at(p)], seam,
+                                     {max_area_change, false}, progress);
         },
         progress);
     OpenPart part;
     part.seam = std::move(seam);
-    for (const auto& lines : darts)
+    for (const auto& lines : cuts)
         for (const Index h : lines.value_or(std::vector<Index>{}))
             mark(model.mesh, h, 1, part.seam);
     for (const Index p : patches.label)
-        part.faces.push_back(darts[at(p)] ? 0 : 1);
+        part.faces.push_back(cuts[at(p)] ? 0 : 1);
     return part;
 }
 
