@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "devseg/flatten/area_balance.h"
 #include "devseg/flatten/lpfb_map.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/overlaps.h"
@@ -31,7 +32,7 @@ public:
                 continue;
             if (!trial.is_disk || cuts >= most_cuts)
                 return std::nullopt;
-            std::vector<Index> cut = between_sheets(patch);
+            std::vector<Index> cut = between_sheets(patch, trial.area_change > 0.0);
             if (cut.empty())
                 cut = dart(patch);
             if (cut.empty())
@@ -47,15 +48,19 @@ public:
     }
 
 private:
-    std::vector<Index> between_sheets(const std::vector<Index>& patch) const {
+    // Where the patch has a map, it does not lie on itself once its areas are even.
+    std::vector<Index> between_sheets(const std::vector<Index>& patch, bool has_map) const {
         const ChartSurface surface = extract_surface(mesh_, patch, marks_);
-        const std::vector<Vec2> uv =
-            nearly_isometric_map(make_flattening_problem(mesh_, surface),
-                                 std::numeric_limits<double>::infinity(), progress_);
+        const FlatteningProblem problem = make_flattening_problem(mesh_, surface);
+        std::vector<Vec2> uv =
+            nearly_isometric_map(problem, std::numeric_limits<double>::infinity(), progress_);
         if (uv.empty())
             return {};
-        const auto pairs =
-            overlapping_pairs(surface, uv, layout_tolerance(std::sqrt(mesh_.total_area)));
+        const double tolerance = layout_tolerance(std::sqrt(mesh_.total_area));
+        auto pairs = overlapping_pairs(surface, uv, tolerance);
+        if (pairs.empty() && !has_map)
+            pairs = overlapping_pairs(surface, balance_with_boundary(problem, uv, progress_),
+                                      tolerance);
         std::vector<Index> cut;
         if (!pairs.empty())
             for (const Index h : separating_path(mesh_, surface, pairs))
