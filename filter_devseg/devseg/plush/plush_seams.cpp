@@ -31,9 +31,10 @@ constexpr Index plain_faces = 9000;
 // Models without a mirror image up to this size are their own working surface: what is saved
 // would be less than what carrying seams costs.
 constexpr Index small_model = 15000;
-// Of the bound: what is used of it on another surface than the model, at first, and in each round
-// of deciding again.
+// Of the bound: what is used of it on another surface than the model, on the model before seams
+// are smoothed, and in each round of deciding again.
 constexpr double margin = 0.75;
+constexpr double own_margin = 0.95;
 constexpr double tighter = 0.88;
 constexpr int second_thoughts = 2;
 constexpr double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
@@ -344,16 +345,17 @@ bool has_open_faces(const OpenPart& part) {
     return std::find(part.faces.begin(), part.faces.end(), 1) != part.faces.end();
 }
 
-// Seams that are decided on the working surface, on the model. Where patches are not developable on
-// it, seams are decided again: with a smaller bound on the working surface, and in the end on the
-// model itself.
+// Seams that are decided on the working surface, as smooth lines on the model. Where patches are
+// not developable on it and cannot be mended, seams are decided again: with a smaller bound on the
+// working surface, and in the end on the model itself.
 SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
     std::vector<double> cost;
     for (Index h = 0; h < model.mesh.half_edge_count(); ++h)
         cost.push_back(model.mesh.edge_length(h) * (0.2 + 0.8 * on_model.stray()[at(h)]));
-    double bound = margin * options.max_area_change;
+    double bound = options.max_area_change;
+    bound *= working.mesh().face_count() == model.mesh.face_count() ? own_margin : margin;
     SeamMarks seam = working.decide({}, {}, bound);
     OpenPart part;
     for (int round = 0;; ++round) {
@@ -388,10 +390,9 @@ PlushSeams segment_in_own_frame(const Mesh& mesh, const PlushOptions& options, S
         plane = find_mirror_plane(mesh, symmetric_enough, progress);
     const WorkingSurface surface = make_working_surface(mesh, plane, hard, progress);
     result.is_symmetric = surface.is_symmetric();
-    const bool is_model = !surface.is_symmetric() && surface.mesh.face_count() == mesh.face_count();
     PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
     SeamMarks seam;
-    if (is_model)
+    if (!hard.empty())
         seam = working.without_small_patches(working.decide({}, hard, options.max_area_change),
                                              hard, options.max_area_change);
     else
