@@ -354,8 +354,9 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     std::vector<double> cost;
     for (Index h = 0; h < model.mesh.half_edge_count(); ++h)
         cost.push_back(model.mesh.edge_length(h) * (0.2 + 0.8 * on_model.stray()[at(h)]));
-    double bound = options.max_area_change;
-    bound *= working.mesh().face_count() == model.mesh.face_count() ? own_margin : margin;
+    const bool is_model =
+        !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
+    double bound = (is_model ? own_margin : margin) * options.max_area_change;
     SeamMarks seam = working.decide({}, {}, bound);
     OpenPart part;
     for (int round = 0;; ++round) {
