@@ -15,6 +15,7 @@
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_removal.h"
 #include "devseg/plush/seam_smoothing.h"
+#include "devseg/plush/tongues.h"
 #include "devseg/plush/working_surface.h"
 #include "devseg/segment/fragments.h"
 #include "devseg/segment/option_checks.h"
@@ -41,6 +42,9 @@ constexpr double nearly_flat = 0.3; // of the bound: what large patches change t
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
+// Of the root of the surface, and of the mean edge: tongues that are narrower go.
+constexpr double thin = 0.03;
+constexpr double least_thin = 2.4;
 constexpr double remnant = 0.02; // of the surface: patches that are joined on the model, in the end
 
 // Material borders are edges of the model: then seams are decided on the model itself.
@@ -88,9 +92,9 @@ public:
         return seam_;
     }
 
-    /// The seams, with small patches joined to neighbours.
-    SeamMarks without_small_patches(const SeamMarks& seam, const SeamMarks& hard,
-                                    double max_area_change) {
+    /// The seams, with small patches and thin tongues given to neighbours.
+    SeamMarks without_remnants(const SeamMarks& seam, const SeamMarks& hard,
+                               double max_area_change) {
         hard_ = hard;
         seam_ = seam;
         PatchTester tester(surface_, {max_area_change, false});
@@ -98,10 +102,18 @@ public:
         removal.random_seed = options_.random_seed;
         removal.most_area = remnant;
         removal.least_neck = narrow_neck;
+        const SeamSetting setting{surface_, hard_,  weights_.weight,
+                                  tester,   tester, options_.max_iterations};
+        progress_.begin_phase("giving tongues away", 0.04);
+        double edges = 0.0;
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            edges += mesh_.edge_length(h);
+        const double width =
+            std::max(thin * std::sqrt(mesh_.total_area),
+                     least_thin * edges / static_cast<double>(mesh_.half_edge_count()));
+        result_.trials += give_tongues_away(setting, width, seam_, progress_);
         progress_.begin_phase("joining patches", 0.04);
-        result_.trials += join_patches(
-            {surface_, hard_, weights_.weight, tester, tester, options_.max_iterations}, removal,
-            seam_, progress_);
+        result_.trials += join_patches(setting, removal, seam_, progress_);
         return seam_;
     }
 
@@ -376,7 +388,7 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     }
     if (has_open_faces(part))
         part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
-    return on_model.without_small_patches(part.seam, {}, options.max_area_change);
+    return on_model.without_remnants(part.seam, {}, options.max_area_change);
 }
 
 // What is measured comes near to bounds, and what follows from it would depend on how the model is
@@ -394,8 +406,8 @@ PlushSeams segment_in_own_frame(const Mesh& mesh, const PlushOptions& options, S
     PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
     SeamMarks seam;
     if (!hard.empty())
-        seam = working.without_small_patches(working.decide({}, hard, options.max_area_change),
-                                             hard, options.max_area_change);
+        seam = working.without_remnants(working.decide({}, hard, options.max_area_change), hard,
+                                        options.max_area_change);
     else
         seam = decide_for_model(working, model, options, result, progress);
     progress.begin_phase("measuring patches", 0.05);
