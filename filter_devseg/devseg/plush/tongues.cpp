@@ -11,7 +11,7 @@ namespace devseg {
 
 namespace {
 
-constexpr int most_rounds = 4;
+constexpr int most_rounds = 2;
 constexpr double slack = 1.3;         // paths over faces are longer than straight lines
 constexpr double least_reach = 0.8;   // of half the width: how far a tongue sticks out at least
 constexpr std::size_t most_sides = 3; // of a tongue: seams that are tried
@@ -25,11 +25,9 @@ struct Tongue {
 
 // A seam beside a tongue that would go, and the one across its root that would come.
 struct Change {
+    std::vector<Index> tongue; // faces
     std::vector<Index> opened;
     std::vector<Index> closed;
-    std::vector<std::vector<Index>> patches; // afterwards
-    SeamMarks marks;                         // afterwards
-    bool is_accepted = false;
 };
 
 class TongueGiver {
@@ -41,19 +39,13 @@ public:
     Index run() {
         Index tried = 0;
         for (int round = 0; round < most_rounds; ++round) {
-            std::vector<Change> changes;
-            for (const Tongue& tongue : find_tongues())
-                find_changes(tongue, changes);
+            std::vector<Change> changes = find_changes();
             tried += static_cast<Index>(changes.size());
-            parallel_for(
-                static_cast<int>(changes.size()),
-                [&](int i) {
-                    Change& change = changes[static_cast<std::size_t>(i)];
-                    change.is_accepted =
-                        s_.tester.accepts_all(change.patches, change.marks, progress_);
-                },
-                progress_);
-            if (!apply(changes))
+            bool changed = apply_together(changes);
+            if (changed)
+                changes = find_changes();
+            changed = apply_each(changes) || changed;
+            if (!changed)
                 break;
             progress_.update(static_cast<double>(round + 1) / most_rounds);
         }
@@ -127,12 +119,20 @@ private:
         return tongues;
     }
 
-    void find_changes(const Tongue& tongue, std::vector<Change>& changes) const {
+    std::vector<Change> find_changes() const {
+        const FaceComponents patches = find_patches(mesh_, seam_);
+        std::vector<Change> changes;
+        for (const Tongue& tongue : find_tongues())
+            find_changes(tongue, patches, changes);
+        return changes;
+    }
+
+    void find_changes(const Tongue& tongue, const FaceComponents& patches,
+                      std::vector<Change>& changes) const {
         const ChartSurface surface =
             extract_surface(mesh_, tongue.faces, enclose(mesh_, tongue.faces, seam_));
         if (!surface.is_disk())
             return;
-        const FaceComponents patches = find_patches(mesh_, seam_);
         // Who lies on the other side: −1 the tongue's own body, −2 nobody.
         const auto beyond = [&](Index h) -> Index {
             if (mesh_.twin[at(h)] < 0 || (!s_.hard.empty() && s_.hard[at(h)] != 0))
@@ -171,22 +171,8 @@ private:
         for (const Side& side : sides) {
             if (side.beyond < 0 || side.length <= root.length || ++tried > most_sides)
                 continue;
-            add_change(tongue, root.edges, side.edges, changes);
+            changes.push_back({tongue.faces, side.edges, root.edges});
         }
-    }
-
-    void add_change(const Tongue& tongue, const std::vector<Index>& closed,
-                    const std::vector<Index>& opened, std::vector<Change>& changes) const {
-        Change change;
-        change.closed = closed;
-        change.opened = opened;
-        change.marks = seam_;
-        apply_to(change, change.marks);
-        std::vector<Index> start = tongue.faces;
-        for (const Index h : closed)
-            start.push_back(mesh_.twin[at(h)] / 3);
-        change.patches = patches_of(mesh_, change.marks, start);
-        changes.push_back(std::move(change));
     }
 
     void apply_to(const Change& change, SeamMarks& marks) const {
@@ -196,20 +182,91 @@ private:
             mark(mesh_, h, 0, marks);
     }
 
-    // Those that are accepted, of each patch one.
-    bool apply(const std::vector<Change>& changes) {
+    // The patches of both sides, with other marks.
+    std::vector<std::vector<Index>> patches_beside(const Change& change,
+                                                   const SeamMarks& marks) const {
+        std::vector<Index> start = change.tongue;
+        for (const Index h : change.closed)
+            start.push_back(mesh_.twin[at(h)] / 3);
+        return patches_of(mesh_, marks, start);
+    }
+
+    // The first change of each tongue; those beside patches that are not accepted are left out.
+    bool apply_together(const std::vector<Change>& changes) {
+        std::vector<const Change*> group;
+        std::vector<std::uint8_t> is_used(mesh_.twin.size(), 0);
+        for (const Change& change : changes) {
+            bool is_free = group.empty() || group.back()->tongue != change.tongue;
+            for (const auto* edges : {&change.opened, &change.closed})
+                for (const Index h : *edges)
+                    is_free = is_free && is_used[at(h)] == 0;
+            if (!is_free)
+                continue;
+            for (const auto* edges : {&change.opened, &change.closed})
+                for (const Index h : *edges)
+                    mark(mesh_, h, 1, is_used);
+            group.push_back(&change);
+        }
+        while (!group.empty()) {
+            SeamMarks marks = seam_;
+            std::vector<Index> start;
+            for (const Change* change : group)
+                apply_to(*change, marks);
+            for (const Change* change : group)
+                for (const Index h : change->closed) {
+                    start.push_back(h / 3);
+                    start.push_back(mesh_.twin[at(h)] / 3);
+                }
+            const std::vector<std::vector<Index>> patches = patches_of(mesh_, marks, start);
+            std::vector<std::uint8_t> fails(mesh_.faces.size(), 0);
+            parallel_for(
+                static_cast<int>(patches.size()),
+                [&](int i) {
+                    const auto& patch = patches[static_cast<std::size_t>(i)];
+                    if (!s_.tester.accepts(patch, marks, progress_))
+                        for (const Index f : patch)
+                            fails[at(f)] = 1;
+                },
+                progress_);
+            const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change* change) {
+                const Index h = change->closed.front();
+                return fails[at(h / 3)] != 0 || fails[at(mesh_.twin[at(h)] / 3)] != 0;
+            });
+            if (kept == group.end()) {
+                seam_ = std::move(marks);
+                return true;
+            }
+            group.erase(kept, group.end());
+        }
+        return false;
+    }
+
+    // Each by itself, of each patch one.
+    bool apply_each(const std::vector<Change>& changes) {
+        std::vector<std::uint8_t> is_accepted(changes.size(), 0);
+        std::vector<std::vector<std::vector<Index>>> patches(changes.size());
+        parallel_for(
+            static_cast<int>(changes.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                SeamMarks marks = seam_;
+                apply_to(changes[k], marks);
+                patches[k] = patches_beside(changes[k], marks);
+                is_accepted[k] = s_.tester.accepts_all(patches[k], marks, progress_) ? 1 : 0;
+            },
+            progress_);
         std::vector<std::uint8_t> is_changed(mesh_.faces.size(), 0);
         bool any = false;
-        for (const Change& change : changes) {
-            bool is_free = change.is_accepted;
-            for (const auto& patch : change.patches)
+        for (std::size_t k = 0; k < changes.size(); ++k) {
+            bool is_free = is_accepted[k] != 0;
+            for (const auto& patch : patches[k])
                 for (const Index f : patch)
                     is_free = is_free && is_changed[at(f)] == 0;
             if (!is_free)
                 continue;
-            apply_to(change, seam_);
+            apply_to(changes[k], seam_);
             any = true;
-            for (const auto& patch : change.patches)
+            for (const auto& patch : patches[k])
                 for (const Index f : patch)
                     is_changed[at(f)] = 1;
         }
