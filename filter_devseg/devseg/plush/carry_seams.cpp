@@ -14,7 +14,7 @@ namespace {
 
 constexpr double reach = 2.5;   // mean edges of the first surface: how far paths may leave the line
 constexpr double leaning = 2.0; // mean edges of the second one: a path so far away costs double
-constexpr double stray_share = 0.8; // of an edge's cost: what goes where seams look natural
+constexpr double stray_share = 0.4; // of an edge's cost: what goes where seams look natural
 constexpr double least_leaning =
     0.1; // of that, where the second surface is no finer than the first
 constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
