@@ -37,7 +37,9 @@ constexpr Index small_model = 15000;
 constexpr double margin = 0.75;
 constexpr double own_margin = 0.95;
 constexpr double tighter = 0.88;
-constexpr int second_thoughts = 2;
+// Where the model has two halves, they stay alike only as long as seams are decided on both.
+constexpr int second_thoughts = 1;
+constexpr int mirrored_second_thoughts = 2;
 constexpr double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
@@ -111,7 +113,10 @@ public:
         const double width =
             std::max(thin * std::sqrt(mesh_.total_area),
                      least_thin * edges / static_cast<double>(mesh_.half_edge_count()));
-        result_.trials += give_tongues_away(setting, width, seam_, progress_);
+        PatchTester search(surface_, {max_area_change, true});
+        const SeamSetting searching{surface_, hard_,  weights_.weight,
+                                    search,   search, options_.max_iterations};
+        result_.trials += give_tongues_away(searching, width, seam_, progress_);
         progress_.begin_phase("joining patches", 0.04);
         result_.trials += join_patches(setting, removal, seam_, progress_);
         return seam_;
@@ -370,6 +375,8 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
     double bound = (is_model ? own_margin : margin) * options.max_area_change;
     SeamMarks seam = working.decide({}, {}, bound);
+    const int most_rounds =
+        working.surface().is_symmetric() ? mirrored_second_thoughts : second_thoughts;
     OpenPart part;
     for (int round = 0;; ++round) {
         progress.begin_phase("carrying seams", 0.02);
@@ -378,7 +385,7 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         cut_corners(model.mesh, carried);
         part = failing_part(model, on_model.graph(), cost, std::move(carried),
                             options.max_area_change, progress);
-        if (!has_open_faces(part) || round == second_thoughts)
+        if (!has_open_faces(part) || round == most_rounds)
             break;
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
         if (!has_open_faces(again))

@@ -11,10 +11,8 @@ namespace devseg {
 
 namespace {
 
-constexpr int most_rounds = 2;
-constexpr double slack = 1.3;         // paths over faces are longer than straight lines
-constexpr double least_reach = 0.8;   // of half the width: how far a tongue sticks out at least
-constexpr std::size_t most_sides = 3; // of a tongue: seams that are tried
+constexpr double slack = 1.3;       // paths over faces are longer than straight lines
+constexpr double least_reach = 0.8; // of half the width: how far a tongue sticks out at least
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -37,18 +35,15 @@ public:
           progress_(progress) {}
 
     Index run() {
-        Index tried = 0;
-        for (int round = 0; round < most_rounds; ++round) {
-            std::vector<Change> changes = find_changes();
+        std::vector<Change> changes = find_changes();
+        auto tried = static_cast<Index>(changes.size());
+        progress_.update(0.1);
+        if (apply_together(changes)) {
+            changes = find_changes();
             tried += static_cast<Index>(changes.size());
-            bool changed = apply_together(changes);
-            if (changed)
-                changes = find_changes();
-            changed = apply_each(changes) || changed;
-            if (!changed)
-                break;
-            progress_.update(static_cast<double>(round + 1) / most_rounds);
         }
+        progress_.update(0.6);
+        apply_each(changes);
         return tried;
     }
 
@@ -167,12 +162,10 @@ private:
         if (std::count_if(sides.begin(), sides.end(), is_root) != 1)
             return;
         const Side& root = *std::find_if(sides.begin(), sides.end(), is_root);
-        std::size_t tried = 0;
-        for (const Side& side : sides) {
-            if (side.beyond < 0 || side.length <= root.length || ++tried > most_sides)
-                continue;
-            changes.push_back({tongue.faces, side.edges, root.edges});
-        }
+        const auto longest = std::find_if(sides.begin(), sides.end(),
+                                          [](const Side& side) { return side.beyond >= 0; });
+        if (longest != sides.end() && longest->length > root.length)
+            changes.push_back({tongue.faces, longest->edges, root.edges});
     }
 
     void apply_to(const Change& change, SeamMarks& marks) const {
@@ -191,12 +184,12 @@ private:
         return patches_of(mesh_, marks, start);
     }
 
-    // The first change of each tongue; those beside patches that are not accepted are left out.
+    // All at once; those beside patches that are not accepted are left out.
     bool apply_together(const std::vector<Change>& changes) {
         std::vector<const Change*> group;
         std::vector<std::uint8_t> is_used(mesh_.twin.size(), 0);
         for (const Change& change : changes) {
-            bool is_free = group.empty() || group.back()->tongue != change.tongue;
+            bool is_free = true;
             for (const auto* edges : {&change.opened, &change.closed})
                 for (const Index h : *edges)
                     is_free = is_free && is_used[at(h)] == 0;
@@ -242,7 +235,7 @@ private:
     }
 
     // Each by itself, of each patch one.
-    bool apply_each(const std::vector<Change>& changes) {
+    void apply_each(const std::vector<Change>& changes) {
         std::vector<std::uint8_t> is_accepted(changes.size(), 0);
         std::vector<std::vector<std::vector<Index>>> patches(changes.size());
         parallel_for(
@@ -256,7 +249,6 @@ private:
             },
             progress_);
         std::vector<std::uint8_t> is_changed(mesh_.faces.size(), 0);
-        bool any = false;
         for (std::size_t k = 0; k < changes.size(); ++k) {
             bool is_free = is_accepted[k] != 0;
             for (const auto& patch : patches[k])
@@ -265,12 +257,10 @@ private:
             if (!is_free)
                 continue;
             apply_to(changes[k], seam_);
-            any = true;
             for (const auto& patch : patches[k])
                 for (const Index f : patch)
                     is_changed[at(f)] = 1;
         }
-        return any;
     }
 
     const SeamSetting& s_;
