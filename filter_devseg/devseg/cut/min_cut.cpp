@@ -133,10 +133,11 @@ void MinCut::push(Index source) {
     }
 }
 
-std::vector<CutSide> MinCut::solve() {
+std::vector<CutSide> MinCut::solve(const Progress& progress) {
     if (!added_.empty() || begin_.empty())
         sort_new_arcs();
     while (rank_nodes()) {
+        progress.check();
         cursor_.assign(begin_.begin(), begin_.end() - 1);
         for (std::size_t v = 0; v < sides_.size(); ++v)
             if (sides_[v] == CutSide::source)

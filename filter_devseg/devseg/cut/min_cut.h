@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -26,7 +27,7 @@ public:
     void raise(Index link, double weight);
 
     /// All sides; open nodes that no source reaches without a saturated link become sinks.
-    std::vector<CutSide> solve();
+    std::vector<CutSide> solve(const Progress& progress = Progress());
 
 private:
     struct Arc {

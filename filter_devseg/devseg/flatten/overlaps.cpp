@@ -117,14 +117,15 @@ overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, doub
 }
 
 std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
-                                   const std::vector<std::pair<Index, Index>>& pairs) {
+                                   const std::vector<std::pair<Index, Index>>& pairs,
+                                   const Progress& progress) {
     // In a disk, the least border between two connected sets of faces is one path from boundary to
     // boundary: the cut makes two disks.
     MinCut cut(two_sides(surface, pairs));
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         if (surface.twin[at(h)] > h)
             cut.link(h / 3, surface.twin[at(h)] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
-    const std::vector<CutSide> side = cut.solve();
+    const std::vector<CutSide> side = cut.solve(progress);
     std::vector<Index> path;
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         if (surface.twin[at(h)] >= 0 && side[at(h / 3)] == CutSide::source &&

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "devseg/mesh/charts.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -26,6 +27,7 @@ overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, doub
 /// first overlapping pair, with as many of the faces around them that take part in the overlap as
 /// possible, come apart. Half-edges are local, one for each edge.
 std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
-                                   const std::vector<std::pair<Index, Index>>& pairs);
+                                   const std::vector<std::pair<Index, Index>>& pairs,
+                                   const Progress& progress = Progress());
 
 } // namespace devseg

@@ -63,7 +63,7 @@ private:
                                       tolerance);
         std::vector<Index> cut;
         if (!pairs.empty())
-            for (const Index h : separating_path(mesh_, surface, pairs))
+            for (const Index h : separating_path(mesh_, surface, pairs, progress_))
                 cut.push_back(surface.mesh_half_edge(h));
         return cut;
     }

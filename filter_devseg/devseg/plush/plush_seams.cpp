@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "devseg/mesh/own_frame.h"
-#include "devseg/mesh/surface_search.h"
 #include "devseg/parallel.h"
 #include "devseg/plush/carry_seams.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/local_seams.h"
-#include "devseg/plush/mend_patches.h"
+#include "devseg/plush/open_part.h"
 #include "devseg/plush/patch_trial.h"
 #include "devseg/plush/seam_removal.h"
 #include "devseg/plush/seam_smoothing.h"
@@ -61,14 +60,6 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
         return {mesh, {}};
     return plain_working_surface(mesh, plain_faces, progress);
 }
-
-// A part of a surface where seams are still to be decided.
-struct OpenPart {
-    std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
-    SeamMarks seam;                  // 3 #F: seams so far; or empty
-
-    bool is_open(Index f) const { return faces.empty() || faces[at(f)] != 0; }
-};
 
 // The steps of the method on one surface, with what they share. `hard` has all seams that are not
 // inside the open part.
@@ -220,16 +211,10 @@ private:
         remove_teeth(mesh_, label);
         seam_ = make_chart_map(mesh_, label, {}, false).seam;
         for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (!hard_.empty() && (hard_[at(h)] != 0 || !is_inside(h)))
+            if (!hard_.empty() && (hard_[at(h)] != 0 || !open_.is_inside(mesh_, h)))
                 seam_[at(h)] = hard_[at(h)];
         mark_plane();
         mirror_marks(surface_, seam_);
-    }
-
-    // Whether new seams may run along the edge.
-    bool is_inside(Index h) const {
-        const Index twin = mesh_.twin[at(h)];
-        return open_.is_open(h / 3) && (twin < 0 || open_.is_open(twin / 3));
     }
 
     void remove() {
@@ -295,73 +280,6 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
         result.darts += degree == 1 ? 1 : 0;
 }
 
-// The patches that are not developable, where seams are to be decided again. Those that a few cuts
-// make developable get them.
-OpenPart failing_part(const WorkingSurface& model, const VertexGraph& graph,
-                      const std::vector<double>& cost, SeamMarks seam, double max_area_change,
-                      Progress& progress) {
-    const FaceComponents patches = find_patches(model.mesh, seam);
-    std::vector<std::vector<Index>> faces(at(patches.count));
-    for (Index f = 0; f < model.mesh.face_count(); ++f)
-        faces[at(patches.label[at(f)])].push_back(f);
-    std::vector<std::optional<std::vector<Index>>> cuts(faces.size());
-    parallel_for(
-        patches.count,
-        [&](int p) {
-            cuts[at(p)] = mend_patch(model.mesh, graph, cost, faces[at(p)], seam,
-                                     {max_area_change, false}, progress);
-        },
-        progress);
-    OpenPart part;
-    part.seam = std::move(seam);
-    for (const auto& lines : cuts)
-        for (const Index h : lines.value_or(std::vector<Index>{}))
-            mark(model.mesh, h, 1, part.seam);
-    for (const Index p : patches.label)
-        part.faces.push_back(cuts[at(p)] ? 0 : 1);
-    return part;
-}
-
-// Seams that are not inside the open part.
-SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part) {
-    SeamMarks fixed = part.seam;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (part.is_open(h / 3) && mesh.twin[at(h)] >= 0 && part.is_open(mesh.twin[at(h)] / 3))
-            fixed[at(h)] = 0;
-    return fixed;
-}
-
-// The patches of the working surface most of which lie on an open part of the model, and their
-// mirror images.
-OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
-                   const OpenPart& on_model) {
-    const SurfaceSearch search(model);
-    const std::vector<Vec3> normals = vertex_normals(surface.mesh);
-    const FaceComponents patches = find_patches(surface.mesh, seam);
-    std::vector<double> balance(at(patches.count), 0.0);
-    for (Index f = 0; f < surface.mesh.face_count(); ++f) {
-        const Index v = surface.mesh.faces[at(f)][0];
-        const Index near =
-            search.vertex(surface.mesh.points[at(v)], normals[at(v)], [](Index) { return true; });
-        if (near >= 0)
-            balance[at(patches.label[at(f)])] += on_model.is_open(search.leaving(near) / 3)
-                                                     ? surface.mesh.face_areas[at(f)]
-                                                     : -surface.mesh.face_areas[at(f)];
-    }
-    OpenPart part;
-    part.seam = std::move(seam);
-    for (const Index p : patches.label)
-        part.faces.push_back(balance[at(p)] > 0.0 ? 1 : 0);
-    for (Index f = 0; f < surface.mesh.face_count() && surface.is_symmetric(); ++f)
-        if (part.faces[at(f)] != 0)
-            part.faces[at(surface.face_image(f))] = 1;
-    return part;
-}
-
-bool has_open_faces(const OpenPart& part) {
-    return std::find(part.faces.begin(), part.faces.end(), 1) != part.faces.end();
-}
-
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
 // not developable on it and cannot be mended, seams are decided again: with a smaller bound on the
 // working surface, and in the end on the model itself.
@@ -383,17 +301,17 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, on_model.graph(),
                                         on_model.stray(), progress);
         cut_corners(model.mesh, carried);
-        part = failing_part(model, on_model.graph(), cost, std::move(carried),
-                            options.max_area_change, progress);
-        if (!has_open_faces(part) || round == most_rounds)
+        part = mend_patches(model.mesh, on_model.graph(), cost, std::move(carried),
+                            {options.max_area_change, false}, progress);
+        if (!part.has_open_faces() || round == most_rounds)
             break;
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
-        if (!has_open_faces(again))
+        if (!again.has_open_faces())
             break;
         bound *= tighter;
         seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
     }
-    if (has_open_faces(part))
+    if (part.has_open_faces())
         part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
     return on_model.without_remnants(part.seam, {}, options.max_area_change);
 }
