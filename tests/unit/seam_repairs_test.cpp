@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "devseg/mesh/own_frame.h"
+#include "devseg/plush/mend_patches.h"
+#include "devseg/plush/plush_seams.h"
+#include "devseg/plush/seam_curves.h"
+#include "devseg/plush/tongues.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+// The edges between the faces for which `inside` holds and others.
+template <class Inside>
+SeamMarks seam_around(const Mesh& mesh, Inside inside) {
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (mesh.twin[at(h)] >= 0 && inside(mesh.face_centers[at(h / 3)]) !=
+                                         inside(mesh.face_centers[at(mesh.twin[at(h)] / 3)]))
+            seam[at(h)] = 1;
+    return seam;
+}
+
+double seam_length(const Mesh& mesh, const SeamMarks& seam) {
+    double length = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        length += seam[at(h)] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
+    return length;
+}
+
+std::vector<double> lengths(const Mesh& mesh) {
+    std::vector<double> result;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        result.push_back(mesh.edge_length(h));
+    return result;
+}
+
+RawMesh moved(RawMesh raw, double scale) {
+    const Eigen::AngleAxisd turn(1.1, Vec3(0.3, -0.5, 0.8).normalized());
+    for (Vec3& p : raw.points)
+        p = scale * (turn * p) + Vec3(5.0, -3.0, 2.0);
+    return raw;
+}
+
+TEST(OwnFrame, MovedMeshesAreTheSameInIt) {
+    RawMesh egg = shapes::sphere(3);
+    for (Vec3& p : egg.points)
+        p = p.cwiseProduct(Vec3(1.0, 1.3, 0.8 + 0.2 * p.y()));
+    for (const RawMesh& raw : {egg, shapes::sphere(3), shapes::cube(4), shapes::torus(20, 10)}) {
+        const Mesh mesh = checks::gated(raw);
+        const Mesh other = checks::gated(moved(raw, 0.7));
+        const Mesh framed = in_frame(mesh, own_frame(mesh));
+        EXPECT_EQ(framed.points, in_frame(other, own_frame(other)).points);
+        EXPECT_NEAR(framed.total_area, 1.0, 1e-6);
+        EXPECT_NEAR(framed.unit_length, mesh.unit_length * std::sqrt(mesh.total_area), 1e-9);
+        EXPECT_NEAR(own_frame(mesh).axes.determinant(), 1.0, 1e-12); // no mirror image
+    }
+}
+
+TEST(OwnFrame, MovedModelsHaveTheSamePlushSeams) {
+    const RawMesh raw = shapes::finger(24, 30, 0.3, 2.0);
+    Progress progress;
+    const PlushSeams seams = segment_plush_seams(checks::gated(raw), {}, {}, {}, progress);
+    Progress again;
+    const PlushSeams others =
+        segment_plush_seams(checks::gated(moved(raw, 2.3)), {}, {}, {}, again);
+    EXPECT_EQ(seams.charts.chart, others.charts.chart);
+    EXPECT_EQ(seams.charts.seam, others.charts.seam);
+    EXPECT_EQ(seams.bones, others.bones);
+}
+
+TEST(SmoothSeams, TeethGoAndEndsStay) {
+    const Mesh mesh = checks::gated(shapes::grid(20, 20));
+    const double tooth = 0.1 / mesh.unit_length;
+    const SeamMarks seam = seam_around(mesh, [&](const Vec3& c) {
+        return c.x() > (std::fmod(c.y() + 10.0 * tooth, 2.0 * tooth) < tooth ? 0.0 : tooth);
+    });
+    const std::vector<Vec3> points = smooth_seams(mesh, seam);
+    double before = 0.0;
+    double after = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index a = mesh.origin(h);
+        const Index b = mesh.target(h);
+        if (seam[at(h)] != 0) {
+            before += 0.5 * mesh.edge_length(h);
+            after += 0.5 * (points[at(a)] - points[at(b)]).norm();
+        }
+        if (mesh.twin[at(h)] < 0) {
+            EXPECT_EQ(points[at(a)], mesh.points[at(a)]);
+        }
+    }
+    EXPECT_LT(after, 0.8 * before);
+}
+
+TEST(MendPatch, PatchesThatFitStay) {
+    const Mesh mesh = checks::gated(shapes::grid(10, 10));
+    std::vector<Index> faces;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        faces.push_back(f);
+    const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), lengths(mesh), faces,
+                                 SeamMarks(mesh.twin.size(), 0), {0.1, false}, Progress());
+    ASSERT_TRUE(cuts.has_value());
+    EXPECT_TRUE(cuts->empty());
+}
+
+// All faces as one patch, mended: the patches afterwards keep the limits.
+std::size_t mended_patches(const RawMesh& raw, double max_area_change) {
+    const Mesh mesh = checks::gated(raw);
+    std::vector<Index> faces;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        faces.push_back(f);
+    SeamMarks seam(mesh.twin.size(), 0);
+    const PatchLimits limits{max_area_change, false};
+    const Progress progress;
+    EXPECT_FALSE(try_patch(mesh, faces, seam, limits, false, progress).accepted);
+    const auto cuts =
+        mend_patch(mesh, build_vertex_graph(mesh), lengths(mesh), faces, seam, limits, progress);
+    if (!cuts)
+        return 0;
+    for (const Index h : *cuts)
+        mark(mesh, h, 1, seam);
+    const auto patches = patches_of(mesh, seam, faces);
+    for (const auto& patch : patches)
+        EXPECT_TRUE(try_patch(mesh, patch, seam, limits, false, progress).accepted);
+    return patches.size();
+}
+
+TEST(MendPatch, TipsGetDarts) {
+    // A blunt cone: all of its curvature is at the tip.
+    EXPECT_EQ(mended_patches(shapes::cone(40, 16, 1.0, 1.0), 0.1), 1U);
+}
+
+TEST(MendPatch, SheetsAreCutApart) {
+    EXPECT_EQ(mended_patches(shapes::helix_strip(90, 1.2, 1.0, 1.4, 0.3), 0.1), 2U);
+}
+
+TEST(MendPatch, BallsAreLeftToOthers) {
+    EXPECT_EQ(mended_patches(shapes::hemisphere(48, 24), 0.005), 0U);
+}
+
+TEST(Tongues, GoToThePatchBesideThem) {
+    // A plate in two halves; a strip of the left one reaches far into the right one.
+    const WorkingSurface surface{checks::gated(shapes::grid(40, 40)), {}};
+    const Mesh& mesh = surface.mesh;
+    const double unit = 1.0 / mesh.unit_length;
+    SeamMarks seam = seam_around(mesh, [&](const Vec3& c) {
+        return c.x() < 0.0 || (c.x() < 0.3 * unit && std::abs(c.y()) < 0.0375 * unit);
+    });
+    const SeamMarks hard;
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    PatchTester tester(surface, {0.15, true});
+    const double before = seam_length(mesh, seam);
+    Progress progress;
+    progress.begin_phase("tongues", 1.0);
+    EXPECT_GE(
+        give_tongues_away({surface, hard, weight, tester, tester}, 0.12 * unit, seam, progress), 1);
+    EXPECT_EQ(find_patches(mesh, seam).count, 2);
+    EXPECT_LT(seam_length(mesh, seam), before - 0.3 * unit);
+    EXPECT_NEAR(seam_length(mesh, seam), unit, 0.25 * unit);
+    // A wide one stays.
+    seam = seam_around(mesh, [&](const Vec3& c) {
+        return c.x() < 0.0 || (c.x() < 0.3 * unit && std::abs(c.y()) < 0.2 * unit);
+    });
+    const SeamMarks wide = seam;
+    give_tongues_away({surface, hard, weight, tester, tester}, 0.12 * unit, seam, progress);
+    EXPECT_EQ(seam, wide);
+}
+
+} // namespace
+} // namespace devseg
