@@ -9,7 +9,7 @@ the filter's plane; measured here, in the best of the three planes through the m
 Guided: as the filter tells, by its skeleton; and measured here: share of the seam length within
 30 degrees of the axis of the body part around it (the direction in which the normals within a tenth
 of the diagonal point least), on edges that bend by more than 15 degrees, or on concave ones; of the
-D-Charts as well.
+D-Charts as well. Waviness and acute corners: see seam_shape.py.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import numpy as np
 import pymeshlab
 from PIL import Image
 from scipy.spatial import cKDTree
+from seam_shape import acute_corners, waviness
 
 import devseg
 from devseg.host import mesh_data
@@ -129,6 +130,8 @@ def measure(path: Path, name: str) -> Image.Image:
         f"{found['guided_share']:.2f} {guided_share(points, faces, edges):.2f} "
         f"{guided_share(points, faces, other_edges):.2f} "
         f"{preview['mean_distance_share']:.4f} "
+        f"{waviness(points, edges):.2f} {waviness(points, other_edges):.2f} "
+        f"{acute_corners(points, edges)} {acute_corners(points, other_edges)} "
         f"{seconds:.1f} {used:.1f}",
         flush=True,
     )
@@ -153,8 +156,8 @@ def main() -> None:
     options = parser.parse_args()
     devseg.load_plugins()
     print(
-        "model patches darts area symmetric of-box guided by-normals d-charts preview seconds "
-        "processor",
+        "model patches darts area symmetric of-box guided by-normals d-charts preview "
+        "waviness d-charts acute d-charts seconds processor",
         flush=True,
     )
     pictures = []

@@ -316,17 +316,36 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     return on_model.without_remnants(part.seam, {}, options.max_area_change);
 }
 
+// The seams with which the mesh is flattened. A map that was accepted can fail on a mesh that is
+// the same but for rounding.
+SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& options,
+                        PlushSeams& result, Progress& progress) {
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const PatchLimits limits{options.max_area_change, false};
+    const SeamWeights weights =
+        seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
+                     mean_curvature(mesh), {}, {}, progress);
+    OpenPart part = mend_patches(mesh, graph, weights.weight, std::move(seam), limits, progress);
+    std::vector<std::uint8_t> is_settled;
+    for (const std::uint8_t is_open : part.faces)
+        is_settled.push_back(is_open == 0 ? 1 : 0);
+    result.all_developable = add_local_seams({mesh, {}}, graph, weights.weight, limits,
+                                             std::move(is_settled), part.seam, progress)
+                                 .all_developable;
+    return part.seam;
+}
+
 // What is measured comes near to bounds, and what follows from it would depend on how the model is
-// turned: here the mesh and the skeleton are in the model's own frame.
-PlushSeams segment_in_own_frame(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
-                                const SeamMarks& hard, Progress& progress) {
+// turned: `framed`, and the skeleton, are in the model's own frame. `mesh` is as it is flattened
+// later.
+PlushSeams segment_in_own_frame(const Mesh& framed, const Mesh& mesh, const PlushOptions& options,
+                                Skeleton skeleton, const SeamMarks& hard, Progress& progress) {
     PlushSeams result;
-    const WorkingSurface model{mesh, {}};
     progress.begin_phase("finding symmetry", 0.06);
     std::optional<MirrorPlane> plane;
     if (options.symmetric)
-        plane = find_mirror_plane(mesh, symmetric_enough, progress);
-    const WorkingSurface surface = make_working_surface(mesh, plane, hard, progress);
+        plane = find_mirror_plane(framed, symmetric_enough, progress);
+    const WorkingSurface surface = make_working_surface(framed, plane, hard, progress);
     result.is_symmetric = surface.is_symmetric();
     PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
     SeamMarks seam;
@@ -334,17 +353,11 @@ PlushSeams segment_in_own_frame(const Mesh& mesh, const PlushOptions& options, S
         seam = working.without_remnants(working.decide({}, hard, options.max_area_change), hard,
                                         options.max_area_change);
     else
-        seam = decide_for_model(working, model, options, result, progress);
+        seam = decide_for_model(working, {framed, {}}, options, result, progress);
     progress.begin_phase("measuring patches", 0.05);
-    // Nothing should be left to cut here; noise can make a patch fail that was accepted before.
-    const SeamWeights weights =
-        seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
-                     mean_curvature(mesh), {}, {}, progress);
-    result.all_developable = add_local_seams(model, build_vertex_graph(mesh), weights.weight,
-                                             {options.max_area_change, false}, {}, seam, progress)
-                                 .all_developable;
+    seam = settled_seams(mesh, std::move(seam), options, result, progress);
     measure_patches(mesh, seam, options.max_area_change, result, progress);
-    result.shares = seam_shares(mesh, seam, working.guides(), plane, progress);
+    result.shares = seam_shares(framed, seam, working.guides(), plane, progress);
     return result;
 }
 
@@ -360,7 +373,7 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     const OwnFrame frame = own_frame(mesh);
     for (Vec3& joint : skeleton.joints)
         joint = frame.to_frame(joint);
-    return segment_in_own_frame(in_frame(mesh, frame), options, std::move(skeleton), hard,
+    return segment_in_own_frame(in_frame(mesh, frame), mesh, options, std::move(skeleton), hard,
                                 progress);
 }
 
