@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "devseg/errors.h"
 #include "devseg/flatten/area_balance.h"
 #include "devseg/flatten/lpfb_map.h"
 #include "devseg/flatten/map_tools.h"
@@ -48,11 +50,24 @@ public:
     }
 
 private:
-    // Where the patch has a map, it does not lie on itself once its areas are even.
     std::vector<Index> between_sheets(const std::vector<Index>& patch, bool has_map) const {
         const ChartSurface surface = extract_surface(mesh_, patch, marks_);
+        std::vector<Index> cut;
+        try {
+            const auto pairs = overlaps(surface, has_map);
+            if (!pairs.empty())
+                for (const Index h : separating_path(mesh_, surface, pairs, progress_))
+                    cut.push_back(surface.mesh_half_edge(h));
+        } catch (const NumericalFailure&) { // needles: nothing to learn from
+        }
+        return cut;
+    }
+
+    // Of a nearly isometric map; where the patch has a map, it does not lie on itself once its
+    // areas are even.
+    std::vector<std::pair<Index, Index>> overlaps(const ChartSurface& surface, bool has_map) const {
         const FlatteningProblem problem = make_flattening_problem(mesh_, surface);
-        std::vector<Vec2> uv =
+        const std::vector<Vec2> uv =
             nearly_isometric_map(problem, std::numeric_limits<double>::infinity(), progress_);
         if (uv.empty())
             return {};
@@ -61,11 +76,7 @@ private:
         if (pairs.empty() && !has_map)
             pairs = overlapping_pairs(surface, balance_with_boundary(problem, uv, progress_),
                                       tolerance);
-        std::vector<Index> cut;
-        if (!pairs.empty())
-            for (const Index h : separating_path(mesh_, surface, pairs, progress_))
-                cut.push_back(surface.mesh_half_edge(h));
-        return cut;
+        return pairs;
     }
 
     std::vector<Index> dart(const std::vector<Index>& patch) const {
