@@ -61,6 +61,17 @@ TEST(OwnFrame, MovedMeshesAreTheSameInIt) {
     }
 }
 
+TEST(OwnFrame, NeedlesStayAsTheyAre) {
+    RawMesh raw = shapes::grid(4, 1);
+    for (Vec3& p : raw.points)
+        p.y() *= 1e-15;
+    const Mesh mesh = checks::gated(raw);
+    EXPECT_TRUE(own_frame(mesh).is_identity);
+    EXPECT_EQ(in_frame(mesh, own_frame(mesh)).points, mesh.points);
+    Progress progress;
+    EXPECT_GE(segment_plush_seams(mesh, {}, {}, {}, progress).charts.count, 1);
+}
+
 TEST(OwnFrame, MovedModelsHaveTheSamePlushSeams) {
     const RawMesh raw = shapes::finger(24, 30, 0.3, 2.0);
     Progress progress;

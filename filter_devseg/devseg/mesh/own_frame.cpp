@@ -10,6 +10,8 @@ namespace {
 
 constexpr double golden_ratio = 0.61803398874989485; // multiples of it spread evenly over 0 … 1
 constexpr double unevenness = 0.2;
+constexpr double least_area = 1e-200; // internal units: below, sums of squares are no numbers
+constexpr double area_loss = 0.01;
 constexpr double grid = 0x1p-24; // units of the frame
 
 double weight(const Mesh& mesh, Index f) {
@@ -26,8 +28,8 @@ OwnFrame own_frame(const Mesh& mesh) {
         frame.center += weight(mesh, f) * mesh.face_centers[at(f)];
         total += weight(mesh, f);
     }
-    if (!(total > 0.0))
-        return frame;
+    if (!(total > least_area))
+        return {};
     frame.center /= total;
     frame.unit = std::sqrt(mesh.total_area);
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -46,10 +48,15 @@ OwnFrame own_frame(const Mesh& mesh) {
         frame.axes.row(k) = third < 0.0 ? -axis : axis;
     }
     frame.axes.row(2) = frame.axes.row(0).cross(frame.axes.row(1));
+    frame.is_identity = false;
+    if (!(std::abs(in_frame(mesh, frame).total_area - 1.0) < area_loss))
+        return {};
     return frame;
 }
 
 Vec3 OwnFrame::to_frame(const Vec3& p) const {
+    if (is_identity)
+        return p;
     const Vec3 local = axes * (p - center) / unit;
     return (local / grid).array().round() * grid;
 }

@@ -11,7 +11,8 @@ namespace devseg {
 struct OwnFrame {
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); // rows, right-handed, longest first
     Vec3 center = Vec3::Zero();
-    double unit = 1.0; // internal units of the mesh: the root of its area
+    double unit = 1.0;       // internal units of the mesh: the root of its area
+    bool is_identity = true; // points stay as they are
 
     /// In units of the frame, rounded to a grid of 2⁻²⁴, as fine as single precision: points that
     /// are turned, moved and scaled with the surface are the same to the last bit, but for a
@@ -21,7 +22,8 @@ struct OwnFrame {
 
 /// Each axis points to where the surface reaches farther (the sign of its third moment). Faces
 /// count up to a tenth more or less by their numbers, so that spheres, cubes and mirror images have
-/// one frame, too.
+/// one frame, too. The identity where the grid would take more than a hundredth of the area away:
+/// needles.
 OwnFrame own_frame(const Mesh& mesh);
 
 /// The mesh with all points in the frame.

@@ -188,6 +188,8 @@ private:
 
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              Progress& progress) {
+    if (!(mesh.total_area > 0.0))
+        return std::nullopt;
     PlaneFinder finder(mesh, progress);
     finder.take_samples(few_samples);
     std::vector<MirrorPlane> planes = finder.follow_all(first_guesses(mesh), 2.0 * tolerance);
