@@ -46,6 +46,11 @@ RawMesh moved(RawMesh raw, double scale) {
     return raw;
 }
 
+Mesh framed(const Mesh& mesh) {
+    const Progress progress;
+    return in_frame(mesh, own_frame(mesh, progress), progress);
+}
+
 TEST(OwnFrame, MovedMeshesAreTheSameInIt) {
     RawMesh egg = shapes::sphere(3);
     for (Vec3& p : egg.points)
@@ -53,11 +58,11 @@ TEST(OwnFrame, MovedMeshesAreTheSameInIt) {
     for (const RawMesh& raw : {egg, shapes::sphere(3), shapes::cube(4), shapes::torus(20, 10)}) {
         const Mesh mesh = checks::gated(raw);
         const Mesh other = checks::gated(moved(raw, 0.7));
-        const Mesh framed = in_frame(mesh, own_frame(mesh));
-        EXPECT_EQ(framed.points, in_frame(other, own_frame(other)).points);
-        EXPECT_NEAR(framed.total_area, 1.0, 1e-6);
-        EXPECT_NEAR(framed.unit_length, mesh.unit_length * std::sqrt(mesh.total_area), 1e-9);
-        EXPECT_NEAR(own_frame(mesh).axes.determinant(), 1.0, 1e-12); // no mirror image
+        const Mesh own = framed(mesh);
+        EXPECT_EQ(own.points, framed(other).points);
+        EXPECT_NEAR(own.total_area, 1.0, 1e-6);
+        EXPECT_NEAR(own.unit_length, mesh.unit_length * std::sqrt(mesh.total_area), 1e-9);
+        EXPECT_NEAR(own_frame(mesh, Progress()).axes.determinant(), 1.0, 1e-12); // no mirror image
     }
 }
 
@@ -66,8 +71,8 @@ TEST(OwnFrame, NeedlesStayAsTheyAre) {
     for (Vec3& p : raw.points)
         p.y() *= 1e-15;
     const Mesh mesh = checks::gated(raw);
-    EXPECT_TRUE(own_frame(mesh).is_identity);
-    EXPECT_EQ(in_frame(mesh, own_frame(mesh)).points, mesh.points);
+    EXPECT_TRUE(own_frame(mesh, Progress()).is_identity);
+    EXPECT_EQ(framed(mesh).points, mesh.points);
     Progress progress;
     EXPECT_GE(segment_plush_seams(mesh, {}, {}, {}, progress).charts.count, 1);
 }

@@ -21,7 +21,7 @@ double weight(const Mesh& mesh, Index f) {
 
 } // namespace
 
-OwnFrame own_frame(const Mesh& mesh) {
+OwnFrame own_frame(const Mesh& mesh, const Progress& progress) {
     OwnFrame frame;
     double total = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -32,6 +32,7 @@ OwnFrame own_frame(const Mesh& mesh) {
         return {};
     frame.center /= total;
     frame.unit = std::sqrt(mesh.total_area);
+    progress.check();
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const Vec3 d = mesh.face_centers[at(f)] - frame.center;
@@ -39,6 +40,7 @@ OwnFrame own_frame(const Mesh& mesh) {
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
     for (int k = 0; k < 2; ++k) {
+        progress.check();
         const Vec3 axis = solver.eigenvectors().col(2 - k);
         double third = 0.0;
         for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -49,7 +51,7 @@ OwnFrame own_frame(const Mesh& mesh) {
     }
     frame.axes.row(2) = frame.axes.row(0).cross(frame.axes.row(1));
     frame.is_identity = false;
-    if (!(std::abs(in_frame(mesh, frame).total_area - 1.0) < area_loss))
+    if (!(std::abs(in_frame(mesh, frame, progress).total_area - 1.0) < area_loss))
         return {};
     return frame;
 }
@@ -61,11 +63,13 @@ Vec3 OwnFrame::to_frame(const Vec3& p) const {
     return (local / grid).array().round() * grid;
 }
 
-Mesh in_frame(const Mesh& mesh, const OwnFrame& frame) {
+Mesh in_frame(const Mesh& mesh, const OwnFrame& frame, const Progress& progress) {
+    progress.check();
     Mesh result = mesh;
     result.unit_length *= frame.unit;
     for (Vec3& p : result.points)
         p = frame.to_frame(p);
+    progress.check();
     compute_face_geometry(result);
     return result;
 }

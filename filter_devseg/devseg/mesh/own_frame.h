@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "devseg/mesh/mesh.h"
+#include "devseg/progress.h"
 
 namespace devseg {
 
@@ -24,9 +25,9 @@ struct OwnFrame {
 /// count up to a tenth more or less by their numbers, so that spheres, cubes and mirror images have
 /// one frame, too. The identity where the grid would take more than a hundredth of the area away:
 /// needles.
-OwnFrame own_frame(const Mesh& mesh);
+OwnFrame own_frame(const Mesh& mesh, const Progress& progress);
 
 /// The mesh with all points in the frame.
-Mesh in_frame(const Mesh& mesh, const OwnFrame& frame);
+Mesh in_frame(const Mesh& mesh, const OwnFrame& frame, const Progress& progress);
 
 } // namespace devseg

@@ -67,7 +67,7 @@ public:
                     taken_[at(place(v))] = 1;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             progress.update(static_cast<double>(i) / static_cast<double>(lines.size()));
-            carry(lines[i]);
+            carry(lines[i], progress);
         }
         return std::move(seam_);
     }
@@ -98,7 +98,7 @@ private:
         return place_[at(v)];
     }
 
-    void carry(const std::vector<Index>& line) {
+    void carry(const std::vector<Index>& line, const Progress& progress) {
         const Index start = place(line.front());
         const Index end = place(line.back());
         if (start < 0 || end < 0 || start == end)
@@ -112,7 +112,7 @@ private:
         // Where other seams leave no room the path shares their edges.
         for (const std::vector<std::uint8_t>& allowed :
              {free, strip, std::vector<std::uint8_t>{}}) {
-            const PathTree tree = shortest_paths(graph_, cost_, {start}, allowed);
+            const PathTree tree = shortest_paths(graph_, cost_, {start}, progress, allowed);
             if (!std::isfinite(tree.distance[at(end)]))
                 continue;
             for (const Index h : trace_path(to_, tree, end)) {

@@ -32,8 +32,8 @@ public:
             length_[at(h)] = mesh.edge_length(h);
     }
 
-    Limb find(Index tip) const {
-        const PathTree tree = shortest_paths(graph_, length_, {tip});
+    Limb find(Index tip, const Progress& progress) const {
+        const PathTree tree = shortest_paths(graph_, length_, {tip}, progress);
         std::vector<double> distance(mesh_.faces.size());
         double farthest = 0.0;
         for (std::size_t f = 0; f < distance.size(); ++f) {
@@ -164,7 +164,7 @@ std::vector<Limb> find_limbs(const Mesh& mesh, const VertexGraph& graph,
     std::vector<Limb> limbs;
     for (const Index tip : tips) {
         progress.check();
-        Limb limb = finder.find(tip);
+        Limb limb = finder.find(tip, progress);
         const bool is_new = std::none_of(limbs.begin(), limbs.end(), [&](const Limb& other) {
             return are_much_the_same(mesh, limb, other);
         });

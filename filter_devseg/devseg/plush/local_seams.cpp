@@ -47,7 +47,7 @@ public:
         if (!in_halves)
             split.cuts = isoline(trial);
         if (!in_halves && split.cuts.empty())
-            split.cuts = path_through(trial);
+            split.cuts = path_through(trial, progress);
         if (split.cuts.empty())
             split.cuts = halves(faces);
         return split;
@@ -119,7 +119,7 @@ private:
     }
 
     // From the worst spot to the nearest place on the border, and to the nearest on its far side.
-    std::vector<Index> path_through(const PatchTrial& trial) const {
+    std::vector<Index> path_through(const PatchTrial& trial, const Progress& progress) const {
         const ChartSurface surface = extract_surface(mesh_, trial.face, seam_);
         std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
         for (const Index v : surface.vertex)
@@ -130,7 +130,8 @@ private:
         const Index tip = worst_inner_vertex(trial, on_border);
         if (tip < 0)
             return {};
-        const PathTree tree = shortest_paths(graph_, weight_, {tip}, may_enter, on_border);
+        const PathTree tree =
+            shortest_paths(graph_, weight_, {tip}, progress, may_enter, on_border);
         const std::vector<Index>& loop = surface.loops.front();
         const auto vertex = [&](std::size_t i) {
             return surface.vertex[at(surface.origin(loop[i]))];

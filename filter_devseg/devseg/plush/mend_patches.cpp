@@ -91,7 +91,7 @@ private:
         const Index tip = shrunk_vertex(conformal_change(mesh_, patch, marks_), on_border);
         if (tip < 0)
             return {};
-        const PathTree tree = shortest_paths(graph_, cost_, {tip}, inside, on_border);
+        const PathTree tree = shortest_paths(graph_, cost_, {tip}, progress_, inside, on_border);
         Index end = -1;
         for (std::size_t v = 0; v < on_border.size(); ++v)
             if (on_border[v] != 0 && std::isfinite(tree.distance[v]) &&

@@ -370,11 +370,11 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     if (options.max_extrema < 0)
         refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
     check_rounds(options.max_iterations, options.random_seed);
-    const OwnFrame frame = own_frame(mesh);
+    const OwnFrame frame = own_frame(mesh, progress);
     for (Vec3& joint : skeleton.joints)
         joint = frame.to_frame(joint);
-    return segment_in_own_frame(in_frame(mesh, frame), mesh, options, std::move(skeleton), hard,
-                                progress);
+    return segment_in_own_frame(in_frame(mesh, frame, progress), mesh, options, std::move(skeleton),
+                                hard, progress);
 }
 
 } // namespace devseg

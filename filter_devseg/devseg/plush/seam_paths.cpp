@@ -47,7 +47,7 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
 }
 
 PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
-                        const std::vector<Index>& sources,
+                        const std::vector<Index>& sources, const Progress& progress,
                         const std::vector<std::uint8_t>& may_enter,
                         const std::vector<std::uint8_t>& is_goal) {
     const std::size_t count = graph.begin.size() - 1;
@@ -60,7 +60,9 @@ PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& wei
         tree.distance[at(v)] = 0.0;
         queue.emplace(0.0, v);
     }
+    Heartbeat beat(progress);
     while (!queue.empty()) {
+        beat();
         const auto [distance, v] = queue.top();
         queue.pop();
         if (distance > tree.distance[at(v)] ||
@@ -98,7 +100,7 @@ void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
             cost[at(h)] *= shared;
     for (std::size_t i = 0; i < ends.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(ends.size()));
-        const PathTree tree = shortest_paths(graph, cost, {ends[i]});
+        const PathTree tree = shortest_paths(graph, cost, {ends[i]}, progress);
         for (std::size_t j = i + 1; j < ends.size(); ++j)
             for (const Index h : trace_path(mesh, tree, ends[j])) {
                 if (seam[at(h)] == 0)

@@ -35,7 +35,7 @@ struct PathTree {
 /// From any of the sources. `may_enter` (#V, may be empty) closes vertices; vertices with
 /// `is_goal` (#V, may be empty) are reached but not left.
 PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
-                        const std::vector<Index>& sources,
+                        const std::vector<Index>& sources, const Progress& progress,
                         const std::vector<std::uint8_t>& may_enter = {},
                         const std::vector<std::uint8_t>& is_goal = {});
 

@@ -140,7 +140,7 @@ private:
             return {};
         const std::vector<std::uint8_t> near = corridor(line);
         // Paths end where they reach the plane.
-        const PathTree tree = shortest_paths(graph_, cost_, {start}, near, on_plane_);
+        const PathTree tree = shortest_paths(graph_, cost_, {start}, progress_, near, on_plane_);
         for (std::size_t v = 0; v < near.size() && whole.may_slide; ++v)
             if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[at(end)])
                 end = static_cast<Index>(v);

@@ -55,7 +55,9 @@ private:
         for (Index f = 0; f < mesh_.face_count(); ++f)
             if (distance[at(f)] == 0.0)
                 queue.emplace(0.0, f);
+        Heartbeat beat(progress_);
         while (!queue.empty()) {
+            beat();
             const auto [d, f] = queue.top();
             queue.pop();
             if (d > distance[at(f)])
