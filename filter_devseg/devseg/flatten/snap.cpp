@@ -17,6 +17,8 @@ constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in 
 // moved to another place on the grid nearby, which has places for nearly every area.
 constexpr double kept_area = 0.02;
 constexpr int grid_reach = 8; // units in the last place
+// On the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
+constexpr int boundary_reach = 2;
 
 bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
     const Triangle& t = faces[at(f)];
@@ -78,8 +80,9 @@ public:
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
             double least = std::abs(twice_area(face) - area);
-            for (int x = -grid_reach; x <= grid_reach; ++x)
-                for (int y = -grid_reach; y <= grid_reach; ++y) {
+            const int most = is_inside(v) ? grid_reach : boundary_reach;
+            for (int x = -most; x <= most; ++x)
+                for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
                     uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
                     const double off = std::abs(twice_area(face) - area);
@@ -99,6 +102,19 @@ public:
     }
 
 private:
+    // Whether the faces around the vertex close up.
+    bool is_inside(Index v) const {
+        std::vector<Index> after;
+        std::vector<Index> before;
+        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i) {
+            const Triangle& t = faces_[at(stars_.faces[at(i)])];
+            const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+            after.push_back(t[(k + 1) % 3]);
+            before.push_back(t[(k + 2) % 3]);
+        }
+        return std::is_permutation(after.begin(), after.end(), before.begin());
+    }
+
     int flipped_around(Index v) const {
         int count = 0;
         for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i)
