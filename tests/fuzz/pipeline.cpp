@@ -8,6 +8,7 @@
 #include "devseg/errors.h"
 #include "devseg/filters/filter.h"
 #include "devseg/flatten/flatten.h"
+#include "devseg/flatten/slits.h"
 #include "devseg/flatten/snap.h"
 #include "devseg/metrics/parametrization.h"
 #include "fuzz/bytes.h"
@@ -59,6 +60,8 @@ ChartMap charts_of(const GatedMesh& gate, const HostResult& segmented) {
     }
     return make_chart_map(mesh, labels, seam, true);
 }
+
+constexpr double least_visible = 1e-6; // internal units: models are about 1 long
 
 struct Layout {
     CornerUv uv;
@@ -115,6 +118,10 @@ void run_pipeline(Bytes& bytes) {
     const GatedMesh gate = gate_mesh(host.geometry);
     const Layout layout = lay_in_a_row(gate.mesh, charts_of(gate, segmented), way);
     if (layout.too_thin > 0) // of which users are told: readers cannot see such charts
+        return;
+    // Nor where the sides of a cut are nearer to each other than 32 bits can tell on models that
+    // are thousands of times as long as wide.
+    if (slit_gap * std::sqrt(gate.mesh.total_area) < least_visible)
         return;
     const ParametrizationMeasures measured = measure_parametrization(gate.mesh, layout.uv);
     if (measured.flipped_faces_number != 0)
