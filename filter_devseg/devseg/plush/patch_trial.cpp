@@ -62,8 +62,8 @@ bool lies_flat(const Mesh& mesh, const ChartSurface& surface, const FlatteningPr
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, const PatchLimits& limits, bool details,
                      const Progress& progress) {
-    PatchTrial trial;
     const ChartSurface surface = extract_surface(mesh, faces, seam);
+    PatchTrial trial;
     trial.is_disk = surface.is_disk();
     if (!trial.is_disk)
         return trial;
@@ -95,13 +95,12 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
 
 PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
                             const std::vector<std::uint8_t>& seam) {
-    PatchTrial trial;
     const ChartSurface surface = extract_surface(mesh, faces, seam);
-    trial.is_disk = surface.is_disk();
-    if (!trial.is_disk)
-        return trial;
-    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
-    describe(surface, problem, any_map(problem), trial);
+    PatchTrial trial;
+    if ((trial.is_disk = surface.is_disk())) {
+        const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+        describe(surface, problem, any_map(problem), trial);
+    }
     return trial;
 }
 
