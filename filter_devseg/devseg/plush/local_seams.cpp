@@ -44,9 +44,10 @@ public:
                         split.cuts.push_back(h);
             return split;
         }
-        if (!in_halves)
+        const bool has_map = !trial.face.empty();
+        if (!in_halves && has_map)
             split.cuts = isoline(trial);
-        if (!in_halves && split.cuts.empty())
+        if (!in_halves && has_map && split.cuts.empty())
             split.cuts = path_through(trial, progress);
         if (split.cuts.empty())
             split.cuts = halves(faces);

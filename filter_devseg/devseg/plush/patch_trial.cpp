@@ -28,22 +28,30 @@ constexpr double hopeless_energy = 0.012;
 constexpr double hopeless_overlap = 0.03; // pairs of faces over faces, in such a map
 constexpr double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
+// Nothing where there is no map.
 void describe(const ChartSurface& surface, const FlatteningProblem& problem,
               const std::vector<Vec2>& uv, PatchTrial& trial) {
+    if (uv.empty())
+        return;
     trial.face = surface.face;
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         trial.change.push_back(jacobian(problem, uv, f).determinant() - 1.0);
 }
 
-// A map of a patch that LPFB cannot map, good enough to see where its area changes.
+// A map of a patch that LPFB cannot map, good enough to see where its area changes; empty where
+// needles leave none.
 std::vector<Vec2> any_map(const FlatteningProblem& problem) {
     std::vector<Vec2> uv;
     try {
         uv = flatten_lscm(problem);
     } catch (const NumericalFailure&) { // needles
     }
-    if (uv.empty() || count_flips(problem, uv) > 0)
-        uv = flatten_tutte(problem);
+    try {
+        if (uv.empty() || count_flips(problem, uv) > 0)
+            uv = flatten_tutte(problem);
+    } catch (const NumericalFailure&) {
+        return {};
+    }
     scale_to_area(problem, uv);
     return uv;
 }

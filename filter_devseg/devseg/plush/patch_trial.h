@@ -36,12 +36,14 @@ struct PatchLimits {
 /// The map that 'Charts: Flatten' with LPFB makes of the faces, cut open along the marked edges
 /// (`seam`, 3 #F of the mesh, all edges to other faces marked): accepted if it is a disk, keeps
 /// [Wan08]'s conditions, no face changes its area by more than the limit, and nothing overlaps.
-/// With `details` also the change of each face, for patches that are not accepted too.
+/// With `details` also the change of each face, for patches that are not accepted too; none where
+/// needles leave no map at all.
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, const PatchLimits& limits, bool details,
                      const Progress& progress);
 
-/// How a conformal map of a disk, scaled to its area, changes the areas of its faces.
+/// How a conformal map of a disk, scaled to its area, changes the areas of its faces; no faces
+/// where there is no map.
 PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
                             const std::vector<std::uint8_t>& seam);
 
