@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/errors.h"
 #include "devseg/flatten/contacts.h"
 #include "devseg/flatten/map_tools.h"
 #include "devseg/flatten/overlaps.h"
@@ -47,7 +48,11 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
     options.max_iterations = 30;
     for (int round = 0; round < push_rounds; ++round) {
         penalty.contacts = merge_contacts(penalty.contacts, find_contacts(surface, uv, pairs));
-        uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
+        try {
+            uv = minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
+        } catch (const NumericalFailure&) { // needles: a cut is left
+            return std::nullopt;
+        }
         scale_to_area(problem, uv);
         if (symmetric_dirichlet_energy(problem, uv) > before + push_cost)
             return std::nullopt;
