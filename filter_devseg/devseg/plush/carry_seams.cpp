@@ -19,13 +19,6 @@ constexpr double least_leaning =
     0.1; // of that, where the second surface is no finer than the first
 constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
 
-double mean_edge(const Mesh& mesh) {
-    double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        sum += mesh.edge_length(h);
-    return sum / std::max<Index>(1, mesh.half_edge_count());
-}
-
 double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -43,9 +36,10 @@ public:
             const std::vector<double>& stray)
         : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
           normal_(vertex_normals(from)), on_border_(boundary_vertices(from)),
-          may_border_(boundary_vertices(to)), reach_(reach * mean_edge(from)),
-          leaning_(leaning * mean_edge(to) *
-                   std::clamp(2.0 * (mean_edge(from) / mean_edge(to) - 1.0), least_leaning, 1.0)),
+          may_border_(boundary_vertices(to)), reach_(reach * mean_edge_length(from)),
+          leaning_(leaning * mean_edge_length(to) *
+                   std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
+                              least_leaning, 1.0)),
           seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
         for (Index h = 0; h < to.half_edge_count(); ++h)
             cost_.push_back(cost_of(h, reach_));

@@ -43,6 +43,7 @@ constexpr double nearly_flat = 0.3; // of the bound: what large patches change t
 // Once seams are straight, patches up to this share of the surface are joined along narrower necks.
 constexpr double small_patch = 0.1;
 constexpr double narrow_neck = 0.15;
+constexpr double stray_share = 0.8; // of an edge's cost for mending: goes where seams look natural
 // Of the root of the surface, and of the mean edge: tongues that are narrower go.
 constexpr double thin = 0.03;
 constexpr double least_thin = 2.4;
@@ -98,12 +99,8 @@ public:
         const SeamSetting setting{surface_, hard_,  weights_.weight,
                                   tester,   tester, options_.max_iterations};
         progress_.begin_phase("giving tongues away", 0.04);
-        double edges = 0.0;
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            edges += mesh_.edge_length(h);
         const double width =
-            std::max(thin * std::sqrt(mesh_.total_area),
-                     least_thin * edges / static_cast<double>(mesh_.half_edge_count()));
+            std::max(thin * std::sqrt(mesh_.total_area), least_thin * mean_edge_length(mesh_));
         PatchTester search(surface_, {max_area_change, true});
         const SeamSetting searching{surface_, hard_,  weights_.weight,
                                     search,   search, options_.max_iterations};
@@ -288,7 +285,8 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
     std::vector<double> cost;
     for (Index h = 0; h < model.mesh.half_edge_count(); ++h)
-        cost.push_back(model.mesh.edge_length(h) * (0.2 + 0.8 * on_model.stray()[at(h)]));
+        cost.push_back(model.mesh.edge_length(h) *
+                       (1.0 - stray_share + stray_share * on_model.stray()[at(h)]));
     const bool is_model =
         !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
     double bound = (is_model ? own_margin : margin) * options.max_area_change;

@@ -38,13 +38,6 @@ Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::V
     return solution;
 }
 
-double mean_edge(const Mesh& mesh) {
-    double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        sum += mesh.edge_length(h);
-    return sum / std::max<Index>(1, mesh.half_edge_count());
-}
-
 } // namespace
 
 VertexGraph build_vertex_graph(const Mesh& mesh) {
@@ -84,6 +77,13 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     Eigen::SparseMatrix<double> matrix(mesh.vertex_count(), mesh.vertex_count());
     matrix.setFromTriplets(entries.begin(), entries.end());
     return matrix;
+}
+
+double mean_edge_length(const Mesh& mesh) {
+    double sum = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        sum += mesh.edge_length(h);
+    return sum / std::max<Index>(1, mesh.half_edge_count());
 }
 
 std::vector<double> vertex_areas(const Mesh& mesh) {
@@ -169,7 +169,7 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     }
     integral *= 0.5;
     Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
-    const double radius = smoothing_edges * mean_edge(mesh);
+    const double radius = smoothing_edges * mean_edge_length(mesh);
     matrix *= radius * radius;
     for (Index v = 0; v < mesh.vertex_count(); ++v)
         matrix.coeffRef(v, v) += areas[at(v)];

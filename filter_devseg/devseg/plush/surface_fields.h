@@ -27,6 +27,9 @@ VertexGraph build_vertex_graph(const Mesh& mesh);
 Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh);
 std::vector<double> vertex_areas(const Mesh& mesh);
 
+/// Of all half-edges, internal units.
+double mean_edge_length(const Mesh& mesh);
+
 /// φ with L φ = Kᵀ − K [BGB08], K the angle defects and Kᵀ the total curvature spread by area, with
 /// mean 0: low at tips, high in saddles and between limbs. #V, no unit.
 std::vector<double> conformal_factor(const Mesh& mesh);
