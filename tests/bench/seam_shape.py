@@ -62,8 +62,9 @@ def acute_corners(points: np.ndarray, edges: np.ndarray) -> int:
     for line in seam_lines(edges):
         for path in (line, line[::-1]):
             steps = np.linalg.norm(np.diff(points[path], axis=0), axis=1)
-            far = min(int(np.searchsorted(np.cumsum(steps), reach)) + 1, len(path) - 1)
-            arm = points[path[far]] - points[path[0]]
+            along = np.concatenate([[0.0], np.cumsum(steps)])
+            end = [np.interp(reach, along, points[path][:, c]) for c in range(3)]
+            arm = np.array(end) - points[path[0]]
             arms[path[0]].append(arm / max(float(np.linalg.norm(arm)), 1e-300))
     count = 0
     for directions in arms.values():

@@ -7,11 +7,13 @@
 
 #include "devseg/mesh/own_frame.h"
 #include "devseg/parallel.h"
+#include "devseg/plush/acute_corners.h"
 #include "devseg/plush/carry_seams.h"
 #include "devseg/plush/limbs.h"
 #include "devseg/plush/local_seams.h"
 #include "devseg/plush/open_part.h"
 #include "devseg/plush/patch_trial.h"
+#include "devseg/plush/remnants.h"
 #include "devseg/plush/seam_removal.h"
 #include "devseg/plush/seam_smoothing.h"
 #include "devseg/plush/tongues.h"
@@ -107,12 +109,27 @@ public:
         result_.trials += give_tongues_away(searching, width, seam_, progress_);
         progress_.begin_phase("joining patches", 0.04);
         result_.trials += join_patches(setting, removal, seam_, progress_);
+        progress_.begin_phase("absorbing remnants", 0.01);
+        result_.trials += absorb_remnants(setting, graph_, natural_cost(), {max_area_change, false},
+                                          remnant, seam_, progress_);
+        progress_.begin_phase("blunting corners", 0.02);
+        result_.trials += blunt_acute_corners(setting, seam_, progress_);
         return seam_;
     }
 
     const Mesh& mesh() const { return mesh_; }
     const VertexGraph& graph() const { return graph_; }
     const std::vector<double>& stray() const { return weights_.stray; }
+
+    /// Of half-edges as parts of darts: their lengths, less where seams look natural.
+    std::vector<double> natural_cost() const {
+        std::vector<double> cost;
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            cost.push_back(mesh_.edge_length(h) *
+                           (1.0 - stray_share + stray_share * weights_.stray[at(h)]));
+        return cost;
+    }
+
     const Skeleton& skeleton() const { return skeleton_; }
 
     /// What the seams of this surface follow.
@@ -283,10 +300,7 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
 SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
-    std::vector<double> cost;
-    for (Index h = 0; h < model.mesh.half_edge_count(); ++h)
-        cost.push_back(model.mesh.edge_length(h) *
-                       (1.0 - stray_share + stray_share * on_model.stray()[at(h)]));
+    const std::vector<double> cost = on_model.natural_cost();
     const bool is_model =
         !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
     double bound = (is_model ? own_margin : margin) * options.max_area_change;
