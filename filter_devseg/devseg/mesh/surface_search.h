@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "devseg/mesh/angle_defects.h"
-#include "devseg/mesh/point_grid.h"
+#include "devseg/mesh/nearest_points.h"
 
 namespace devseg {
 
@@ -18,14 +18,14 @@ Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 class SurfaceSearch {
 public:
     explicit SurfaceSearch(const Mesh& mesh)
-        : mesh_(mesh), grid_(mesh.points), leaving_(leaving_half_edges(mesh)),
+        : mesh_(mesh), points_(mesh.points), leaving_(leaving_half_edges(mesh)),
           normal_(vertex_normals(mesh)) {}
 
     /// The vertex nearest to p with a normal near to n for which accept(v) holds; −1 = none.
     template <class Accept>
     Index vertex(const Vec3& p, const Vec3& n, Accept accept) const {
         constexpr double facing = 0.2; // least cosine between the normals
-        return grid_.nearest(p, [&](Index v) {
+        return points_.nearest(p, [&](Index v) {
             return leaving_[at(v)] >= 0 && normal_[at(v)].dot(n) > facing && accept(v);
         });
     }
@@ -50,7 +50,7 @@ public:
 
 private:
     const Mesh& mesh_;
-    PointGrid grid_;
+    NearestPoints points_;
     std::vector<Index> leaving_;
     std::vector<Vec3> normal_;
 };

@@ -70,8 +70,9 @@ private:
         ++tried_;
         progress_.check();
         const std::vector<Index> joined = patches_of(mesh_, marks, {border.front() / 3}).front();
+        open_what_floats(joined, marks);
         const auto cuts = mend_patch(mesh_, graph_, cost_, joined, marks, limits_, progress_);
-        if (!cuts || length(*cuts) >= length(border))
+        if (!cuts || length(*cuts) >= 1.5 * length(border))
             return false;
         for (const Index h : *cuts)
             mark(mesh_, h, 1, marks);
@@ -79,6 +80,32 @@ private:
             return false;
         seam_ = std::move(marks);
         return true;
+    }
+
+    // Darts that ended on the common border, from one side or the other.
+    void open_what_floats(const std::vector<Index>& faces, SeamMarks& marks) const {
+        std::vector<std::uint8_t> inside(mesh_.faces.size(), 0);
+        for (const Index f : faces)
+            inside[at(f)] = 1;
+        std::vector<Index> inner; // half-edges of cuts
+        std::vector<std::uint8_t> is_tied(mesh_.points.size(), 0);
+        for (const Index f : faces)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0 || inside[at(twin / 3)] == 0)
+                    is_tied[at(mesh_.origin(h))] = is_tied[at(mesh_.target(h))] = 1;
+                else if (marks[at(h)] != 0)
+                    inner.push_back(h);
+            }
+        for (bool grows = true; grows;) {
+            grows = false;
+            for (const Index h : inner)
+                if (is_tied[at(mesh_.origin(h))] != 0 && is_tied[at(mesh_.target(h))] == 0)
+                    is_tied[at(mesh_.target(h))] = grows = true;
+        }
+        for (const Index h : inner)
+            if (is_tied[at(mesh_.origin(h))] == 0 && (s_.hard.empty() || s_.hard[at(h)] == 0))
+                mark(mesh_, h, 0, marks);
     }
 
     double length(const std::vector<Index>& half_edges) const {
