@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "devseg/mesh/own_frame.h"
+#include "devseg/plush/acute_corners.h"
 #include "devseg/plush/mend_patches.h"
 #include "devseg/plush/plush_seams.h"
+#include "devseg/plush/remnants.h"
 #include "devseg/plush/seam_curves.h"
 #include "devseg/plush/tongues.h"
 #include "unit/checks.h"
@@ -158,22 +160,32 @@ TEST(MendPatch, BallsAreLeftToOthers) {
     EXPECT_EQ(mended_patches(shapes::hemisphere(48, 24), 0.005), 0U);
 }
 
+// A surface with what seams on it are judged by.
+struct Trials {
+    explicit Trials(const RawMesh& raw) : surface{checks::gated(raw), {}} {}
+
+    const Mesh& mesh() const { return surface.mesh; }
+    double unit() const { return 1.0 / mesh().unit_length; }
+    SeamSetting setting() { return {surface, hard, weight, tester, tester}; }
+
+    WorkingSurface surface;
+    SeamMarks hard;
+    std::vector<double> weight = std::vector<double>(surface.mesh.twin.size(), 1.0);
+    PatchTester tester{surface, {0.15, false}};
+};
+
 TEST(Tongues, GoToThePatchBesideThem) {
     // A plate in two halves; a strip of the left one reaches far into the right one.
-    const WorkingSurface surface{checks::gated(shapes::grid(40, 40)), {}};
-    const Mesh& mesh = surface.mesh;
-    const double unit = 1.0 / mesh.unit_length;
+    Trials plate(shapes::grid(40, 40));
+    const Mesh& mesh = plate.mesh();
+    const double unit = plate.unit();
     SeamMarks seam = seam_around(mesh, [&](const Vec3& c) {
         return c.x() < 0.0 || (c.x() < 0.3 * unit && std::abs(c.y()) < 0.0375 * unit);
     });
-    const SeamMarks hard;
-    const std::vector<double> weight(mesh.twin.size(), 1.0);
-    PatchTester tester(surface, {0.15, true});
     const double before = seam_length(mesh, seam);
     Progress progress;
     progress.begin_phase("tongues", 1.0);
-    EXPECT_GE(
-        give_tongues_away({surface, hard, weight, tester, tester}, 0.12 * unit, seam, progress), 1);
+    EXPECT_GE(give_tongues_away(plate.setting(), 0.12 * unit, seam, progress), 1);
     EXPECT_EQ(find_patches(mesh, seam).count, 2);
     EXPECT_LT(seam_length(mesh, seam), before - 0.3 * unit);
     EXPECT_NEAR(seam_length(mesh, seam), unit, 0.25 * unit);
@@ -182,8 +194,105 @@ TEST(Tongues, GoToThePatchBesideThem) {
         return c.x() < 0.0 || (c.x() < 0.3 * unit && std::abs(c.y()) < 0.2 * unit);
     });
     const SeamMarks wide = seam;
-    give_tongues_away({surface, hard, weight, tester, tester}, 0.12 * unit, seam, progress);
+    give_tongues_away(plate.setting(), 0.12 * unit, seam, progress);
     EXPECT_EQ(seam, wide);
+}
+
+std::size_t count_acute(const Mesh& mesh, const SeamMarks& seam) {
+    return find_acute_corners(mesh, seam, {}, 0.1 / mesh.unit_length, 0.6).size();
+}
+
+// Between the two halves of a plate, a wedge whose tip is at the middle.
+SeamMarks wedge(const Mesh& mesh) {
+    const auto patch = [](const Vec3& c) {
+        return c.x() > 0.0 && std::abs(c.y()) < 0.2 * c.x() + 0.006 ? 2 : c.y() < 0.0 ? 1 : 0;
+    };
+    return seam_around(mesh, patch);
+}
+
+TEST(AcuteCorners, JunctionsSlideUntilTheyAreBlunt) {
+    Trials plate(shapes::grid(120, 120));
+    SeamMarks seam = wedge(plate.mesh());
+    ASSERT_EQ(find_patches(plate.mesh(), seam).count, 3);
+    ASSERT_GE(count_acute(plate.mesh(), seam), 1U);
+    Progress progress;
+    EXPECT_GE(blunt_acute_corners(plate.setting(), seam, progress), 1);
+    EXPECT_EQ(count_acute(plate.mesh(), seam), 0U);
+    EXPECT_EQ(find_patches(plate.mesh(), seam).count, 3);
+    EXPECT_NEAR(seam_length(plate.mesh(), seam), seam_length(plate.mesh(), wedge(plate.mesh())),
+                0.2 * plate.unit());
+}
+
+TEST(AcuteCorners, BordersOfMaterialsStay) {
+    Trials plate(shapes::grid(120, 120));
+    SeamMarks seam = wedge(plate.mesh());
+    plate.hard = seam;
+    Progress progress;
+    EXPECT_EQ(blunt_acute_corners(plate.setting(), seam, progress), 0);
+    EXPECT_EQ(seam, plate.hard);
+}
+
+TEST(AcuteCorners, ShortDartsBesideASeamGo) {
+    Trials plate(shapes::grid(120, 120));
+    const Mesh& mesh = plate.mesh();
+    const SeamMarks halves = seam_around(mesh, [](const Vec3& c) { return c.y() < 0.0; });
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const auto vertex_at = [&](double x, double y) {
+        const auto nearer = [&](const Vec3& a, const Vec3& b) {
+            const Vec3 place = plate.unit() * Vec3(x, y, 0.0);
+            return (a - place).norm() < (b - place).norm();
+        };
+        return static_cast<Index>(std::min_element(mesh.points.begin(), mesh.points.end(), nearer) -
+                                  mesh.points.begin());
+    };
+    const Index root = vertex_at(0.0, 0.0);
+    std::vector<std::uint8_t> may_enter;
+    for (const Vec3& p : mesh.points)
+        may_enter.push_back(p.y() > 1e-9 ? 1 : 0);
+    may_enter[at(root)] = 1;
+    const PathTree tree = shortest_paths(graph, lengths(mesh), {root}, Progress(), may_enter);
+    SeamMarks seam = halves;
+    for (const Index h : trace_path(mesh, tree, vertex_at(0.08, 0.02)))
+        mark(mesh, h, 1, seam);
+    ASSERT_GE(count_acute(mesh, seam), 1U);
+    Progress progress;
+    EXPECT_GE(blunt_acute_corners(plate.setting(), seam, progress), 1);
+    EXPECT_EQ(seam, halves);
+}
+
+TEST(Remnants, GoToTheirNeighbourWithoutTheirDarts) {
+    // The tip of a cone as an island, and darts from both sides that end on its border.
+    Trials cone(shapes::cone(24, 40, 1.0, 3.0));
+    const Mesh& mesh = cone.mesh();
+    const Vec3 apex = *std::max_element(mesh.points.begin(), mesh.points.end(),
+                                        [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
+    const double size = 0.2 * cone.unit();
+    SeamMarks seam = seam_around(mesh, [&](const Vec3& c) { return (c - apex).norm() < size; });
+    const SeamMarks island = seam;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Vec3 a = mesh.points[at(mesh.origin(h))] - apex;
+        const Vec3 b = mesh.points[at(mesh.target(h))] - apex;
+        const bool is_behind = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() < 0.0;
+        const bool is_dart = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() > 0.0 &&
+                             std::max(a.norm(), b.norm()) < 1.5 * size &&
+                             std::min(a.norm(), b.norm()) > 0.5 * size;
+        if (mesh.twin[at(h)] >= 0 &&
+            (is_dart || (is_behind && std::min(a.norm(), b.norm()) > 0.9 * size)))
+            mark(mesh, h, 1, seam);
+    }
+    ASSERT_EQ(find_patches(mesh, seam).count, 2);
+    const double before = seam_length(mesh, seam);
+    Progress progress;
+    EXPECT_GE(absorb_remnants(cone.setting(), build_vertex_graph(mesh), lengths(mesh),
+                              {0.15, false}, 0.02, seam, progress),
+              1);
+    EXPECT_EQ(find_patches(mesh, seam).count, 1);
+    EXPECT_LT(seam_length(mesh, seam), before);
+    // What is larger stays.
+    SeamMarks large = island;
+    absorb_remnants(cone.setting(), build_vertex_graph(mesh), lengths(mesh), {0.15, false}, 1e-4,
+                    large, progress);
+    EXPECT_EQ(large, island);
 }
 
 } // namespace
