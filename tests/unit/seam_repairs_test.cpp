@@ -274,13 +274,15 @@ TEST(Remnants, GoToTheirNeighbourWithoutTheirDarts) {
         const Vec3 b = mesh.points[at(mesh.target(h))] - apex;
         const bool is_behind = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() < 0.0;
         const bool is_dart = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() > 0.0 &&
-                             std::max(a.norm(), b.norm()) < 1.5 * size &&
-                             std::min(a.norm(), b.norm()) > 0.5 * size;
+                             std::max(a.norm(), b.norm()) < 2.5 * size &&
+                             std::min(a.norm(), b.norm()) > 0.3 * size;
         if (mesh.twin[at(h)] >= 0 &&
             (is_dart || (is_behind && std::min(a.norm(), b.norm()) > 0.9 * size)))
             mark(mesh, h, 1, seam);
     }
     ASSERT_EQ(find_patches(mesh, seam).count, 2);
+    const std::vector<Index> degree = seam_degrees(mesh, seam);
+    ASSERT_EQ(std::count(degree.begin(), degree.end(), 1), 2);
     const double before = seam_length(mesh, seam);
     Progress progress;
     EXPECT_GE(absorb_remnants(cone.setting(), build_vertex_graph(mesh), lengths(mesh),
