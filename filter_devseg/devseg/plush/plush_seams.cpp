@@ -49,7 +49,10 @@ constexpr double stray_share = 0.8; // of an edge's cost for mending: goes where
 // Of the root of the surface, and of the mean edge: tongues that are narrower go.
 constexpr double thin = 0.03;
 constexpr double least_thin = 2.4;
-constexpr double remnant = 0.02; // of the surface: patches that are joined on the model, in the end
+// Of the surface: patches that are joined on the model, in the end, and those that get darts for
+// it.
+constexpr double small_remnant = 0.02;
+constexpr double remnant = 0.01;
 
 // Material borders are edges of the model: then seams are decided on the model itself.
 WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<MirrorPlane>& plane,
@@ -96,7 +99,7 @@ public:
         PatchTester tester(surface_, {max_area_change, false});
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
-        removal.most_area = remnant;
+        removal.most_area = small_remnant;
         removal.least_neck = narrow_neck;
         const SeamSetting setting{surface_, hard_,  weights_.weight,
                                   tester,   tester, options_.max_iterations};
