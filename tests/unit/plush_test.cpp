@@ -267,6 +267,21 @@ TEST(PlushSeams, DevelopableSurfaceIsOnePatch) {
     expect_promises(mesh, PlushOptions{}, seams);
 }
 
+TEST(PlushSeams, LargeModelsGetTheSeamsOfSmallerOnes) {
+    const Mesh mesh = checks::gated(shapes::cylinder_tube(400, 80));
+    ASSERT_GT(mesh.face_count(), 60000);
+    const PlushSeams seams = segment(mesh, PlushOptions{});
+    EXPECT_EQ(seams.charts.count, 1);
+    expect_promises(mesh, PlushOptions{}, seams);
+    // A cut from one end to the other, as short as the tube is long.
+    double length = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        length += seams.charts.seam[at(h)] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
+    const Vec3 low = mesh.points.front();
+    const Vec3 high = mesh.points.back();
+    EXPECT_LT(length, 1.2 * std::abs(high.z() - low.z()));
+}
+
 TEST(PlushSeams, MaterialBordersStay) {
     const Mesh mesh = checks::gated(shapes::cylinder_tube(24, 12));
     std::vector<std::uint8_t> hard(mesh.twin.size(), 0);

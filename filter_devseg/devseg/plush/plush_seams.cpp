@@ -33,6 +33,9 @@ constexpr Index plain_faces = 9000;
 // Models without a mirror image up to this size are their own working surface: what is saved
 // would be less than what carrying seams costs.
 constexpr Index small_model = 15000;
+// Larger models get the seams of a surface with fewer faces: trials of large patches take long.
+constexpr Index large_model = 60000;
+constexpr Index fewer_faces = 30000;
 // Of the bound: what is used of it on another surface than the model, on the model before seams
 // are smoothed, and in each round of deciding again.
 constexpr double margin = 0.75;
@@ -331,6 +334,24 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     return on_model.without_remnants(part.seam, {}, options.max_area_change);
 }
 
+// The same; patches of large models that are not developable are left to settled_seams.
+SeamMarks decide(PlushSegmentation& working, const Mesh& mesh, const PlushOptions& options,
+                 PlushSeams& result, Progress& progress) {
+    const WorkingSurface model{mesh, {}};
+    if (mesh.face_count() <= large_model)
+        return decide_for_model(working, model, options, result, progress);
+    const WorkingSurface smaller = plain_working_surface(mesh, fewer_faces, progress);
+    PlushOptions stricter = options;
+    stricter.max_area_change *= own_margin;
+    const SeamMarks seam = decide_for_model(working, smaller, stricter, result, progress);
+    const PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
+    progress.begin_phase("carrying seams", 0.02);
+    SeamMarks carried =
+        carry_seams(smaller.mesh, seam, mesh, on_model.graph(), on_model.stray(), progress);
+    cut_corners(mesh, carried);
+    return carried;
+}
+
 // The seams with which the mesh is flattened. A map that was accepted can fail on a mesh that is
 // the same but for rounding.
 SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& options,
@@ -368,7 +389,7 @@ PlushSeams segment_in_own_frame(const Mesh& framed, const Mesh& mesh, const Plus
         seam = working.without_remnants(working.decide({}, hard, options.max_area_change), hard,
                                         options.max_area_change);
     else
-        seam = decide_for_model(working, {framed, {}}, options, result, progress);
+        seam = decide(working, framed, options, result, progress);
     progress.begin_phase("measuring patches", 0.05);
     seam = settled_seams(mesh, std::move(seam), options, result, progress);
     measure_patches(mesh, seam, options.max_area_change, result, progress);
