@@ -268,18 +268,11 @@ TEST(PlushSeams, DevelopableSurfaceIsOnePatch) {
 }
 
 TEST(PlushSeams, LargeModelsGetTheSeamsOfSmallerOnes) {
-    const Mesh mesh = checks::gated(shapes::cylinder_tube(400, 80));
+    const Mesh mesh = checks::gated(shapes::finger(200, 154, 0.3, 2.0));
     ASSERT_GT(mesh.face_count(), 60000);
     const PlushSeams seams = segment(mesh, PlushOptions{});
-    EXPECT_EQ(seams.charts.count, 1);
     expect_promises(mesh, PlushOptions{}, seams);
-    // A cut from one end to the other, as short as the tube is long.
-    double length = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        length += seams.charts.seam[at(h)] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
-    const Vec3 low = mesh.points.front();
-    const Vec3 high = mesh.points.back();
-    EXPECT_LT(length, 1.2 * std::abs(high.z() - low.z()));
+    EXPECT_LE(seams.charts.count, 4); // where its own trials cut it up there are 22
 }
 
 TEST(PlushSeams, MaterialBordersStay) {
