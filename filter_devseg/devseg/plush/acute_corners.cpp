@@ -148,9 +148,7 @@ private:
         double length = 0.0;
         for (const Index h : line)
             length += length_[at(h)];
-        return length < slides.back() * reach_ &&
-               std::count(line.begin(), line.end(), line.back()) == 1 &&
-               degree_at(mesh_.target(line.back())) == 1;
+        return length < slides.back() * reach_ && degree_at(mesh_.target(line.back())) == 1;
     }
 
     Index degree_at(Index v) const {
