@@ -10,6 +10,8 @@ namespace devseg {
 
 namespace {
 
+constexpr double longest_darts = 1.5; // over the border that goes: an island is worse than a dart
+
 class RemnantJoiner {
 public:
     RemnantJoiner(const SeamSetting& setting, const VertexGraph& graph,
@@ -72,7 +74,7 @@ private:
         const std::vector<Index> joined = patches_of(mesh_, marks, {border.front() / 3}).front();
         open_what_floats(joined, marks);
         const auto cuts = mend_patch(mesh_, graph_, cost_, joined, marks, limits_, progress_);
-        if (!cuts || length(*cuts) >= 1.5 * length(border))
+        if (!cuts || length(*cuts) > longest_darts * length(border))
             return false;
         for (const Index h : *cuts)
             mark(mesh_, h, 1, marks);
