@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "host/meshlab_api.h"
 
 namespace devseg {

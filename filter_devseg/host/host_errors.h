@@ -4,7 +4,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "host/vcg_bridge.h"
 
 namespace devseg {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "host/meshlab_api.h"
 
 namespace devseg {

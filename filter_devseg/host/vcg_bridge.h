@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "host/meshlab_api.h"
 
 namespace devseg {

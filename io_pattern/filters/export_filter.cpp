@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "filters/export_pattern.h"
 #include "writers/file.h"
 

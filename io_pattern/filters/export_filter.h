@@ -1,7 +1,7 @@
 // The filter 'Pattern: Export', declared next to the writers: the core knows no files.
 #pragma once
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 
 namespace devseg {
 

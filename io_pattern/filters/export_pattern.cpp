@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
 #include "sheet/pattern_drawing.h"

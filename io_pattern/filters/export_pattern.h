@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "devseg/mesh/texture.h"
-#include "devseg/progress.h"
+#include "devseg/atlas/texture.h"
+#include "devseg/base/progress.h"
 #include "sheet/export_options.h"
 
 namespace devseg {

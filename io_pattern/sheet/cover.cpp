@@ -11,7 +11,6 @@ namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 const Vec2 a4(210.0, 297.0);
 constexpr double margin = 10.0;    // mm, where no page says otherwise
 constexpr double title_size = 7.0; // mm

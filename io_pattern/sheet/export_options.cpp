@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "writers/number_text.h"
 
 namespace devseg {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "sheet/nesting.h"
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 #include "sheet/page_size.h"
 #include "sheet/sheet_piece.h"
 #include "sheet/texts.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "devseg/filters/chart_colors.h"
+#include "devseg/declare/chart_colors.h"
 
 namespace devseg {
 

@@ -12,7 +12,6 @@ namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 constexpr double cells_across = 320.0; // of a sheet's width
 // Turns that are tried for the least box around a piece, within a quarter.

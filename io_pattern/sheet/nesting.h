@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "devseg/pack/pack.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 #include "sheet/sheet_piece.h"
 
 namespace devseg {

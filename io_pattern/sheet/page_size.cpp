@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "writers/number_text.h"
 
 namespace devseg {

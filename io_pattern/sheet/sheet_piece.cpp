@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/pattern/curves.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"

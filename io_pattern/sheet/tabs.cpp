@@ -9,7 +9,6 @@ namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 // A stretch of a seam may leave its chord by this much: paper bends that far along a tab.
 constexpr double straightness = 0.4; // mm

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "devseg/pattern/pattern.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

@@ -11,7 +11,6 @@ namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 // Font sizes in mm: the largest that fits. Less than the last cannot be read on paper.
 constexpr double name_sizes[] = {8.0, 6.5, 5.0, 4.0, 3.2, 2.5};

@@ -3,7 +3,7 @@
 #include <QSaveFile>
 #include <QString>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 
 namespace devseg {
 

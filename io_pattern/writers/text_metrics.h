@@ -8,7 +8,7 @@
 
 namespace devseg {
 
-constexpr double degrees_per_radian = 180.0 / 3.14159265358979323846;
+constexpr double degrees_per_radian = 180.0 / pi;
 
 /// Width in mm of UTF-8 text at a font size in mm.
 double text_width(const std::string& text, double size);

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "filters/export_filter.h"
 #include "fuzz/bytes.h"
 

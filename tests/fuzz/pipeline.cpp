@@ -4,12 +4,12 @@
 
 #include <Eigen/Geometry>
 
-#include "devseg/cut/disks.h"
-#include "devseg/errors.h"
-#include "devseg/filters/filter.h"
+#include "devseg/atlas/disks.h"
+#include "devseg/base/errors.h"
+#include "devseg/declare/filter.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/flatten/slits.h"
-#include "devseg/flatten/snap.h"
+#include "devseg/flatten/repair/slits.h"
+#include "devseg/flatten/repair/snap.h"
 #include "devseg/metrics/parametrization.h"
 #include "fuzz/bytes.h"
 

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "property/cases.h"
 #include "unit/host_checks.h"
 #include "unit/shapes.h"

@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "filters/export_filter.h"
 #include "unit/checks.h"
 #include "unit/host_checks.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "property/random_mesh.h"
 
 namespace devseg::checks {

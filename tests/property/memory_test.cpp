@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/parallel.h"
+#include "devseg/base/parallel.h"
 #include "property/cases.h"
 #include "unit/host_checks.h"
 #include "unit/shapes.h"

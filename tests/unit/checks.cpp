@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "devseg/cut/disks.h"
+#include "devseg/atlas/disks.h"
 
 namespace devseg::checks {
 

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/errors.h"
-#include "devseg/flatten/rest_shape.h"
-#include "devseg/mesh/charts.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/atlas/charts.h"
 #include "devseg/mesh/input_gate.h"
 
 namespace devseg::checks {

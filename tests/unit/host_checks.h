@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 
 namespace devseg::checks {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "devseg/pattern/pieces.h"
 
 namespace devseg::samples {

@@ -8,7 +8,7 @@ namespace devseg {
 
 namespace {
 
-constexpr double full_angle = 2.0 * 3.14159265358979323846;
+constexpr double full_angle = 2.0 * pi;
 
 } // namespace
 

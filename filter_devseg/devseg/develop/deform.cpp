@@ -6,12 +6,12 @@
 #include <sstream>
 #include <utility>
 
-#include "devseg/cut/border_path.h"
+#include "devseg/atlas/border_path.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/develop/projection.h"
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/mesh/angle_defects.h"
-#include "devseg/segment/slit_closing.h"
+#include "devseg/atlas/slit_closing.h"
 
 namespace devseg {
 
@@ -277,7 +277,7 @@ private:
     std::vector<Index> rows_; // vertices of the projection's rows
     std::size_t all_rows_ = 0;
     double effort_ = 0.0; // rounds; those with a part of the rows count by that part
-    double late_residual_ = std::numeric_limits<double>::infinity(); // at the last late look
+    double late_residual_ = infinite; // at the last late look
     std::vector<Index> leaving_;
     bool focused_ = false;                // whether these are a part of all inner vertices
     std::vector<std::uint8_t> kept_open_; // #V: tips that were closed before

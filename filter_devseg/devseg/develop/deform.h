@@ -13,8 +13,8 @@
 
 #include <vector>
 
-#include "devseg/mesh/charts.h"
-#include "devseg/progress.h"
+#include "devseg/atlas/charts.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

@@ -11,7 +11,7 @@ namespace devseg {
 namespace {
 
 struct Box {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 low = Vec3::Constant(infinite);
     Vec3 high = -low;
 
     void add(const Vec3& p) {

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devseg/cut/disks.h"
-#include "devseg/filters/declare.h"
+#include "devseg/atlas/disks.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/metrics/circle_maps.h"
-#include "devseg/segment/gauss_area.h"
+#include "devseg/metrics/gauss_area.h"
 
 namespace devseg {
 

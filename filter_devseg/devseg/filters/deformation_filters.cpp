@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <string>
 
-#include "devseg/cut/disks.h"
+#include "devseg/atlas/disks.h"
 #include "devseg/develop/deform.h"
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 
 namespace devseg {

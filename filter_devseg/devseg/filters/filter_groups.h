@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 
 namespace devseg {
 

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <string>
 
-#include "devseg/cut/disks.h"
-#include "devseg/errors.h"
-#include "devseg/filters/declare.h"
+#include "devseg/atlas/disks.h"
+#include "devseg/base/errors.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/filters/sheet_layout.h"
 #include "devseg/flatten/flatten.h"

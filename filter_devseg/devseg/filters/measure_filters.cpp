@@ -1,4 +1,4 @@
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/metrics/parametrization.h"
 #include "devseg/metrics/segmentation.h"

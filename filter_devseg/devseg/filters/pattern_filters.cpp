@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/filters/sheet_layout.h"
-#include "devseg/metrics/overlap.h"
+#include "devseg/plane/overlap.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
 #include "devseg/pattern/pieces.h"
@@ -261,8 +261,7 @@ FilterOutput run_optimize(const FilterInput& input, const OptimizeOptions& optio
         uv = std::move(sheet.uv);
     }
     progress.begin_phase("gluing darts", 0.1);
-    const double degree = 3.14159265358979323846 / 180.0;
-    GluedDarts glued = glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degree);
+    GluedDarts glued = glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degrees);
     output.values = {
         {"charts_number", glued.charts.count},
         {"overlap_cuts_number", layout.overlap_cuts},

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/pattern/sewn_preview.h"
 

@@ -3,8 +3,8 @@
 #include <limits>
 #include <string>
 
-#include "devseg/errors.h"
-#include "devseg/flatten/snap.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/repair/snap.h"
 
 namespace devseg {
 

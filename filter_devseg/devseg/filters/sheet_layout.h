@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/pack/pack.h"
 

@@ -2,7 +2,7 @@
 #include <locale>
 #include <sstream>
 
-#include "devseg/filters/declare.h"
+#include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 
 namespace devseg {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/cut/disks.h"
+#include "devseg/atlas/disks.h"
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/reattach.h"
-#include "devseg/metrics/overlap.h"
-#include "devseg/parallel.h"
+#include "devseg/plane/overlap.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "devseg/flatten/flatten.h"
-#include "devseg/flatten/rest_shape.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg {
 

@@ -5,11 +5,11 @@
 #include <functional>
 #include <utility>
 
-#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/one_chart.h"
-#include "devseg/flatten/overlaps.h"
-#include "devseg/flatten/rest_shape.h"
-#include "devseg/flatten/unfold.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/flatten/maps/unfold.h"
 
 namespace devseg {
 

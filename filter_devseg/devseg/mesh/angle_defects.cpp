@@ -3,7 +3,7 @@
 namespace devseg {
 
 std::vector<double> angle_defects(const Mesh& mesh) {
-    std::vector<double> defect(mesh.points.size(), 2.0 * 3.14159265358979323846);
+    std::vector<double> defect(mesh.points.size(), 2.0 * pi);
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         defect[at(mesh.origin(h))] -=
             corner_angle(mesh.points[at(mesh.origin(h))], mesh.points[at(mesh.target(h))],

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/parallel.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "devseg/mesh/mesh.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/mesh/weld.h"
 
 namespace devseg {

@@ -17,12 +17,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace devseg {
+#include "devseg/base/numbers.h"
 
-using Index = std::int32_t;
-using Vec2 = Eigen::Vector2d;
-using Vec3 = Eigen::Vector3d;
-using Triangle = std::array<Index, 3>;
+namespace devseg {
 
 struct Mesh {
     std::vector<Vec3> points;       // #V, in internal units
@@ -37,21 +34,15 @@ struct Mesh {
     Index vertex_count() const { return static_cast<Index>(points.size()); }
     Index face_count() const { return static_cast<Index>(faces.size()); }
     Index half_edge_count() const { return 3 * face_count(); }
-    Index origin(Index h) const { return faces[to_size(h / 3)][to_size(h % 3)]; }
+    Index origin(Index h) const { return faces[at(h / 3)][at(h % 3)]; }
     Index target(Index h) const { return origin(next(h)); }
     double edge_length(Index h) const {
-        return (points[to_size(target(h))] - points[to_size(origin(h))]).norm();
+        return (points[at(target(h))] - points[at(origin(h))]).norm();
     }
 
     static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
     static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
-    static std::size_t to_size(Index i) { return static_cast<std::size_t>(i); }
 };
-
-/// Shorthand for subscripts: Index is signed (−1 = none), the containers' sizes are not.
-inline std::size_t at(Index i) {
-    return static_cast<std::size_t>(i);
-}
 
 /// Fills areas, normals, centres and the total area from points and faces.
 void compute_face_geometry(Mesh& mesh);

@@ -33,7 +33,6 @@ public:
     }
 
 private:
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     template <class Accept>
     struct Search {

@@ -6,9 +6,9 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "devseg/errors.h"
-#include "devseg/flatten/rest_shape.h"
-#include "devseg/parallel.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
 
@@ -25,7 +25,7 @@ Positions circle_positions(const FlatteningProblem& problem) {
         std::accumulate(problem.boundary_edge.begin(), problem.boundary_edge.end(), 0.0);
     const double added = least_edge * given;
     const double length = given + added * static_cast<double>(problem.boundary.size());
-    const double turn = 2.0 * 3.14159265358979323846 / length;
+    const double turn = 2.0 * pi / length;
     Positions positions = Positions::Zero(problem.vertex_count, 2);
     double angle = 0.0;
     for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
@@ -97,7 +97,7 @@ double stretch(const FlatteningProblem& problem, const Positions& positions) {
         // Without area in the plane, the inverse is infinite in one direction and no number in
         // the other.
         sum += std::isfinite(face) ? problem.area[f] * 0.5 * face
-                                   : std::numeric_limits<double>::infinity();
+                                   : infinite;
     }
     return std::sqrt(sum / problem.total_area * (flat_area / problem.total_area));
 }

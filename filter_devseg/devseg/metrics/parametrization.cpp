@@ -6,8 +6,8 @@
 
 #include <Eigen/LU>
 
-#include "devseg/flatten/map_tools.h"
-#include "devseg/metrics/overlap.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/plane/overlap.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg {

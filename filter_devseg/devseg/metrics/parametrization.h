@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/metrics/seams.h"
 
 namespace devseg {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 
 namespace devseg {
 

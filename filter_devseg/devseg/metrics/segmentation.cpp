@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "devseg/segment/conic_proxy.h"
-#include "devseg/segment/gauss_area.h"
+#include "devseg/metrics/conic_proxy.h"
+#include "devseg/metrics/gauss_area.h"
 
 namespace devseg {
 
 namespace {
 
 // [YGZS05, section 4]: the threshold of all its examples.
-constexpr double crease_angle = 45.0 * 3.14159265358979323846 / 180.0;
+constexpr double crease_angle = 45.0 * pi / 180.0;
 
 double share_of_creases(const Mesh& mesh, const std::vector<std::uint8_t>& crease,
                         const std::vector<std::uint8_t>& seam) {

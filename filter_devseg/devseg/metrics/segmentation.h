@@ -5,7 +5,7 @@
 //            Curvature. The Visual Computer 21, 2005. doi:10.1007/s00371-005-0319-x
 #pragma once
 
-#include "devseg/mesh/charts.h"
+#include "devseg/atlas/charts.h"
 
 namespace devseg {
 

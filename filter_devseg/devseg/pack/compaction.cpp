@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "devseg/pack/proximity.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg {
 
@@ -31,10 +32,6 @@ constexpr int patience = 15;                   // rounds without progress
 constexpr double progress_step = 1e-4;         // that counts as progress, as a share
 constexpr std::int64_t most_work = 20'000'000; // bounds and edges to look at
 constexpr std::int64_t edge_work = 10;         // to place one and to find what is near
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // A chart as a rigid body of mass 1.
 struct Body {

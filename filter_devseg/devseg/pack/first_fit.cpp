@@ -9,13 +9,12 @@
 
 #include "devseg/pack/compaction.h"
 #include "devseg/pack/outline_raster.h"
-#include "devseg/parallel.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double cells_of_chart = 40.0; // along the side of a square as large as a mean chart
 constexpr double most_cells = 2048.0;   // along the square's side
 constexpr int orientations = 8;
@@ -222,7 +221,7 @@ Images make_images(const std::vector<Outline>& outlines, double cell, double mar
 
 struct Found {
     std::vector<Placement> placements;
-    Vec2 box = Vec2::Constant(std::numeric_limits<double>::infinity());
+    Vec2 box = Vec2::Constant(infinite);
 };
 
 Found fill(const Images& images, double width, const Progress& progress) {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "devseg/pack/compaction.h"
-#include "devseg/parallel.h"
+#include "devseg/base/parallel.h"
 
 // Sanitizers make the search thirty times as slow: their builds ask for a part of it.
 #ifndef DEVSEG_NESTING_SHARE
@@ -16,7 +16,6 @@ namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 // The coarse grid. Values are the best of those measured on the charts of 22 public meshes.
 constexpr double coarse_cells = 96.0; // along the square's side

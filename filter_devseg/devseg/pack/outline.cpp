@@ -5,13 +5,11 @@
 #include <limits>
 #include <utility>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg {
 
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // Andrew's monotone chain, counterclockwise.
 std::vector<Vec2> convex_hull(std::vector<Vec2> points) {

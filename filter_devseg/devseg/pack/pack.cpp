@@ -5,19 +5,18 @@
 #include <limits>
 #include <string>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/pack/compaction.h"
 #include "devseg/pack/first_fit.h"
 #include "devseg/pack/nest.h"
 #include "devseg/pack/proximity.h"
 #include "devseg/pack/shelves.h"
-#include "devseg/parallel.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
 constexpr double least_use = 0.1;         // what padding alone must leave of it
 constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each

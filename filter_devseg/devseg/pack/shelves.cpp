@@ -18,7 +18,7 @@ struct Boxed {
 };
 
 Boxed lay_down(const Outline& outline, bool allow_rotation) {
-    constexpr double quarter = 1.57079632679489661923;
+    constexpr double quarter = pi / 2.0;
     Boxed boxed;
     double angle = allow_rotation ? best_box_angle(outline) : 0.0;
     for (int attempt = 0; attempt < 2; ++attempt, angle += quarter) {

@@ -1,13 +1,12 @@
 #include <cmath>
 
-#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/pattern/optimize.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 
 double angle_at(const CornerUv& uv, Index h) {
     const Vec2 p = uv[at(Mesh::next(h))] - uv[at(h)];

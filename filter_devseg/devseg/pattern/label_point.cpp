@@ -39,7 +39,7 @@ double crossing_x(const Vec2& a, const Vec2& b, double y) {
 
 // Distance from the outlines, negative outside.
 double signed_distance(const Outlines& outlines, const Vec2& p) {
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = infinite;
     bool inside = false;
     for_each_segment(outlines, [&](const Vec2& a, const Vec2& b) {
         if (crosses(a, b, p.y()) && p.x() < crossing_x(a, b, p.y()))

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "devseg/flatten/map_tools.h"
+#include "devseg/flatten/energy/map_tools.h"
 
 namespace devseg {
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "devseg/errors.h"
-#include "devseg/flatten/lpfb.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/maps/lpfb.h"
 #include "devseg/pattern/layout.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/simplify.h"
@@ -19,7 +19,6 @@ namespace devseg {
 namespace {
 
 constexpr double rounding_depth = 0.01; // mm: crossings that are less deep do not count
-constexpr double pi = 3.14159265358979323846;
 
 // What nobody notices in sewing.
 constexpr double largest_share = 0.002; // of the length
@@ -217,7 +216,7 @@ void push_apart(std::vector<Vec2>& points, std::size_t i, std::size_t j, double 
                                                              {(i + 1) % n, j, (j + 1) % n},
                                                              {j, i, (i + 1) % n},
                                                              {(j + 1) % n, i, (i + 1) % n}}};
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     Vec2 push = Vec2::Zero();
     std::array<std::size_t, 3> best{};
     for (const auto& end : ends) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "devseg/pattern/seams.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg {
 
 namespace {
@@ -28,10 +30,6 @@ MovedRing moved_ring(const PiecePath& path, const PaperMap& place, const CornerU
         ring.moves.push_back(path.points[i] - ring.points.back());
     }
     return ring;
-}
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
 }
 
 // The move at p: that of the outline on it, and a mean of all moves inside.

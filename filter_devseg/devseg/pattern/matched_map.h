@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/pattern/pattern.h"
 
 namespace devseg {

@@ -5,12 +5,12 @@
 #include <functional>
 #include <numeric>
 
-#include "devseg/errors.h"
-#include "devseg/flatten/distortion.h"
-#include "devseg/flatten/map_tools.h"
-#include "devseg/flatten/overlaps.h"
-#include "devseg/metrics/overlap.h"
-#include "devseg/segment/conic_proxy.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/distortion.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/plane/overlap.h"
+#include "devseg/metrics/conic_proxy.h"
 
 namespace devseg {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "devseg/flatten/flatten.h"
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 
 namespace devseg {
 

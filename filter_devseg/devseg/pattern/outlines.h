@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/pattern/pattern.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

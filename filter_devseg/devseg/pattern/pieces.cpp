@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
 #include "devseg/pattern/label_point.h"
@@ -51,7 +51,6 @@ constexpr double fold_tolerance = 1e-3;
 // makers of texture coordinates often do not.
 constexpr double scale_tolerance = 0.01;
 
-constexpr double degree = 3.14159265358979323846 / 180.0;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -323,7 +322,7 @@ std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint
                                    Progress& progress) {
     std::vector<PatternPiece>& pieces = pattern.pieces;
     std::vector<Chain> chains =
-        cut_at_corners(pieces, find_chains(mesh, pieces, cut), options.corner_angle * degree);
+        cut_at_corners(pieces, find_chains(mesh, pieces, cut), options.corner_angle * degrees);
     measure_surface(mesh, pieces, mm, chains);
     if (options.simplify_mm > 0.0)
         simplify_outlines(pieces, chains, options.simplify_mm);
@@ -392,7 +391,7 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& chart
         PatternPiece& piece = pattern.pieces[i];
         set_sizes(piece, options.grain);
         measure_inside(mesh, pattern.corner_place, faces_of(piece), charts.seam, strain,
-                       options.fold_angle * degree, mm, piece);
+                       options.fold_angle * degrees, mm, piece);
         progress.update(0.5 + 0.5 * static_cast<double>(i) / count);
     }
     find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
@@ -432,7 +431,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     number_pieces(pattern.pieces);
     set_seams(pattern, chains);
     set_notches(pattern, options.notch_spacing_mm);
-    mark_corners(pattern.pieces, chains, options.corner_angle * degree);
+    mark_corners(pattern.pieces, chains, options.corner_angle * degrees);
     if (options.curve_mm > 0.0)
         fit_curves(pattern.pieces, chains, options.curve_mm);
     describe_pieces(mesh, uv, split.charts, options, mm, pattern, progress);

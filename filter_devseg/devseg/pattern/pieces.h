@@ -1,9 +1,9 @@
 // Texture coordinates → pattern: the outlines of flattened charts as pieces on paper.
 #pragma once
 
-#include "devseg/mesh/texture.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/pattern/pattern.h"
-#include "devseg/progress.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

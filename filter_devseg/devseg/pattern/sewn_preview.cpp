@@ -6,15 +6,14 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
-#include "devseg/errors.h"
+#include "devseg/base/errors.h"
 #include "devseg/mesh/surface_search.h"
-#include "devseg/segment/option_checks.h"
+#include "devseg/base/option_checks.h"
 
 namespace devseg {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double smoothing = 0.015; // of the diagonal: details below it are forgotten at the start
 constexpr double inertia = 0.02;    // of a spring's stiffness: steps stay small
 constexpr double settled = 2e-5;    // of the diagonal: the mean step at which the cloth is at rest

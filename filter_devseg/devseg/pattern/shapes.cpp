@@ -54,7 +54,7 @@ std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t coun
 
 Vec2 nearest_on(const std::vector<Vec2>& outline, const Vec2& p) {
     Vec2 best = outline.front();
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
         const Vec2 along = outline[i] - outline[j];
         const double length = along.squaredNorm();
@@ -156,7 +156,7 @@ bool same_shape(const PatternPiece& piece, const PatternPiece& model, bool mirro
     const std::vector<Vec2> from = even_points(a.front(), places);
     const std::vector<Vec2> to = even_points(b.front(), places);
     Motion best;
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     for (std::size_t offset = 0; offset < places; ++offset) {
         double error = 0.0;
         const Motion motion = fit_motion(from, to, offset, error);
@@ -206,8 +206,8 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
 
 // The stretch of the line through `p` around p that lies inside the piece.
 std::array<Vec2, 2> chord_through(const PatternPiece& piece, const Vec2& p, const Vec2& along) {
-    double back = -std::numeric_limits<double>::infinity();
-    double ahead = std::numeric_limits<double>::infinity();
+    double back = -infinite;
+    double ahead = infinite;
     const auto side = [&](const Vec2& q) {
         return along.x() * (q - p).y() - along.y() * (q - p).x();
     };

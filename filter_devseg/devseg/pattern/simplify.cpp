@@ -163,7 +163,7 @@ std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces
 
 // Size of the smaller outline that the chain lies on, mm.
 double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
-    double area = std::numeric_limits<double>::infinity();
+    double area = infinite;
     for (std::size_t s = 0; s < at(chain.side_count); ++s) {
         const SeamSide& side = chain.sides[s];
         area = std::min(area, std::abs(pieces[at(side.piece)].path(side.path).area));

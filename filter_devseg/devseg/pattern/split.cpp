@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "devseg/cut/min_cut.h"
+#include "devseg/graph/min_cut.h"
 #include "devseg/pattern/shapes.h"
 
 namespace devseg {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/texture.h"
-#include "devseg/progress.h"
+#include "devseg/atlas/texture.h"
+#include "devseg/base/progress.h"
 
 namespace devseg {
 

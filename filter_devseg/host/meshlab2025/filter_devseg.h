@@ -5,7 +5,7 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
-#include "devseg/filters/filter.h"
+#include "devseg/declare/filter.h"
 
 class DevsegFilterPlugin : public QObject, public FilterPlugin {
     Q_OBJECT

@@ -1,0 +1,21 @@
+// Short paths to the border of a chart, for cuts that open it.
+#pragma once
+
+#include "devseg/atlas/charts.h"
+
+namespace devseg {
+
+/// Factor of an edge's length: 1 on a smooth surface, down to 0.1 on a right-angled crease, where
+/// a cut is not seen and does not cost shape.
+double crease_factor(const Mesh& mesh, Index half_edge);
+
+/// The half-edges of the shortest path within the faces from a vertex to their border or to a cut;
+/// creases count less. Empty where the vertex is on the border, or not among the faces.
+std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
+                                  const std::vector<std::uint8_t>& seam, Index vertex);
+
+/// Marks the half-edges and their twins as cuts.
+void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,
+               std::vector<std::uint8_t>& seam);
+
+} // namespace devseg

@@ -1,0 +1,327 @@
+#include "devseg/atlas/disks.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+#include "devseg/atlas/handle_cutter.h"
+#include "devseg/atlas/join_loops.h"
+
+namespace devseg {
+
+namespace {
+
+
+// Shortest paths along edges to the only boundary loop, or to a root where there is none.
+struct PathForest {
+    std::vector<double> distance; // #v
+    std::vector<Index> toward;    // #v: half-edge from the vertex, one step nearer; −1 at the end
+};
+
+double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
+    return mesh.edge_length(s.mesh_half_edge(h));
+}
+
+// Lowers distances by paths that end at the sources.
+void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
+                 const std::vector<Index>& sources, PathForest& forest, Heartbeat& beat) {
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (const Index v : sources) {
+        forest.distance[at(v)] = 0.0;
+        forest.toward[at(v)] = -1;
+        queue.emplace(0.0, v);
+    }
+    while (!queue.empty()) {
+        beat();
+        const auto [d, v] = queue.top();
+        queue.pop();
+        if (d > forest.distance[at(v)])
+            continue;
+        for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
+            if (s.twin[at(*e)] < 0)
+                continue;
+            const Index w = s.target(*e);
+            const double through = d + edge_length(mesh, s, *e);
+            if (through < forest.distance[at(w)]) {
+                forest.toward[at(w)] = s.twin[at(*e)];
+                forest.distance[at(w)] = through;
+                queue.emplace(through, w);
+            }
+        }
+    }
+}
+
+PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges, Index root,
+                      const Progress& progress) {
+    PathForest forest;
+    forest.distance.assign(s.vertex.size(), infinite);
+    forest.toward.assign(s.vertex.size(), -1);
+    std::vector<Index> sources;
+    if (s.loops.empty())
+        sources.push_back(root);
+    else
+        for (const Index h : s.loops.front())
+            sources.push_back(s.origin(h));
+    Heartbeat beat(progress);
+    relax_paths(mesh, s, edges, sources, forest, beat);
+    return forest;
+}
+
+class Cutter {
+public:
+    Cutter(const Mesh& mesh, const ChartSurface& surface, std::vector<std::uint8_t>& seam,
+           const Progress& progress)
+        : mesh_(mesh), s_(surface), seam_(seam), progress_(progress) {}
+
+    // For charts with several boundary loops. Returns the length of the cuts, as all of these.
+    double join() { return cut(join_loops(mesh_, s_, progress_)); }
+
+    double cut(const std::vector<Index>& half_edges) {
+        for (const Index h : half_edges)
+            cut_edge(h);
+        return length_;
+    }
+
+    void cut_path(const PathForest& forest, Index v) {
+        while (forest.toward[at(v)] >= 0) {
+            cut_edge(forest.toward[at(v)]);
+            v = s_.target(forest.toward[at(v)]);
+        }
+    }
+    double length() const { return length_; }
+
+    static Index farthest(const PathForest& forest) {
+        return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
+                                  forest.distance.begin());
+    }
+
+    // For charts with at most one loop.
+    double cut_handles() {
+        const VertexEdges edges(s_);
+        const PathForest forest = grow_paths(mesh_, s_, edges, 0, progress_);
+        for (const Index h : handle_edges(forest)) {
+            cut_edge(h);
+            cut_path(forest, s_.origin(h));
+            cut_path(forest, s_.target(h));
+        }
+        if (s_.loops.empty()) {
+            if (any_cut_)
+                drop_stem(edges, 0);
+            else
+                cut_sphere(edges, forest);
+        }
+        return length_;
+    }
+
+    // A boundary of two edges encloses nothing in the plane: cut one more edge, to an inner vertex.
+    double lengthen() {
+        std::vector<std::uint8_t> on_boundary(s_.vertex.size(), 0);
+        for (const Index h : s_.loops.front())
+            on_boundary[at(s_.origin(h))] = 1;
+        Index shortest = -1;
+        for (Index h = 0; h < 3 * s_.face_count(); ++h)
+            if (on_boundary[at(s_.origin(h))] != 0 && on_boundary[at(s_.target(h))] == 0 &&
+                (shortest < 0 || edge_length(mesh_, s_, h) < edge_length(mesh_, s_, shortest)))
+                shortest = h;
+        if (shortest >= 0)
+            cut_edge(shortest);
+        return length_;
+    }
+
+private:
+    void cut_edge(Index h) {
+        const Index a = s_.mesh_half_edge(h);
+        const Index b = s_.mesh_half_edge(s_.twin[at(h)]);
+        if (seam_[at(a)] == 0)
+            length_ += mesh_.edge_length(a);
+        seam_[at(a)] = seam_[at(b)] = 1;
+        any_cut_ = true;
+    }
+
+    // The cycles through handles of a closed chart may hang together only by a path from the
+    // root, which cuts nothing apart: take it back.
+    void drop_stem(const VertexEdges& edges, Index v) {
+        while (true) {
+            Index only = -1;
+            int count = 0;
+            for (const Index* e = edges.first(v); e != edges.last(v); ++e)
+                if (seam_[at(s_.mesh_half_edge(*e))] != 0) {
+                    only = *e;
+                    ++count;
+                }
+            if (count != 1)
+                return;
+            length_ -= edge_length(mesh_, s_, only);
+            seam_[at(s_.mesh_half_edge(only))] = 0;
+            seam_[at(s_.mesh_half_edge(s_.twin[at(only)]))] = 0;
+            v = s_.target(only);
+        }
+    }
+
+    // The edges outside the path forest and outside the maximum spanning tree of the dual graph,
+    // [EHP04, section 5]: two for each handle. An edge weighs as much as the cycle that it closes.
+    std::vector<Index> handle_edges(const PathForest& forest) const {
+        struct Dual {
+            double cycle;
+            Index half_edge;
+        };
+        std::vector<Dual> duals;
+        Heartbeat beat(progress_);
+        for (Index h = 0; h < 3 * s_.face_count(); ++h) {
+            beat();
+            const Index opposite = s_.twin[at(h)];
+            if (opposite < h)
+                continue;
+            if (in_forest(forest, h) || in_forest(forest, opposite))
+                continue;
+            duals.push_back({forest.distance[at(s_.origin(h))] + forest.distance[at(s_.target(h))] +
+                                 edge_length(mesh_, s_, h),
+                             h});
+        }
+        std::stable_sort(duals.begin(), duals.end(),
+                         [](const Dual& a, const Dual& b) { return a.cycle > b.cycle; });
+        std::vector<Index> parent(s_.face.size());
+        std::iota(parent.begin(), parent.end(), 0);
+        const auto find = [&](Index f) {
+            while (parent[at(f)] != f)
+                f = parent[at(f)] = parent[at(parent[at(f)])];
+            return f;
+        };
+        std::vector<Index> rest;
+        for (const Dual& dual : duals) {
+            beat();
+            const Index a = find(dual.half_edge / 3);
+            const Index b = find(s_.twin[at(dual.half_edge)] / 3);
+            if (a == b)
+                rest.push_back(dual.half_edge);
+            else
+                parent[at(a)] = b;
+        }
+        return rest;
+    }
+
+    static bool in_forest(const PathForest& forest, Index h, Index origin) {
+        return forest.toward[at(origin)] == h;
+    }
+    bool in_forest(const PathForest& forest, Index h) const {
+        return in_forest(forest, h, s_.origin(h));
+    }
+
+    // No boundary and no handle: a slit between two vertices that are far from each other.
+    void cut_sphere(const VertexEdges& edges, const PathForest& forest) {
+        const Index far = farthest(forest);
+        const PathForest from_far = grow_paths(mesh_, s_, edges, far, progress_);
+        cut_path(from_far, farthest(from_far));
+    }
+
+    const Mesh& mesh_;
+    const ChartSurface& s_;
+    std::vector<std::uint8_t>& seam_;
+    const Progress& progress_;
+    double length_ = 0.0;
+    bool any_cut_ = false;
+};
+
+// Cuts of one way to open a chart.
+struct Opening {
+    std::vector<std::uint8_t> seam; // 3 #F
+    ChartSurface surface;           // may have a boundary of two edges
+    double length = 0.0;
+};
+
+void join(const Mesh& mesh, Opening& opening, const Progress& progress) {
+    if (opening.surface.loops.size() < 2)
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).join();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [EHP04], once all loops are joined.
+void open_joined_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
+    join(mesh, opening, progress);
+    if (opening.surface.is_disk())
+        return;
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).cut_handles();
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+// [YGZS05]: a loop through each handle, then the loops are joined.
+void open_handles_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
+    opening.length += Cutter(mesh, opening.surface, opening.seam, progress)
+                          .cut(cut_handles(mesh, opening.surface, progress));
+    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+    join(mesh, opening, progress);
+}
+
+bool has_handles(const ChartSurface& surface) {
+    return surface.euler_characteristic() + static_cast<Index>(surface.loops.size()) < 2;
+}
+
+} // namespace
+
+ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
+                         const Progress& progress, double* cut_length) {
+    double length = 0.0;
+    if (!surface.is_disk()) {
+        Opening best{seam, surface, 0.0};
+        open_joined_first(mesh, best, progress);
+        if (has_handles(surface)) {
+            Opening other{seam, surface, 0.0};
+            open_handles_first(mesh, other, progress);
+            if (other.surface.is_disk() && other.length < best.length)
+                best = std::move(other);
+        }
+        seam = std::move(best.seam);
+        surface = std::move(best.surface);
+        length += best.length;
+    }
+    if (surface.loops.front().size() < 3) {
+        length += Cutter(mesh, surface, seam, progress).lengthen();
+        surface = extract_surface(mesh, std::move(surface.face), seam);
+    }
+    if (cut_length != nullptr)
+        *cut_length += length;
+    return surface;
+}
+
+Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
+                  const TipRule& rule, double& cut_length, const Progress& progress) {
+    const VertexEdges edges(disk);
+    const PathForest forest = grow_paths(mesh, disk, edges, 0, progress);
+    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule, progress);
+    Cutter cutter(mesh, disk, seam, progress);
+    for (const Index tip : tips)
+        cutter.cut_path(forest, tip);
+    cut_length += cutter.length();
+    return static_cast<Index>(tips.size());
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
+                             Progress& progress) {
+    DiskCuts result;
+    result.charts = charts;
+    progress.check();
+    std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
+    for (std::size_t c = 0; c < surfaces.size(); ++c) {
+        progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
+        const double before = result.cut_length;
+        if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
+            surfaces[c] = cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, progress,
+                                      &result.cut_length);
+        if (options.cut_tips)
+            result.cut_tips += cut_to_tips(mesh, surfaces[c], result.charts.seam, options.tip_rule,
+                                           result.cut_length, progress);
+        result.cut_charts += result.cut_length > before ? 1 : 0;
+    }
+    return result;
+}
+
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
+    return cut_charts_to_disks(mesh, charts, {false, {}}, progress);
+}
+
+} // namespace devseg

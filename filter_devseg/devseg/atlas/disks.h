@@ -1,0 +1,50 @@
+// Cutting charts open until each is a topological disk.
+//
+// References
+//   [EHP04] J. Erickson, S. Har-Peled: Optimally Cutting a Surface into a Disk. Discrete &
+//           Computational Geometry 31, 2004. doi:10.1007/s00454-003-2948-z (the greedy tree–cotree
+//           construction, once all boundary loops are joined)
+//   [YGZS05] H. Yamauchi, S. Gumhold, R. Zayer, H.-P. Seidel: Mesh Segmentation Driven by Gaussian
+//           Curvature. The Visual Computer 21, 2005, section 3.6. doi:10.1007/s00371-005-0319-x
+//           (loops through handles first, then joining; tips)
+#pragma once
+
+#include "devseg/atlas/tips.h"
+#include "devseg/atlas/charts.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+struct DiskOptions {
+    bool cut_tips = true; // cut up to tips as well
+    TipRule tip_rule;     // what counts as a tip
+};
+
+struct DiskCuts {
+    ChartMap charts;         // the same charts with more seams
+    Index cut_charts = 0;    // charts that had to be cut
+    Index cut_tips = 0;      // cuts up to tips
+    double cut_length = 0.0; // total length of the new cuts, internal units
+};
+
+/// Cuts one chart: marks the new seams in `seam` (3 #F) and returns the chart as a disk.
+/// `cut_length`, if given, is increased by the length of the new cuts.
+ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
+                         const Progress& progress, double* cut_length = nullptr);
+
+/// Cuts a chart that is a disk open along shortest paths from its boundary to its tips (see
+/// tips.h). Marks the seams, adds their length to `cut_length` and returns their number.
+Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
+                  const TipRule& rule, double& cut_length, const Progress& progress);
+
+/// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop):
+/// shortest paths between boundary loops, short cycles through handles, and for a sphere a path
+/// between two far vertices. For charts with handles the shorter one of two constructions is
+/// taken: loops joined first and handles by [EHP04], or handles first by [YGZS05].
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
+                             Progress& progress);
+
+/// The same without cuts to tips: charts that are disks are left as they are.
+DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress);
+
+} // namespace devseg

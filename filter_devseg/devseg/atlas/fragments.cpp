@@ -1,0 +1,87 @@
+#include "devseg/atlas/fragments.h"
+
+#include <map>
+#include <set>
+#include <utility>
+
+#include "devseg/atlas/charts.h"
+
+namespace devseg {
+
+namespace {
+
+// The pieces as a graph: their areas, and the lengths of their common borders.
+struct PieceGraph {
+    std::vector<double> area;
+    std::vector<std::map<Index, double>> border;
+};
+
+PieceGraph build_graph(const Mesh& mesh, const ChartMap& pieces) {
+    PieceGraph graph;
+    graph.area.assign(at(pieces.count), 0.0);
+    graph.border.resize(at(pieces.count));
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        graph.area[at(pieces.chart[at(f)])] += mesh.face_areas[at(f)];
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin < 0)
+            continue;
+        const Index a = pieces.chart[at(h / 3)];
+        const Index b = pieces.chart[at(twin / 3)];
+        if (a != b)
+            graph.border[at(a)][b] += mesh.edge_length(h);
+    }
+    return graph;
+}
+
+Index longest_neighbour(const PieceGraph& graph, Index piece) {
+    Index best = -1;
+    double longest = -1.0;
+    for (const auto& [other, length] : graph.border[at(piece)])
+        if (length > longest) {
+            longest = length;
+            best = other;
+        }
+    return best;
+}
+
+} // namespace
+
+std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& label,
+                                    double share) {
+    ChartMap pieces = make_chart_map(mesh, label, {}, false);
+    PieceGraph graph = build_graph(mesh, pieces);
+    const double limit = share * mesh.total_area;
+    std::set<std::pair<double, Index>> small; // by area, then by number
+    for (Index p = 0; p < pieces.count; ++p)
+        if (graph.area[at(p)] < limit)
+            small.emplace(graph.area[at(p)], p);
+    std::vector<Index> owner(at(pieces.count));
+    for (Index p = 0; p < pieces.count; ++p)
+        owner[at(p)] = p;
+    while (!small.empty()) {
+        const Index piece = small.begin()->second;
+        small.erase(small.begin());
+        const Index into = longest_neighbour(graph, piece);
+        if (into < 0)
+            continue;
+        owner[at(piece)] = into;
+        const bool was_small = small.erase({graph.area[at(into)], into}) > 0;
+        graph.area[at(into)] += graph.area[at(piece)];
+        if (was_small && graph.area[at(into)] < limit)
+            small.emplace(graph.area[at(into)], into);
+        for (const auto& [other, length] : graph.border[at(piece)]) {
+            graph.border[at(other)].erase(piece);
+            if (other != into) {
+                graph.border[at(other)][into] += length;
+                graph.border[at(into)][other] += length;
+            }
+        }
+    }
+    for (Index& p : pieces.chart)
+        while (owner[at(p)] != p)
+            p = owner[at(p)];
+    return make_chart_map(mesh, pieces.chart, {}, false).chart;
+}
+
+} // namespace devseg

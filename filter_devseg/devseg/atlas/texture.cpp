@@ -1,0 +1,65 @@
+#include "devseg/atlas/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace devseg {
+
+namespace {
+// Writers of texture coordinates round to 6 digits: smaller differences are no seams.
+constexpr double seam_tolerance = 1e-6;
+// Charts whose boundary lengths agree to this share were flattened to keep them. Coordinates of 32
+// bit change the length of a short boundary by about a tenth of that.
+constexpr double same_length = 1e-4;
+} // namespace
+
+ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv) {
+    Vec2 low = uv.front();
+    Vec2 high = uv.front();
+    for (const Vec2& p : uv) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double tolerance = seam_tolerance * (high - low).norm();
+    const auto differ = [&](Index a, Index b) {
+        return !((uv[at(a)] - uv[at(b)]).cwiseAbs().maxCoeff() <= tolerance);
+    };
+    std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index opposite = mesh.twin[at(h)];
+        if (opposite >= 0)
+            seam[at(h)] =
+                differ(h, Mesh::next(opposite)) || differ(Mesh::next(h), opposite) ? 1 : 0;
+    }
+    return make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, true);
+}
+
+double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv) {
+    std::vector<double> surface(at(charts.count), 0.0); // boundary lengths of the charts
+    std::vector<double> plane(at(charts.count), 0.0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (mesh.twin[at(h)] < 0 || charts.seam[at(h)] != 0) {
+            surface[at(charts.chart[at(h / 3)])] += mesh.edge_length(h);
+            plane[at(charts.chart[at(h / 3)])] += (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
+        }
+    double least = infinite;
+    double most = 0.0;
+    double all_surface = 0.0;
+    double all_plane = 0.0;
+    for (std::size_t c = 0; c < surface.size(); ++c) {
+        const double scale = plane[c] > 0.0 ? surface[c] / plane[c] : 0.0;
+        least = std::min(least, scale);
+        most = std::max(most, scale);
+        all_surface += surface[c];
+        all_plane += plane[c];
+    }
+    if (least > 0.0 && most <= (1.0 + same_length) * least)
+        return all_surface / all_plane;
+    double area = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        area += std::abs(uv_area(uv, f));
+    return area > 0.0 ? std::sqrt(mesh.total_area / area) : 0.0;
+}
+
+} // namespace devseg

@@ -1,0 +1,74 @@
+#include "devseg/declare/chart_colors.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace devseg {
+
+namespace {
+
+// Light enough for black text, far apart from one another also for colour-blind eyes; after
+// P. Tol: Colour Schemes (SRON, 2021), the muted and light schemes.
+constexpr std::array<Color, 14> palette{{{{119, 170, 221}},
+                                         {{238, 136, 102}},
+                                         {{68, 187, 153}},
+                                         {{238, 221, 136}},
+                                         {{255, 170, 187}},
+                                         {{153, 221, 255}},
+                                         {{187, 204, 51}},
+                                         {{170, 68, 153}},
+                                         {{221, 204, 119}},
+                                         {{136, 204, 238}},
+                                         {{204, 102, 119}},
+                                         {{170, 170, 0}},
+                                         {{153, 153, 221}},
+                                         {{221, 221, 221}}}};
+
+} // namespace
+
+std::vector<Color> chart_colors(const Mesh& mesh, const ChartMap& charts) {
+    const std::size_t count = at(charts.count);
+    std::vector<std::set<Index>> neighbours(count);
+    std::vector<double> area(count, 0.0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index c = charts.chart[at(h / 3)];
+        area[at(c)] += mesh.face_areas[at(h / 3)] / 3.0;
+        if (mesh.twin[at(h)] >= 0 && charts.chart[at(mesh.twin[at(h)] / 3)] != c)
+            neighbours[at(c)].insert(charts.chart[at(mesh.twin[at(h)] / 3)]);
+    }
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return area[a] > area[b]; });
+    std::vector<std::size_t> chosen(count, palette.size());
+    std::array<std::size_t, palette.size()> uses{};
+    for (const std::size_t c : order) {
+        std::array<bool, palette.size()> taken{};
+        for (const Index n : neighbours[c])
+            if (chosen[at(n)] < palette.size())
+                taken[chosen[at(n)]] = true;
+        // The least used free colour keeps charts apart that only look like neighbours.
+        std::size_t best = palette.size();
+        for (std::size_t i = 0; i < palette.size(); ++i)
+            if (!taken[i] && (best == palette.size() || uses[i] < uses[best]))
+                best = i;
+        chosen[c] = best < palette.size() ? best : 0;
+        ++uses[chosen[c]];
+    }
+    std::vector<Color> colors;
+    for (const std::size_t i : chosen)
+        colors.push_back(palette[i]);
+    return colors;
+}
+
+std::vector<Color> face_chart_colors(const Mesh& mesh, const ChartMap& charts) {
+    const std::vector<Color> colors = chart_colors(mesh, charts);
+    std::vector<Color> result;
+    result.reserve(charts.chart.size());
+    for (const Index c : charts.chart)
+        result.push_back(colors[at(c)]);
+    return result;
+}
+
+} // namespace devseg

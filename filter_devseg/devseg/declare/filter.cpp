@@ -1,0 +1,198 @@
+#include "devseg/declare/filter.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "devseg/base/worker.h"
+#include "devseg/base/errors.h"
+#include "devseg/mesh/weld.h"
+
+namespace devseg {
+
+namespace {
+
+std::optional<ChartMap> read_charts(const HostMesh& host, const GatedMesh& gated) {
+    if (host.chart_id.empty() && host.seam_edges.empty())
+        return std::nullopt;
+    const Mesh& mesh = gated.mesh;
+    std::vector<Index> labels(mesh.faces.size(), 0);
+    std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const std::size_t source = at(gated.source_face[at(f)]);
+        if (!host.chart_id.empty()) {
+            const double id = host.chart_id[source];
+            if (!(std::abs(id) <= std::numeric_limits<Index>::max()))
+                throw InvalidMesh("expected whole numbers in the face attribute chart_id, found " +
+                                      std::to_string(id) + " at face " + std::to_string(source) +
+                                      "; run a segmentation filter again",
+                                  {static_cast<Index>(source)});
+            labels[at(f)] = static_cast<Index>(std::lround(id));
+        }
+        if (host.seam_edges.empty())
+            continue;
+        const double bits = host.seam_edges[source];
+        const int mask = bits >= 0.0 && bits <= 7.0 ? static_cast<int>(std::lround(bits)) : 0;
+        for (Index e = 0; e < 3; ++e)
+            seam[at(3 * f + e)] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
+    }
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (mesh.twin[at(h)] >= 0 && seam[at(h)] != 0)
+            seam[at(mesh.twin[at(h)])] = 1;
+    return make_chart_map(mesh, labels, seam, true);
+}
+
+// Hosts keep texture coordinates in 32 bits, where larger numbers are infinite.
+bool is_coordinate(const Vec2& p) {
+    return (p.array().abs() <= std::numeric_limits<float>::max()).all();
+}
+
+// Broken texture coordinates only matter to filters that need them.
+std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bool needed) {
+    if (host.wedge_uv.empty())
+        return std::nullopt;
+    CornerUv uv(3 * gated.mesh.faces.size());
+    for (Index f = 0; f < gated.mesh.face_count(); ++f)
+        for (Index k = 0; k < 3; ++k) {
+            const std::size_t source = at(gated.source_face[at(f)]);
+            const Vec2& p = host.wedge_uv[source][at(gated.source_corner(f, k))];
+            if (!is_coordinate(p) && !needed)
+                return std::nullopt;
+            if (!is_coordinate(p))
+                throw InvalidMesh("expected finite texture coordinates, found a NaN or a number "
+                                  "beyond 32 bits at face " +
+                                      std::to_string(source) + "; run 'Charts: Flatten' again",
+                                  {static_cast<Index>(source)});
+            uv[at(3 * f + k)] = p;
+        }
+    return uv;
+}
+
+// What the host has for each of its faces, for those behind the gate.
+template <class Value>
+std::vector<Value> of_faces(const std::vector<Value>& source, const GatedMesh& gated) {
+    std::vector<Value> values;
+    if (!source.empty())
+        for (const Index f : gated.source_face)
+            values.push_back(source[at(f)]);
+    return values;
+}
+
+// Bits of the source face's cut edges; edges that the gate had to cut are seams as well.
+int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
+    int bits = 0;
+    for (Index e = 0; e < 3; ++e)
+        if (charts.seam[at(3 * f + e)] != 0 || gated.cut[at(3 * f + e)] != 0)
+            bits |= 1 << gated.source_edge(f, e);
+    return bits;
+}
+
+// Where the vertices have moved to; those that no face uses stay.
+std::vector<Vec3> moved_points(const HostMesh& host, const GatedMesh& gated,
+                               const std::vector<Vec3>& points) {
+    std::vector<Vec3> moved = host.geometry.points;
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const std::size_t source = at(gated.source_vertex[v]);
+        moved[source] = host.geometry.points[source] +
+                        gated.mesh.unit_length * (points[v] - gated.mesh.points[v]);
+    }
+    return moved;
+}
+
+HostResult map_back(const HostMesh& host, const GatedMesh& gated, FilterOutput output) {
+    HostResult result;
+    if (output.points)
+        result.points = moved_points(host, gated, *output.points);
+    result.values = std::move(output.values);
+    result.layer = std::move(output.layer);
+    result.notes = gated.notes;
+    result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
+    for (std::size_t source = 0; source < gated.stand_in.size(); ++source) {
+        const Index f = gated.stand_in[source];
+        const bool own = gated.source_face[at(f)] == static_cast<Index>(source);
+        if (output.charts) {
+            result.chart_id.push_back(output.charts->chart[at(f)]);
+            result.seam_edges.push_back(own ? seam_bits(gated, *output.charts, f) : 0);
+        }
+        if (output.face_quality)
+            result.face_quality.push_back((*output.face_quality)[at(f)]);
+        if (output.face_color)
+            result.face_color.push_back((*output.face_color)[at(f)]);
+        if (output.uv) {
+            std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+            for (Index k = 0; k < 3; ++k) // faces that were left out collapse onto one corner
+                corners[at(gated.source_corner(f, k))] = (*output.uv)[at(3 * f + (own ? k : 0))];
+            result.wedge_uv.push_back(corners);
+        }
+    }
+    return result;
+}
+
+// The mesh with borders joined that lie on each other.
+GatedMesh gate_joined(const RawMesh& raw, const Progress& progress) {
+    for (const Triangle& t : raw.faces)
+        for (const Index v : t)
+            if (v < 0 || at(v) >= raw.points.size())
+                return gate_mesh(raw, progress); // which says what is wrong
+    const WeldedMesh welded = weld_borders(raw);
+    GatedMesh gated = gate_mesh(welded.mesh, progress);
+    if (welded.edges > 0)
+        gated.notes.push_back(std::to_string(welded.edges) +
+                              (welded.edges == 1 ? " border edge lies" : " border edges lie") +
+                              " on another one: read as a seam "
+                              "('Merge Close Vertices' joins them for good)");
+    return gated;
+}
+
+// A run owns all that it reads and writes: a cancelled one is left behind.
+struct FilterRun {
+    FilterDeclaration filter;
+    HostMesh host;
+    ParameterValues values;
+    HostResult result;
+    std::function<void()> save;
+
+    void operator()(Progress& progress);
+};
+
+void FilterRun::operator()(Progress& progress) {
+    progress.begin_phase("reading the mesh", 0.0);
+    const GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
+                                                 : gate_mesh(host.geometry, progress);
+    progress.check();
+    const FilterInput input{gated.mesh,
+                            read_charts(host, gated),
+                            read_uv(host, gated, filter.needs_uv),
+                            gated.source_face,
+                            gated.source_vertex,
+                            of_faces(host.face_selected, gated),
+                            of_faces(host.face_color, gated),
+                            gated.center};
+    try {
+        FilterOutput output = filter.run(input, values, progress);
+        save = std::move(output.save);
+        result = map_back(host, gated, std::move(output));
+    } catch (InvalidMesh& error) {
+        for (Index& f : error.faces)
+            f = gated.source_face[at(f)];
+        throw;
+    }
+}
+
+} // namespace
+
+HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
+                      Progress& progress) {
+    if (filter.needs_uv && host.wedge_uv.empty())
+        throw InvalidMesh("expected wedge texture coordinates, found none; run 'Charts: Flatten' "
+                          "or load a mesh that has them");
+    const auto run =
+        std::make_shared<FilterRun>(FilterRun{filter, std::move(host), values, {}, {}});
+    run_on_worker([run](Progress& own) { (*run)(own); }, progress);
+    if (run->save)
+        run->save();
+    return std::move(run->result);
+}
+
+} // namespace devseg

@@ -1,0 +1,134 @@
+// A filter, declared once: both host adapters, the documentation and the tests read these records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "devseg/declare/layer_mesh.h"
+#include "devseg/atlas/charts.h"
+#include "devseg/atlas/texture.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+enum class ParameterKind { boolean, integer, real, choice, text, output_file };
+// A choice is the int of its position, texts and file names are UTF-8.
+using ParameterValue = std::variant<bool, int, double, std::string>;
+using ParameterValues = std::map<std::string, ParameterValue>;
+
+struct Parameter {
+    std::string name;  // snake_case: the word in C++, scripts and Python
+    std::string label; // for dialogs
+    std::string help;  // meaning, unit, usual values
+    ParameterKind kind = ParameterKind::real;
+    ParameterValue default_value;
+    double minimum = 0.0; // integers and reals
+    double maximum = 0.0;
+    std::vector<std::string> choices;
+};
+
+/// A number that a filter returns. Text and unsigned sizes do not survive the hosts.
+using ResultValue = std::variant<bool, int, double, std::vector<double>>;
+using ResultValues = std::vector<std::pair<std::string, ResultValue>>;
+struct ResultField {
+    std::string name;
+    std::string meaning; // with unit
+};
+
+/// The menu of the host that the filter belongs to.
+enum class FilterCategory { remeshing, texture, color, measure };
+
+/// What a filter leaves on the mesh, as bits.
+enum Writes : unsigned {
+    writes_nothing = 0,
+    writes_charts = 1, // chart_id, seam_edges and the face-edge selection
+    writes_quality = 2,
+    writes_color = 4,
+    writes_uv = 8,
+    writes_layer = 16, // a new mesh; the host's own stays as it is
+    writes_points = 32 // coordinates of the vertices
+};
+
+/// What filters see of a mesh: checked, in internal units.
+struct FilterInput {
+    const Mesh& mesh;
+    std::optional<ChartMap> charts;          // from chart_id and seam_edges, if the mesh has them
+    std::optional<CornerUv> uv;              // wedge texture coordinates, if the mesh has them
+    const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
+    const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
+                                             // a vertex that the gate had to split share one
+    std::vector<std::uint8_t> selected;      // #F: 1 for selected faces; empty if none is
+    std::vector<Color> color;                // #F; empty if the mesh has no face colours
+    Vec3 center = Vec3::Zero();              // model coordinates of the mesh's origin
+
+    /// Between internal units and model coordinates.
+    Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
+    Vec3 from_model(const Vec3& p) const { return (p - center) / mesh.unit_length; }
+};
+
+struct FilterOutput {
+    std::optional<ChartMap> charts;
+    std::optional<std::vector<double>> face_quality; // #F
+    std::optional<std::vector<Color>> face_color;    // #F
+    std::optional<CornerUv> uv;
+    std::optional<std::vector<Vec3>> points; // #V, internal units
+    std::optional<LayerMesh> layer;
+    ResultValues values;
+    std::vector<std::string> notes; // for the user, one sentence each
+    std::function<void()> save;     // writes the filter's file, if it has one: comes last, because
+                                    // what fails leaves none
+};
+
+struct FilterDeclaration {
+    std::string menu_name;
+    std::string python_name;
+    std::string help; // HTML
+    FilterCategory category = FilterCategory::remeshing;
+    unsigned writes = writes_nothing;
+    bool needs_uv = false;
+    bool joins_borders = false; // reads border edges that lie on each other as one edge
+    std::vector<Parameter> parameters;
+    std::vector<ResultField> results;
+    std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
+};
+
+/// All filters of the suite, in the order of the menus.
+const std::vector<FilterDeclaration>& filter_table();
+
+/// A mesh as a host has it; per-face data is for all faces or empty.
+struct HostMesh {
+    RawMesh geometry;
+    std::vector<double> chart_id;
+    std::vector<double> seam_edges; // bits 1, 2, 4
+    std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::vector<std::uint8_t> face_selected; // 1 for selected faces
+    std::vector<Color> face_color;
+};
+
+/// The results for the host's own elements. Vectors are for all faces or empty.
+struct HostResult {
+    std::vector<int> chart_id;
+    std::vector<int> seam_edges;
+    std::vector<double> face_quality;
+    std::vector<Color> face_color;
+    std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::vector<Vec3> points; // for all vertices or empty
+    std::optional<LayerMesh> layer;
+    ResultValues values;
+    std::vector<std::string> notes;
+};
+
+/// Gates the mesh, runs the filter and maps its output back. Parameters that are not given take
+/// their defaults. Throws the errors of errors.h; the host's mesh has not been touched then, and no
+/// file has changed. Whatever the filter is busy with, Cancelled comes at once (base/worker.h).
+HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
+                      Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,28 @@
+#include "devseg/declare/segmentation_output.h"
+
+#include <utility>
+
+#include "devseg/declare/chart_colors.h"
+#include "devseg/metrics/segmentation.h"
+
+namespace devseg {
+
+FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
+                                 std::vector<double> face_quality, const DiskOptions& options,
+                                 Progress& progress) {
+    progress.begin_phase("cutting charts to disks", 0.1);
+    DiskCuts cuts = cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false),
+                                        options, progress);
+    FilterOutput output;
+    output.values = {
+        {"charts_number", cuts.charts.count},
+        {"cut_length", cuts.cut_length * input.mesh.unit_length},
+        {"seam_length", seam_length(input.mesh, cuts.charts)},
+    };
+    output.face_color = face_chart_colors(input.mesh, cuts.charts);
+    output.face_quality = std::move(face_quality);
+    output.charts = std::move(cuts.charts);
+    return output;
+}
+
+} // namespace devseg

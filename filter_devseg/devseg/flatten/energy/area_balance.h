@@ -1,0 +1,37 @@
+// Evening out the areas of a map with a fixed boundary: the inside of LPFB maps for sewing.
+// A high power of each face's area change is minimised beside the symmetric Dirichlet energy, by
+// projected Newton steps.
+#pragma once
+
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+/// How much the areas of faces change: in the plane over on the surface.
+struct AreaChange {
+    double least = 1.0; // smallest ratio of a face
+    double most = 1.0;  // largest ratio of a face
+    double whole = 1.0; // of the whole map
+
+    /// The largest relative change of a face, as it is and with the map scaled to its area on the
+    /// surface, whichever of the two areas it is compared with then.
+    double largest() const;
+};
+
+AreaChange measure_area_change(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// Moves inner vertices until no face changes its area by more than a tenth, or it does not get
+/// better. The boundary stays, and no face is flipped. Does nothing where all faces keep their
+/// areas within a tenth already.
+void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
+                   const Progress& progress);
+
+/// The same for all vertices: the boundary may bend, and its edges keep their lengths but for a
+/// small rest. `uv` has no flips.
+std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
+                                        const std::vector<Vec2>& uv, const Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,44 @@
+// Small things that all flattening methods need: Jacobians, orientation, scale.
+#pragma once
+
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+
+namespace devseg {
+
+/// Jacobian of the map from the rest triangle of face f to the plane.
+inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                                std::size_t f) {
+    const Triangle& t = problem.faces[f];
+    Eigen::Matrix2d edges;
+    edges.col(0) = uv[at(t[1])] - uv[at(t[0])];
+    edges.col(1) = uv[at(t[2])] - uv[at(t[0])];
+    return edges * problem.inverse[f];
+}
+
+/// Twice the signed area of a triangle in the plane. The sign is exact: when rounding could have
+/// changed it, the determinant is evaluated again without rounding.
+double orientation(const Vec2& a, const Vec2& b, const Vec2& c);
+
+/// Faces that are not positively oriented in the plane.
+Index count_flips(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// Area of the map: the sum of the signed areas of its faces.
+double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// Γ, the larger singular value of the map from the plane to the surface on face f; not for faces
+/// without area in the plane.
+double face_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv, std::size_t f);
+
+/// Mean of (Γ² + γ²) / 2 over the area, square root taken, with Γ and γ the singular values of the
+/// map from the plane to the surface, as it is (not scaled); infinite where a face is flipped.
+double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// Least area of a face in the plane over its area on the surface; negative where one is flipped.
+double least_area_ratio(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// Scales the map so that its area is the chart's own, and moves its centre to the origin.
+void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv);
+
+} // namespace devseg

@@ -1,0 +1,244 @@
+#include "devseg/flatten/energy/multilevel.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/LU>
+
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/vertex_relaxation.h"
+#include "devseg/mesh/coarsen.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr Index coarse_faces = 2000;
+constexpr double growth = 2.0; // vertices at the end of a level over those at its beginning
+constexpr int sweeps = 3;      // over all vertices at the end of a level
+constexpr int bisections = 60; // towards the middle of the kernel, which is valid
+constexpr std::size_t check_every = 4096; // vertices between two looks at the progress
+constexpr double least_room = 1e-2;       // area of a new face over that of its rest triangle
+
+constexpr double full_turn = 2.0 * pi;
+
+class Refinement {
+public:
+    Refinement(const Mesh& mesh, CoarseSurface coarse, std::vector<Vec2> uv)
+        : mesh_(mesh), s_(std::move(coarse)), uv_(std::move(uv)), leaving_(mesh.points.size(), -1) {
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            if (s_.alive[at(h / 3)] != 0)
+                leaving_[at(origin(h))] = h;
+        for (Index v = 0; v < mesh.vertex_count(); ++v)
+            if (leaving_[at(v)] >= 0)
+                alive_.push_back(v);
+    }
+
+    bool done() const { return s_.collapses.empty(); }
+
+    // Puts vertices back until their number has grown by the factor `growth`.
+    void refine(const Progress& progress) {
+        const std::size_t wanted =
+            static_cast<std::size_t>(growth * static_cast<double>(alive_.size()));
+        while (!done() && alive_.size() < wanted) {
+            insert(undo_collapse(s_));
+            if (alive_.size() % check_every == 0)
+                progress.check();
+        }
+        // A level that would add little more is joined to this one.
+        if (s_.collapses.size() < alive_.size() / 4)
+            while (!done())
+                insert(undo_collapse(s_));
+    }
+
+    // `rest` has the areas and cotangents of the full chart; other levels measure their own faces.
+    void relax(const FlatteningProblem* rest, const Progress& progress) {
+        measure(rest);
+        for (int i = 0; i < sweeps; ++i)
+            for (std::size_t k = 0; k < alive_.size(); ++k) {
+                if (k % check_every == 0)
+                    progress.check();
+                gather(alive_[k]);
+                uv_[at(alive_[k])] = relax_vertex(star_, uv_[at(alive_[k])]);
+            }
+    }
+
+    std::vector<Vec2> take() { return std::move(uv_); }
+
+private:
+    Index origin(Index h) const { return s_.faces[at(h / 3)][at(h % 3)]; }
+
+    void insert(Index h) {
+        const Index v = origin(h);
+        alive_.push_back(v);
+        visit_star(s_.twin, h, [&](Index k) {
+            for (const Index side : {k, Mesh::next(k), Mesh::previous(k)})
+                leaving_[at(origin(side))] = side;
+        });
+        leaving_[at(v)] = h;
+        gather_shape(v);
+        Vec2 p = affine_guess();
+        if (!has_room(p)) {
+            const Vec2 middle = kernel_point(star_, p);
+            int i = 0;
+            for (; i < bisections && !std::isfinite(star_.energy(p)); ++i)
+                p = 0.5 * (p + middle);
+            if (!(star_.energy(p) <= star_.energy(middle)))
+                p = middle;
+            if (!std::isfinite(star_.energy(p)))
+                throw NumericalFailure("expected room for a vertex of a refined map, found none");
+        }
+        uv_[at(v)] = p;
+    }
+
+    bool has_room(const Vec2& p) const {
+        for (const VertexStar::Face& f : star_.faces) {
+            const Vec2 a = f.from - p;
+            const Vec2 b = f.to - p;
+            if (!(a.x() * b.y() - a.y() * b.x() > 2.0 * least_room * f.area))
+                return false;
+        }
+        return true;
+    }
+
+    // The star with rest shapes from the faces as they are now, and its corners laid out in the
+    // plane around the vertex: lengths kept, angles scaled to a full turn if the star is closed.
+    void gather_shape(Index v) {
+        star_.faces.clear();
+        ring_.clear();
+        double turn = 0.0;
+        Index first = leaving_[at(v)];
+        while (s_.twin[at(first)] >= 0) { // to the end of an open star, or once around
+            first = Mesh::next(s_.twin[at(first)]);
+            if (first == leaving_[at(v)])
+                break;
+        }
+        const Vec3& p = mesh_.points[at(v)];
+        Index k = first;
+        bool closed = false;
+        while (true) {
+            const Index a = origin(Mesh::next(k));
+            const Index b = origin(Mesh::previous(k));
+            const Vec3 ea = mesh_.points[at(a)] - p;
+            const Vec3 eb = mesh_.points[at(b)] - p;
+            ring_.push_back({turn, ea.norm(), uv_[at(a)]});
+            turn += std::atan2(ea.cross(eb).norm(), ea.dot(eb));
+            VertexStar::Face face;
+            face.from = uv_[at(a)];
+            face.to = uv_[at(b)];
+            set_rest(face, p, mesh_.points[at(a)], mesh_.points[at(b)]);
+            star_.faces.push_back(face);
+            const Index next = s_.twin[at(Mesh::previous(k))];
+            if (next < 0) {
+                ring_.push_back({turn, eb.norm(), uv_[at(b)]});
+                break;
+            }
+            k = next;
+            if (k == first) {
+                closed = true;
+                break;
+            }
+        }
+        if (closed && turn > 0.0)
+            for (Spoke& spoke : ring_)
+                spoke.angle *= full_turn / turn;
+    }
+
+    static void set_rest(VertexStar::Face& face, const Vec3& p, const Vec3& a, const Vec3& b) {
+        const double lengths[] = {(a - p).norm(), (b - a).norm(), (p - b).norm()};
+        const RestTriangle rest = make_rest_triangle({lengths[0], lengths[1], lengths[2]}, 0.0);
+        face.area = rest.area;
+        face.cot_apex = rest.cotangent[1];
+        face.cot_from = rest.cotangent[2];
+        face.cot_to = rest.cotangent[0];
+    }
+
+    // Where the affine map that fits the ring best takes the vertex.
+    Vec2 affine_guess() const {
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        Eigen::Matrix<double, 3, 2> rhs = Eigen::Matrix<double, 3, 2>::Zero();
+        Vec2 mean = Vec2::Zero();
+        for (const Spoke& spoke : ring_) {
+            const Vec3 row(spoke.length * std::cos(spoke.angle),
+                           spoke.length * std::sin(spoke.angle), 1.0);
+            normal += row * row.transpose();
+            rhs += row * spoke.uv.transpose();
+            mean += spoke.uv / static_cast<double>(ring_.size());
+        }
+        const double determinant = normal.determinant();
+        const double scale = normal(0, 0) * normal(1, 1) * normal(2, 2);
+        if (!(determinant > 1e-6 * scale))
+            return mean;
+        return (normal.inverse() * rhs).row(2).transpose();
+    }
+
+    void measure(const FlatteningProblem* rest) {
+        if (rest != nullptr) {
+            area_ = rest->area;
+            cotangent_ = rest->cotangent;
+            return;
+        }
+        area_.resize(s_.faces.size());
+        cotangent_.resize(s_.faces.size());
+        for (std::size_t f = 0; f < s_.faces.size(); ++f) {
+            if (s_.alive[f] == 0)
+                continue;
+            std::array<double, 3> length{};
+            for (std::size_t k = 0; k < 3; ++k)
+                length[k] =
+                    (mesh_.points[at(s_.faces[f][(k + 1) % 3])] - mesh_.points[at(s_.faces[f][k])])
+                        .norm();
+            const RestTriangle triangle = make_rest_triangle(length, 0.0);
+            area_[f] = triangle.area;
+            cotangent_[f] = triangle.cotangent;
+        }
+    }
+
+    void gather(Index v) {
+        gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[at(v)], star_);
+    }
+
+    struct Spoke {
+        double angle;
+        double length;
+        Vec2 uv;
+    };
+
+    const Mesh& mesh_; // of the chart alone
+    CoarseSurface s_;
+    std::vector<Vec2> uv_;
+    std::vector<Index> leaving_; // #v: a half-edge that leaves the vertex, −1 while it is removed
+    std::vector<Index> alive_;
+    std::vector<double> area_;
+    std::vector<std::array<double, 3>> cotangent_;
+    VertexStar star_;
+    std::vector<Spoke> ring_;
+};
+
+} // namespace
+
+std::vector<Vec2> flatten_multilevel(
+    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Progress& progress) {
+    const Mesh local = mesh_of(mesh, surface);
+    CoarseSurface coarse = coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
+    const CoarseMesh small = extract_coarse_mesh(local, coarse);
+    std::vector<Index> all(small.mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0);
+    const ChartSurface disk = extract_surface(small.mesh, std::move(all),
+                                              std::vector<std::uint8_t>(small.mesh.twin.size(), 0));
+    const std::vector<Vec2> found = solve(make_flattening_problem(small.mesh, disk), disk);
+    std::vector<Vec2> uv(local.points.size(), Vec2::Zero());
+    for (Index v = 0; v < disk.vertex_count(); ++v)
+        uv[at(small.vertex[at(disk.vertex[at(v)])])] = found[at(v)];
+
+    Refinement refinement(local, std::move(coarse), std::move(uv));
+    while (!refinement.done()) {
+        refinement.refine(progress);
+        refinement.relax(refinement.done() ? &problem : nullptr, progress);
+    }
+    return refinement.take();
+}
+
+} // namespace devseg

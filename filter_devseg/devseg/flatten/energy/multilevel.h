@@ -1,0 +1,28 @@
+// Isometric maps of large charts: solved on a coarse version, then refined vertex by vertex.
+//
+// References
+//   K. Hormann, G. Greiner, S. Campagna: Hierarchical Parametrization of Triangulated Surfaces.
+//   Vision, Modeling and Visualization 1999.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+/// Charts with fewer faces are flattened at once.
+constexpr Index multilevel_threshold = 6000;
+
+/// Finds a map of a coarse version of the chart with `solve`, puts the removed vertices back one
+/// by one into the kernels of their neighbourhoods, which never flips a face, and relaxes all
+/// vertices after each doubling of their number. uv is #v of `surface`. Throws what `solve` throws,
+/// and NumericalFailure where rounding left no valid place for a vertex.
+std::vector<Vec2> flatten_multilevel(
+    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,118 @@
+// References
+//   [LZXGG08] L. Liu, L. Zhang, Y. Xu, C. Gotsman, S. J. Gortler: A Local/Global Approach to Mesh
+//             Parameterization. Computer Graphics Forum 27(5), 2008.
+//             doi:10.1111/j.1467-8659.2008.01290.x
+#include "devseg/flatten/maps/arap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/SparseCholesky>
+
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/map_tools.h"
+
+namespace devseg {
+
+namespace {
+
+// The rotation (cos, sin) nearest to a Jacobian, mirrored ones included: the signed singular value
+// decomposition in closed form.
+Vec2 nearest_rotation(const Eigen::Matrix2d& j) {
+    const Vec2 turn(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
+    const double length = turn.norm();
+    return length > 0.0 ? Vec2(turn / length) : Vec2(1.0, 0.0);
+}
+
+// The cotangent Laplacian with vertex 0 held at its place, factorized once.
+class GlobalStep {
+public:
+    explicit GlobalStep(const FlatteningProblem& problem) : problem_(problem) {
+        std::vector<Eigen::Triplet<double>> entries;
+        entries.reserve(9 * problem.faces.size());
+        const auto add = [&](Index i, Index j, double w) {
+            if (i > 0 && j > 0)
+                entries.emplace_back(std::max(i, j) - 1, std::min(i, j) - 1, w);
+        };
+        for (std::size_t f = 0; f < problem.faces.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Index i = problem.faces[f][k];
+                const Index j = problem.faces[f][(k + 1) % 3];
+                add(i, i, problem.cotangent[f][k]);
+                add(j, j, problem.cotangent[f][k]);
+                add(i, j, -problem.cotangent[f][k]);
+            }
+        Eigen::SparseMatrix<double> matrix(problem.vertex_count - 1, problem.vertex_count - 1);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        solver_.compute(matrix);
+        if (solver_.info() != Eigen::Success)
+            throw NumericalFailure("expected a positive definite Laplacian, found a singular one");
+    }
+
+    // [LZXGG08, equation 6]: every edge of a face wants to be the rest edge, turned.
+    std::vector<Vec2> operator()(const std::vector<Vec2>& uv) const {
+        Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(problem_.vertex_count, 2);
+        for (std::size_t f = 0; f < problem_.faces.size(); ++f) {
+            const Vec2 turn = nearest_rotation(jacobian(problem_, uv, f));
+            Eigen::Matrix2d rotation;
+            rotation << turn.x(), -turn.y(), turn.y(), turn.x();
+            const Eigen::Matrix2d wanted = rotation * problem_.edges[f];
+            const std::array<Vec2, 3> edge = {wanted.col(0), wanted.col(1) - wanted.col(0),
+                                              -wanted.col(1)};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec2 force = problem_.cotangent[f][k] * edge[k];
+                rhs.row(problem_.faces[f][k]) -= force.transpose();
+                rhs.row(problem_.faces[f][(k + 1) % 3]) += force.transpose();
+            }
+        }
+        const Eigen::MatrixX2d solution = solver_.solve(rhs.bottomRows(problem_.vertex_count - 1));
+        if (!solution.allFinite())
+            throw NumericalFailure("expected a finite map, found one that is not");
+        std::vector<Vec2> next(uv.size(), Vec2::Zero());
+        for (Index v = 1; v < problem_.vertex_count; ++v)
+            next[at(v)] = solution.row(v - 1).transpose();
+        return next;
+    }
+
+private:
+    const FlatteningProblem& problem_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
+};
+
+} // namespace
+
+double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d j = jacobian(problem, uv, f);
+        const Vec2 turn = nearest_rotation(j);
+        Eigen::Matrix2d rotation;
+        rotation << turn.x(), -turn.y(), turn.y(), turn.x();
+        sum += problem.area[f] * (j - rotation).squaredNorm();
+    }
+    return sum / problem.total_area;
+}
+
+ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec2>& start,
+                         const ArapOptions& options, const Progress& progress) {
+    const GlobalStep global(problem);
+    ArapResult result;
+    result.uv = start;
+    result.energy = arap_energy(problem, start);
+    while (result.rounds < options.max_rounds && !result.converged) {
+        progress.check();
+        std::vector<Vec2> next = global(result.uv);
+        const double energy = arap_energy(problem, next);
+        result.converged = result.energy - energy <= options.relative_tolerance * result.energy;
+        if (!(energy < result.energy))
+            break; // at the limit of rounding
+        result.uv = std::move(next);
+        result.energy = energy;
+        ++result.rounds;
+    }
+    result.flips = count_flips(problem, result.uv);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,32 @@
+// As-rigid-as-possible flattening: from a given map towards the nearest isometry of every face.
+#pragma once
+
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+struct ArapOptions {
+    int max_rounds = 100;             // local and global steps at most
+    double relative_tolerance = 1e-4; // stop when a round gains less than this share of the energy
+};
+
+struct ArapResult {
+    std::vector<Vec2> uv; // #v
+    double energy = 0.0; // Σ A ((σ₁ − 1)² + (σ₂ − 1)²) / Σ A [LZXGG08, equation 4]; 0 for isometry
+    int rounds = 0;
+    bool converged = false;
+    Index flips = 0; // rounds may turn faces over, and turn them back
+};
+
+/// Minimises the as-rigid-as-possible energy from `start` (#v) by local and global steps; no round
+/// raises it. Throws NumericalFailure when the linear system cannot be solved, Cancelled.
+ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec2>& start,
+                         const ArapOptions& options, const Progress& progress);
+
+/// The energy of any map.
+double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+} // namespace devseg

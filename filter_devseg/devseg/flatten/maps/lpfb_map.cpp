@@ -1,0 +1,157 @@
+#include "devseg/flatten/maps/lpfb_map.h"
+
+#include <cmath>
+#include <utility>
+
+#include "devseg/base/errors.h"
+#include "devseg/flatten/maps/arap.h"
+#include "devseg/flatten/energy/area_balance.h"
+#include "devseg/flatten/maps/lscm.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/flatten/maps/seam_lengths.h"
+#include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/maps/tutte.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double most_stretch = 2.0;
+// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
+constexpr double harmonic_is_enough = 1.02;
+constexpr int isometric_steps = 12; // a start: a few are enough
+
+double polygon_area(const std::vector<Vec2>& points) {
+    double twice = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec2& p = points[i];
+        const Vec2& q = points[i + 1 < points.size() ? i + 1 : 0];
+        twice += p.x() * q.y() - p.y() * q.x();
+    }
+    return 0.5 * twice;
+}
+
+bool keeps_area(const FlatteningProblem& problem, double area) {
+    return std::abs(area / problem.total_area - 1.0) <= lpfb_area_change;
+}
+
+// The map, if it keeps the conditions.
+std::optional<LpfbMap> keeping(const ChartSurface& surface, std::optional<LpfbMap> map,
+                               double tolerance) {
+    if (map &&
+        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
+        map.reset();
+    return map;
+}
+
+// The map with angles near to the targets, if it keeps the conditions.
+std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSurface& surface,
+                                const std::vector<double>& targets, double tolerance,
+                                const Progress& progress) {
+    const LpfbOptions options;
+    const ClosedBoundary boundary =
+        close_boundary(problem.boundary_edge, targets, options, progress);
+    if (!keeps_area(problem, polygon_area(boundary.points)))
+        return std::nullopt;
+    return keeping(
+        surface, settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress),
+        tolerance);
+}
+
+double overlapping_share(const ChartSurface& surface, const std::vector<Vec2>& uv,
+                         double tolerance) {
+    return static_cast<double>(overlapping_pairs(surface, uv, tolerance).size()) /
+           static_cast<double>(surface.face.size());
+}
+
+std::optional<LpfbMap> smaller_change(std::optional<LpfbMap> a, std::optional<LpfbMap> b) {
+    return !a || (b && b->area_change < a->area_change) ? std::move(b) : std::move(a);
+}
+
+// The map with the boundary's lengths nearest to a given one, if it keeps the conditions.
+std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartSurface& surface,
+                                  const std::vector<Vec2>& start, double tolerance,
+                                  const Progress& progress) {
+    auto uv = restore_seam_lengths(problem, start, progress);
+    if (!uv || !keeps_area(problem, map_area(problem, *uv)))
+        return std::nullopt;
+    LpfbResult lpfb;
+    lpfb.flips = count_flips(problem, *uv);
+    lpfb.uv = std::move(*uv);
+    return keeping(surface, settle_lpfb(problem, std::move(lpfb), progress), tolerance);
+}
+
+} // namespace
+
+std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
+                                       const Progress& progress) {
+    std::vector<Vec2> start = flatten_lscm(problem);
+    if (count_flips(problem, start) > 0)
+        start = flatten_tutte(problem);
+    if (count_flips(problem, start) > 0)
+        return {};
+    scale_to_area(problem, start);
+    ArapOptions options;
+    options.max_rounds = isometric_steps;
+    ArapResult map = minimise_arap(problem, start, options, progress);
+    if (map.energy > give_up_energy || map.flips > 0)
+        return {};
+    return map.uv;
+}
+
+std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
+                                   const Progress& progress) {
+    if (lpfb.flips > 0)
+        return std::nullopt;
+    LpfbMap map;
+    map.uv = std::move(lpfb.uv);
+    if (symmetric_dirichlet_energy(problem, map.uv) > harmonic_is_enough) {
+        SymmetricDirichletOptions options;
+        options.fixed.assign(map.uv.size(), 0);
+        for (const Index v : problem.boundary)
+            options.fixed[at(v)] = 1;
+        map.uv = minimise_symmetric_dirichlet(problem, map.uv, options, progress).uv;
+    }
+    balance_areas(problem, map.uv, progress);
+    map.area_change = measure_area_change(problem, map.uv).largest();
+    map.l2_stretch = l2_stretch(problem, map.uv);
+    return map;
+}
+
+std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
+                                  double tolerance, const SewingMapOptions& options,
+                                  const Progress& progress) {
+    std::optional<LpfbMap> best;
+    try {
+        best = map_near(problem, surface, boundary_angles(problem), tolerance, progress);
+    } catch (const NumericalFailure&) { // the other angles may have a solution
+    }
+    const auto is_enough = [&](const std::optional<LpfbMap>& map) {
+        return map && map->area_change <= options.enough &&
+               map->l2_stretch <= options.enough_stretch;
+    };
+    if (is_enough(best))
+        return best;
+    try {
+        const std::vector<Vec2> isometric =
+            nearly_isometric_map(problem, options.give_up_energy, progress);
+        const bool checks_overlap = options.give_up_overlap.has_value();
+        if (checks_overlap && !isometric.empty() &&
+            overlapping_share(surface, isometric, tolerance) > *options.give_up_overlap)
+            return best;
+        if (!isometric.empty()) {
+            const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
+            if (checks_overlap && overlapping_share(surface, even, tolerance) > 0.0)
+                return best;
+            auto bent = map_beside(problem, surface, even, tolerance, progress);
+            if (is_enough(bent))
+                return bent;
+            best = smaller_change(std::move(best), std::move(bent));
+        }
+    } catch (const NumericalFailure&) { // then the first one has to do
+    }
+    return best;
+}
+
+} // namespace devseg

@@ -1,0 +1,58 @@
+// LPFB maps with an inside that is fit for sewing, and when they are accepted.
+//
+// References
+//   [Wan08] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
+//           Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
+//           doi:10.1109/TVCG.2007.1067
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "devseg/flatten/maps/lpfb.h"
+
+namespace devseg {
+
+/// A map whose boundary has the lengths that it has on the surface.
+struct LpfbMap {
+    std::vector<Vec2> uv;     // #v, internal units
+    double area_change = 0.0; // largest of a face, see AreaChange::largest
+    double l2_stretch = 0.0;  // of the map as it is
+};
+
+/// Largest share by which the area of a map may change [Wan08, section 5].
+constexpr double lpfb_area_change = 0.1;
+
+struct SewingMapOptions {
+    // A map in which no face changes its area by more, with at most so much L2 stretch, is good
+    // enough: no other one is tried.
+    double enough = 0.005;
+    double enough_stretch = infinite;
+    // Of a nearly isometric map: as-rigid-as-possible energy, and pairs of overlapping faces over
+    // faces, above which the chart is given up. With a limit for overlaps it is also given up where
+    // areas cannot be evened out without any.
+    double give_up_energy = infinite;
+    std::optional<double> give_up_overlap;
+};
+
+/// A map by a few as-rigid-as-possible steps; empty where its energy is above a limit, or faces are
+/// flipped.
+std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
+                                       const Progress& progress);
+
+/// The LPFB map for sewing: with the angles that the boundary has on the surface, and beside a
+/// nearly isometric map whose areas were evened out while its boundary bends; the one in which
+/// areas change less. The inside is the harmonic one where that is nearly an isometry; else it is
+/// moved towards one, and then so that areas change evenly. Nothing where neither keeps [Wan08]'s
+/// conditions: no flips, the area changes by at most 10 %, the L2 stretch is at most 2, and no
+/// parts lie on each other by more than `tolerance`.
+std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
+                                  double tolerance, const SewingMapOptions& options,
+                                  const Progress& progress);
+
+/// An LPFB map without flips, with its inside moved as above; nothing where it has flips.
+std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
+                                   const Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,16 @@
+// A valid start for methods that must not flip: the boundary on a circle, the inside in balance.
+#pragma once
+
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+
+namespace devseg {
+
+/// Tutte's embedding: boundary vertices on a circle in proportion to their edge lengths, each inner
+/// vertex at a positively weighted mean of its neighbours, so that no face flips in exact
+/// arithmetic. Weights are cotangents, bounded from below and above; where rounding flips a face,
+/// equal weights are tried as well. The caller checks the result with count_flips.
+std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem);
+
+} // namespace devseg

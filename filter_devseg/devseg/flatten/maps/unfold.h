@@ -1,0 +1,18 @@
+// The exact development of a chart that is developable.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "devseg/flatten/energy/rest_shape.h"
+
+namespace devseg {
+
+/// Lays the faces of a disk into the plane one by one, each beside one that lies there already, as
+/// paper unfolds. Returns the positions (#v, internal units) where that is an isometry: every edge
+/// keeps its length to within `tolerance` times the root of the chart's area, and no face is turned
+/// over. Nothing for charts that are not developable.
+std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem,
+                                        const std::vector<Index>& twin, double tolerance = 1e-6);
+
+} // namespace devseg

@@ -1,0 +1,124 @@
+#include "devseg/flatten/repair/slits.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "devseg/flatten/energy/map_tools.h"
+
+namespace devseg {
+
+namespace {
+
+// Local number of the other side of each boundary half-edge that lies on a cut inside the chart,
+// as pairs of local half-edges.
+std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh, const ChartSurface& surface) {
+    std::vector<std::pair<Index, Index>> by_mesh; // (mesh half-edge, local half-edge)
+    for (const std::vector<Index>& loop : surface.loops)
+        for (const Index h : loop)
+            by_mesh.emplace_back(surface.mesh_half_edge(h), h);
+    std::sort(by_mesh.begin(), by_mesh.end());
+    std::vector<std::pair<Index, Index>> sides;
+    for (const auto& [global, h] : by_mesh) {
+        const Index twin = mesh.twin[at(global)];
+        const auto other = std::lower_bound(by_mesh.begin(), by_mesh.end(), std::pair(twin, 0));
+        if (twin > global && other != by_mesh.end() && other->first == twin)
+            sides.emplace_back(h, other->second);
+    }
+    return sides;
+}
+
+class SlitOpener {
+public:
+    SlitOpener(const ChartSurface& surface, double gap, std::vector<Vec2>& uv)
+        : s_(surface), gap_(gap), uv_(uv), home_(uv), done_(surface.vertex.size(), 0) {}
+
+    // Vertices v and w are the same point of the surface on the sides h and g of a slit.
+    void part(Index v, Index w, Index h, Index g) {
+        if (v == w || (home_[at(v)] - home_[at(w)]).norm() >= gap_)
+            return;
+        move(v, h);
+        move(w, g);
+    }
+
+private:
+    void move(Index v, Index h) {
+        if (done_[at(v)] != 0)
+            return;
+        const Vec2 edge = home_[at(s_.target(h))] - home_[at(s_.origin(h))];
+        const double length = edge.norm();
+        if (!(length > 0.0))
+            return;
+        uv_[at(v)] = home_[at(v)] + 0.5 * gap_ / length * Vec2(-edge.y(), edge.x());
+        done_[at(v)] = 1;
+        if (flips_around(h, v))
+            uv_[at(v)] = home_[at(v)];
+    }
+
+    // Looks at all faces around v, which form one fan, starting at the face of h.
+    bool flips_around(Index h, Index v) const {
+        Index corner = s_.origin(h) == v ? h : Mesh::next(h); // half-edge that leaves v
+        for (Index at_corner = corner; at_corner >= 0;
+             at_corner = s_.twin[at(Mesh::previous(at_corner))])
+            if (!positive(at_corner / 3))
+                return true;
+        for (Index back = s_.twin[at(corner)]; back >= 0; back = s_.twin[at(Mesh::next(back))])
+            if (!positive(back / 3))
+                return true;
+        return false;
+    }
+    bool positive(Index f) const {
+        const Triangle& t = s_.corners[at(f)];
+        return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]) > 0.0;
+    }
+
+    const ChartSurface& s_;
+    double gap_;
+    std::vector<Vec2>& uv_;
+    std::vector<Vec2> home_;
+    std::vector<std::uint8_t> done_;
+};
+
+} // namespace
+
+void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap,
+                       std::vector<Vec2>& uv) {
+    SlitOpener opener(surface, gap, uv);
+    for (const auto& [h, g] : slit_sides(mesh, surface)) {
+        opener.part(surface.origin(h), surface.target(g), h, g);
+        opener.part(surface.target(h), surface.origin(g), h, g);
+    }
+}
+
+bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, double gap,
+                            const std::vector<Vec2>& uv) {
+    std::vector<Index> same(surface.vertex.size());
+    std::iota(same.begin(), same.end(), 0);
+    const auto find = [&](Index v) {
+        while (same[at(v)] != v)
+            v = same[at(v)] = same[at(same[at(v)])];
+        return v;
+    };
+    const auto meet = [&](Index v, Index w) {
+        return v == w || (uv[at(v)] - uv[at(w)]).norm() < gap;
+    };
+    // Every closed edge is one edge less; the vertices that it joins are fewer as well, by as many
+    // as it takes for the chart to stay a disk, or not.
+    Index euler = surface.euler_characteristic();
+    for (const auto& [h, g] : slit_sides(mesh, surface)) {
+        if (!meet(surface.origin(h), surface.target(g)) ||
+            !meet(surface.target(h), surface.origin(g)))
+            continue;
+        ++euler;
+        for (const auto& [v, w] : {std::pair(surface.origin(h), surface.target(g)),
+                                   std::pair(surface.target(h), surface.origin(g))}) {
+            const Index a = find(v);
+            const Index b = find(w);
+            euler -= a == b ? 0 : 1;
+            same[at(a)] = b;
+        }
+    }
+    return euler != 1;
+}
+
+} // namespace devseg

@@ -1,0 +1,189 @@
+#include "devseg/flatten/repair/snap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "devseg/flatten/energy/map_tools.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr int rounds = 8; // sweeps over the flipped faces
+constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
+// Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
+// moved to another place on the grid nearby, which has places for nearly every area.
+constexpr double kept_area = 0.02;
+constexpr int grid_reach = 8; // units in the last place
+// On the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
+constexpr int boundary_reach = 2;
+
+bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
+    const Triangle& t = faces[at(f)];
+    return orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0;
+}
+
+double rounded(double x) {
+    // Volatile, because GCC 12 at -O3 drops the two conversions for the last element of an odd
+    // number when it turns the loop over a map into vector instructions.
+    const volatile float single = static_cast<float>(x);
+    return static_cast<double>(single);
+}
+
+// Faces of each vertex: [begin[v], begin[v + 1]).
+struct Stars {
+    std::vector<Index> begin;
+    std::vector<Index> faces;
+};
+
+Stars build_stars(const std::vector<Triangle>& faces, std::size_t vertices) {
+    Stars stars;
+    stars.begin.assign(vertices + 1, 0);
+    for (const Triangle& t : faces)
+        for (const Index v : t)
+            ++stars.begin[at(v) + 1];
+    std::partial_sum(stars.begin.begin(), stars.begin.end(), stars.begin.begin());
+    stars.faces.resize(3 * faces.size());
+    std::vector<Index> cursor(stars.begin.begin(), stars.begin.end() - 1);
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const Index v : faces[f])
+            stars.faces[at(cursor[at(v)]++)] = static_cast<Index>(f);
+    return stars;
+}
+
+// The distance between neighbouring single precision numbers near the point.
+double unit_in_last_place(const Vec2& p) {
+    const float size = static_cast<float>(p.cwiseAbs().maxCoeff());
+    return static_cast<double>(std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
+}
+
+class Repair {
+public:
+    Repair(const std::vector<Triangle>& faces, std::vector<Vec2>& uv)
+        : faces_(faces), uv_(uv), stars_(build_stars(faces, uv.size())) {}
+
+    // Moves a vertex of the face so that fewer faces around it are flipped.
+    bool mend(Index face) {
+        for (const Index v : faces_[at(face)])
+            if (move(v))
+                return true;
+        return false;
+    }
+
+    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
+    // to `area` (twice its area).
+    void restore_area(Index face, double area) {
+        for (const Index v : faces_[at(face)]) {
+            const Vec2 home = uv_[at(v)];
+            const double unit = unit_in_last_place(home);
+            Vec2 best = home;
+            double least = std::abs(twice_area(face) - area);
+            const int most = is_inside(v) ? grid_reach : boundary_reach;
+            for (int x = -most; x <= most; ++x)
+                for (int y = -most; y <= most; ++y) {
+                    const Vec2 moved = home + unit * Vec2(x, y);
+                    uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                    const double off = std::abs(twice_area(face) - area);
+                    if (off < least && flipped_around(v) == 0) {
+                        least = off;
+                        best = uv_[at(v)];
+                    }
+                }
+            uv_[at(v)] = best;
+            if (least <= kept_area * area)
+                return;
+        }
+    }
+    double twice_area(Index face) const {
+        const Triangle& t = faces_[at(face)];
+        return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]);
+    }
+
+private:
+    // Whether the faces around the vertex close up.
+    bool is_inside(Index v) const {
+        std::vector<Index> after;
+        std::vector<Index> before;
+        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i) {
+            const Triangle& t = faces_[at(stars_.faces[at(i)])];
+            const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+            after.push_back(t[(k + 1) % 3]);
+            before.push_back(t[(k + 2) % 3]);
+        }
+        return std::is_permutation(after.begin(), after.end(), before.begin());
+    }
+
+    int flipped_around(Index v) const {
+        int count = 0;
+        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i)
+            count += positive(faces_, uv_, stars_.faces[at(i)]) ? 0 : 1;
+        return count;
+    }
+    bool move(Index v) {
+        const Vec2 home = uv_[at(v)];
+        const double unit = unit_in_last_place(home);
+        Vec2 best = home;
+        int fewest = flipped_around(v);
+        const int before = fewest;
+        for (int step = 1; step < 1 << reach && fewest > 0; step *= 2)
+            for (int direction = 0; direction < 9; ++direction) {
+                const Vec2 offset(direction % 3 - 1, direction / 3 - 1);
+                const Vec2 moved = home + unit * step * offset;
+                uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                const int count = flipped_around(v);
+                if (count < fewest) {
+                    fewest = count;
+                    best = uv_[at(v)];
+                }
+            }
+        uv_[at(v)] = best;
+        return fewest < before;
+    }
+
+    const std::vector<Triangle>& faces_;
+    std::vector<Vec2>& uv_;
+    Stars stars_;
+};
+
+} // namespace
+
+Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) {
+    const std::vector<Vec2> exact = uv;
+    for (Vec2& p : uv)
+        p = Vec2(rounded(p.x()), rounded(p.y()));
+    const auto twice_area = [&](const std::vector<Vec2>& points, Index f) {
+        const Triangle& t = faces[at(f)];
+        return orientation(points[at(t[0])], points[at(t[1])], points[at(t[2])]);
+    };
+    std::vector<Index> flipped;
+    std::vector<Index> thin;
+    for (Index f = 0; f < static_cast<Index>(faces.size()); ++f) {
+        const double area = twice_area(exact, f);
+        if (!positive(faces, uv, f))
+            flipped.push_back(f);
+        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > kept_area * area)
+            thin.push_back(f);
+    }
+    if (flipped.empty() && thin.empty())
+        return 0;
+    Repair repair(faces, uv);
+    for (int round = 0; round < rounds && !flipped.empty(); ++round) {
+        for (const Index f : flipped)
+            if (!positive(faces, uv, f))
+                repair.mend(f);
+        // A mended face may have cost a neighbour: look at all of them again.
+        flipped.clear();
+        for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+            if (!positive(faces, uv, f))
+                flipped.push_back(f);
+    }
+    for (const Index f : thin)
+        repair.restore_area(f, twice_area(exact, f));
+    const auto lost = std::count_if(flipped.begin(), flipped.end(),
+                                    [&](Index f) { return !positive(faces, uv, f); });
+    return static_cast<Index>(lost);
+}
+
+} // namespace devseg

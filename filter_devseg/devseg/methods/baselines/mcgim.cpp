@@ -1,0 +1,114 @@
+#include "devseg/methods/baselines/mcgim.h"
+
+#include <algorithm>
+#include <set>
+
+#include "devseg/methods/growth/multi_heap.h"
+#include "devseg/base/option_checks.h"
+#include "devseg/methods/growth/reseed.h"
+#include "devseg/methods/growth/seeds.h"
+
+namespace devseg {
+
+namespace {
+
+// λ of [SWGSH03, section 4.1]: compact against planar charts.
+constexpr double compactness = 1.0;
+
+class PathCost {
+public:
+    static constexpr bool keeps_first_offer = false; // Dijkstra: the cheapest path counts
+
+    explicit PathCost(const Mesh& mesh) : mesh_(mesh), cost_(mesh.faces.size(), 0.0F) {
+        distance_.resize(mesh.twin.size(), 0.0F);
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            if (mesh.twin[at(h)] >= 0)
+                distance_[at(h)] = static_cast<float>(
+                    (mesh.face_centers[at(h / 3)] - mesh.face_centers[at(mesh.twin[at(h)] / 3)])
+                        .norm());
+    }
+
+    void start_over(std::size_t charts) {
+        normal_sum_.assign(charts, Vec3::Zero());
+        normal_.assign(charts, Vec3::UnitZ());
+    }
+
+    CandidateHeap::Entry candidate(Index h, Index c) const {
+        const float cost = cost_[at(h / 3)] + step(h, c);
+        return {cost, cost, mesh_.twin[at(h)] / 3};
+    }
+    GrowthKey key(Index, const CandidateHeap::Entry& entry) const { return {0, 0.0, entry.key}; }
+    void take(Index f, Index c, float cost) {
+        cost_[at(f)] = cost;
+        last_ = f;
+        // Seeds without area count as well: every chart has a normal from its first face on.
+        Vec3& sum = normal_sum_[at(c)];
+        sum += mesh_.face_areas[at(f)] * mesh_.face_normals[at(f)];
+        normal_[at(c)] =
+            sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : mesh_.face_normals[at(f)];
+    }
+
+    float step(Index h, Index c) const {
+        const Vec3& normal = mesh_.face_normals[at(mesh_.twin[at(h)] / 3)];
+        return distance_[at(h)] *
+               static_cast<float>(compactness + 1.0 - normal_[at(c)].dot(normal));
+    }
+    /// The face that was taken last: the one that costs most.
+    Index last() const { return last_; }
+    const std::vector<float>& cost() const { return cost_; }
+
+private:
+    const Mesh& mesh_;
+    std::vector<float> cost_;     // #F: of the path from the seed
+    std::vector<float> distance_; // 3 #F: of the centroids on both sides
+    std::vector<Vec3> normal_sum_;
+    std::vector<Vec3> normal_; // of each chart, as far as it has grown
+    Index last_ = -1;
+};
+
+} // namespace
+
+McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progress& progress) {
+    check_charts_number(mesh.face_count(), options.charts_number);
+    check_rounds(options.max_iterations, options.random_seed);
+    const Index count = at_least_one_per_component(mesh, options.charts_number);
+    const Index components = face_components(mesh, [](Index) { return true; }).count;
+
+    // One chart more at a time, from the face that was reached last [SWGSH03, section 4.1].
+    progress.begin_phase("placing seeds", 0.3);
+    std::vector<Index> seeds = farthest_point_seeds(
+        mesh, components, static_cast<std::uint32_t>(options.random_seed), progress);
+    McgimResult result;
+    PathCost cost(mesh);
+    MultiHeap heaps(mesh);
+    const auto grow = [&] {
+        cost.start_over(seeds.size());
+        heaps.grow(seeds, cost, result.chart, progress);
+    };
+    while (static_cast<Index>(seeds.size()) < count) {
+        grow();
+        seeds.push_back(cost.last());
+        progress.update(static_cast<double>(seeds.size()) / count);
+    }
+
+    progress.begin_phase("growing charts", 0.6);
+    BorderDistance border(mesh);
+    std::set<std::vector<Index>> seen{seeds};
+    while (true) {
+        grow();
+        ++result.rounds;
+        progress.update(static_cast<double>(result.rounds) / options.max_iterations);
+        if (result.rounds == options.max_iterations)
+            break;
+        seeds = border.farthest_faces(
+            result.chart, seeds, [&](Index h) { return cost.step(h, result.chart[at(h / 3)]); },
+            progress);
+        result.converged = !seen.insert(seeds).second;
+        if (result.converged)
+            break;
+    }
+    result.face_cost.assign(cost.cost().begin(), cost.cost().end());
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,36 @@
+// Variational Shape Approximation: charts that planes fit best [CSAD04], with the L2,1 metric.
+//
+// References
+//   [CSAD04] D. Cohen-Steiner, P. Alliez, M. Desbrun: Variational Shape Approximation. ACM
+//            Transactions on Graphics 23(3), 2004. doi:10.1145/1015706.1015817
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+struct VsaOptions {
+    int charts_number = 20;
+    bool teleport_charts = true; // merge two charts and split the worst one where that helps
+    int max_iterations = 100;    // rounds of partitioning at most, after the start
+    int random_seed = 0;         // 0: a start that does not depend on the order of the faces
+};
+
+struct VsaResult {
+    std::vector<Index> chart;       // #F; every chart is edge-connected
+    std::vector<double> face_error; // #F: |n − N|² of the face's normal and its chart's, 0 to 4
+    std::vector<Vec3> proxies;      // the normal N of each chart
+    double total_error = 0.0;       // Σ area · |n − N|², internal units squared
+    int rounds = 0;
+    bool converged = false; // the last round did not lower the error, and no teleport helped
+    Index teleports = 0;
+};
+
+/// A mesh of more components than `charts_number` gets one chart for each component. Throws
+/// InvalidParameter (1 ≤ charts_number ≤ #F, max_iterations ≥ 1) and Cancelled.
+VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& progress);
+
+} // namespace devseg

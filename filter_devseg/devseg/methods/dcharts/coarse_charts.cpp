@@ -1,0 +1,170 @@
+#include "devseg/methods/dcharts/coarse_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "devseg/atlas/disks.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/methods/dcharts/splitting.h"
+#include "devseg/methods/growth/borders.h"
+#include "devseg/atlas/fragments.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr Index coarse_faces = 6000;          // enough to decide where borders run
+constexpr Index creased_coarse_faces = 24000; // where they must run along creases
+constexpr Index faces_per_chart = 150;        // of the coarse surface, at least
+constexpr int most_split_rounds = 24;
+constexpr double worth_coarsening = 2.0; // faces over those of the coarse surface
+
+// What faces fit in each chart: the proxies of all patches that it was joined from.
+ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
+                               const std::vector<Index>& patch) {
+    const Index patches = 1 + *std::max_element(patch.begin(), patch.end());
+    const std::vector<ConicProxy> proxies = fit_conics(mesh, patch, patches);
+    ChartProxies result(draft.faces.size());
+    std::vector<std::uint8_t> seen(proxies.size() * draft.faces.size(), 0);
+    for (std::size_t f = 0; f < patch.size(); ++f) {
+        std::uint8_t& known = seen[at(patch[f]) * draft.faces.size() + at(draft.chart[f])];
+        if (known == 0)
+            result[at(draft.chart[f])].push_back(proxies[at(patch[f])]);
+        known = 1;
+    }
+    return result;
+}
+
+} // namespace
+
+WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Progress& progress)
+    : full_(full), creased_(creased) {
+    const Index wanted =
+        std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
+    if (full.face_count() <= worth_coarsening * wanted)
+        return;
+    surface_ = std::make_unique<CoarseSurface>(coarsen_in_parallel(full, wanted, progress));
+    coarse_ = std::make_unique<CoarseMesh>(extract_coarse_mesh(full, *surface_));
+}
+
+FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Index>& patch,
+                                      double max_fitting_error, Straightening straightening,
+                                      Progress& progress) const {
+    FullCharts result;
+    result.seam = draft.seam;
+    result.darts = static_cast<Index>(draft.tips.size());
+    if (coarse_) {
+        std::vector<Index> label(full_.faces.size(), -1);
+        for (std::size_t f = 0; f < coarse_->face.size(); ++f)
+            label[at(coarse_->face[f])] = draft.chart[f];
+        result.chart = refine_labels(full_.points, *surface_, std::move(label), progress);
+    } else {
+        result.chart = draft.chart;
+    }
+    straighten(draft, patch, max_fitting_error, straightening, result.chart, progress);
+    if (coarse_ || straightening != Straightening::none) {
+        result.chart = absorb_fragments(full_, result.chart, fragment_share);
+        progress.check();
+        result.seam.assign(full_.twin.size(), 0);
+        result.darts = cut_darts_to(full_, result.chart, tips_of(draft), result.seam);
+    }
+    progress.check();
+    result.chart = make_chart_map(full_, result.chart, result.seam, false).chart;
+    progress.check();
+    return result;
+}
+
+// A strip of about one edge of the coarse surface is too narrow to change the shape of a chart by
+// much.
+void WorkingSurface::straighten(const Draft& draft, const std::vector<Index>& patch,
+                                double max_fitting_error, Straightening straightening,
+                                std::vector<Index>& chart, Progress& progress) const {
+    const bool fitting = straightening != Straightening::none && coarse_;
+    const bool smooth = straightening == Straightening::smooth && !creased_;
+    if (!fitting && !smooth)
+        return;
+    const ChartProxies proxies = proxies_of_charts(mesh(), draft, patch);
+    const double ratio = static_cast<double>(full_.face_count()) / mesh().face_count();
+    const int edge = static_cast<int>(std::sqrt(ratio)); // of the coarse surface, in faces
+    if (fitting)
+        straighten_borders(full_, proxies, max_fitting_error, 2 + 2 * edge, chart, progress);
+    if (smooth)
+        straighten_borders(full_, proxies, infinite, 1 + edge, chart,
+                           progress);
+}
+
+std::vector<Index> WorkingSurface::tips_of(const Draft& draft) const {
+    if (!coarse_)
+        return draft.tips;
+    std::vector<Index> tips;
+    for (const Index v : draft.tips)
+        tips.push_back(coarse_->vertex[at(v)]);
+    return tips;
+}
+
+Index WorkingSurface::cut_more_darts(const DartOptions& options, const std::vector<Index>& chart,
+                                     std::vector<std::uint8_t>& seam, Progress& progress) const {
+    Draft draft = make_draft(full_, chart, seam, options.chart.l2, progress);
+    const Index count = cut_darts(full_, options, draft, progress);
+    seam = draft.seam;
+    return count;
+}
+
+FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
+                                     const std::vector<std::uint8_t>& seam,
+                                     Progress& progress) const {
+    progress.begin_phase("measuring the final map", 0.2);
+    const ChartMap charts =
+        cut_charts_to_disks(full_, make_chart_map(full_, chart, seam, false), progress).charts;
+    FinalStretch reached;
+    reached.all = {1.0, 1.0};
+    reached.linf.assign(at(1 + *std::max_element(chart.begin(), chart.end())), 1.0);
+    double excess = 0.0;
+    for (const FlatChart& flat :
+         flatten_charts(full_, charts, FlattenMethod::symmetric_dirichlet, progress).flat) {
+        TrialMap map;
+        measure_stretch(make_flattening_problem(full_, flat.surface), flat.uv, map);
+        excess += map.excess();
+        reached.all.linf = std::max(reached.all.linf, map.linf);
+        double& linf = reached.linf[at(chart[at(flat.surface.face.front())])];
+        linf = std::max(linf, map.linf);
+    }
+    reached.all.l2 = std::sqrt(1.0 + std::max(0.0, excess) / full_.total_area);
+    return reached;
+}
+
+FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& options,
+                                         std::vector<Index>& chart, std::vector<std::uint8_t>& seam,
+                                         Progress& progress) const {
+    FinalStretch reached = measure(chart, seam, progress);
+    // Every round makes charts smaller; these many take a whole surface apart into faces.
+    for (int round = 0; round < most_split_rounds && reached.all.linf > linf; ++round) {
+        Draft draft = make_untried_draft(full_, chart);
+        draft.seam = seam;
+        bool changed = false;
+        for (std::size_t c = 0; c < reached.linf.size(); ++c)
+            if (reached.linf[c] > linf) {
+                const Index worst = static_cast<Index>(c);
+                changed |= split_chart(full_, options, linf, worst, draft, progress) ||
+                           halve_chart(full_, linf, worst, draft, progress);
+            }
+        if (!changed)
+            break;
+        seam = draft.seam;
+        chart = make_chart_map(full_, draft.chart, seam, false).chart;
+        reached = measure(chart, seam, progress);
+    }
+    return reached;
+}
+
+std::vector<double> WorkingSurface::fitting_errors(const std::vector<Index>& chart) const {
+    const Index count = 1 + *std::max_element(chart.begin(), chart.end());
+    const std::vector<ConicProxy> proxies = fit_conics(full_, chart, count);
+    std::vector<double> errors(full_.faces.size());
+    for (std::size_t f = 0; f < errors.size(); ++f)
+        errors[f] = proxies[at(chart[f])].fitting_error(full_.face_normals[f]);
+    return errors;
+}
+
+} // namespace devseg

@@ -1,0 +1,306 @@
+#include "devseg/methods/dcharts/developable_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "devseg/base/errors.h"
+#include "devseg/methods/dcharts/coarse_charts.h"
+#include "devseg/methods/dcharts/darts.h"
+#include "devseg/methods/dcharts/merging.h"
+#include "devseg/methods/dcharts/splitting.h"
+#include "devseg/methods/growth/expansion.h"
+#include "devseg/atlas/fragments.h"
+
+namespace devseg {
+
+namespace {
+
+// What border is worth against the fitting error of faces.
+constexpr double smooth_length_weight = 0.045;
+
+// Where creases shape the surface, its parts are cones, cylinders and planes but for the
+// tessellation: charts must fit them closely, borders belong on creases whatever their length, and
+// joins must be nearly exact.
+constexpr double creased_fitting_error = 0.008; // F_max at most
+constexpr double creased_length_weight = 0.001;
+constexpr double creased_threshold = 0.02; // factor of η
+
+constexpr double bent_cosine = 0.866; // of 30 degrees
+constexpr double sharp_cosine = 0.5;  // of 60 degrees
+constexpr double sharp_share = 0.6;   // of the bent edges
+constexpr double least_creases = 1.0; // over the root of the area
+
+constexpr int few_seeds = 3;
+constexpr int more_seeds = 6;       // where so few give more charts than were asked for
+constexpr int automatic_seeds = 10; // where the number of charts is to be found
+constexpr int most_splits = 200;
+constexpr double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
+constexpr int most_attempts = 5;
+constexpr int most_linf_attempts = 2; // then charts are split until the worst spot is within it
+constexpr double first_share = 0.9;   // of the allowed stretch that the coarse surface may use
+constexpr double chart_excess = 4.0;  // of one chart over that of the whole
+constexpr double loose_linf = 8.0;    // worst spots count little where they have no bound
+
+// Stretch that joined charts may have, from η: at η = 0.01, L2 1.005 and L∞ 1.4.
+StretchBounds bounds_from(double merge_threshold) {
+    return {1.0 + 0.5 * merge_threshold, 1.0 + 4.0 * std::sqrt(merge_threshold)};
+}
+
+// Whether creases, rather than smooth or rough regions, give the surface its shape: then most edges
+// that are not smooth are sharp.
+bool is_creased(const Mesh& mesh) {
+    double bent = 0.0;
+    double sharp = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin <= h)
+            continue;
+        const double cosine = mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)]);
+        bent += cosine < bent_cosine ? mesh.edge_length(h) : 0.0;
+        sharp += cosine < sharp_cosine ? mesh.edge_length(h) : 0.0;
+    }
+    return sharp > least_creases * std::sqrt(mesh.total_area) && sharp > sharp_share * bent;
+}
+
+void check_bounds(const DevelopableChartsOptions& o) {
+    const auto refuse = [](const char* name, const char* expected, double found) {
+        std::ostringstream text;
+        text << name << ": expected " << expected << ", found " << found;
+        throw InvalidParameter(text.str());
+    };
+    if (!(o.merge_threshold > 0.0) || !(o.merge_threshold <= 1.0))
+        refuse("merge_threshold", "a number above 0 and at most 1 (0.01 is usual)",
+               o.merge_threshold);
+    if (!(o.max_l2_stretch > 1.0))
+        refuse("max_l2_stretch", "a number above 1 (1.01 is usual)", o.max_l2_stretch);
+    if (o.max_linf_stretch != 0.0 && !(o.max_linf_stretch > 1.0))
+        refuse("max_linf_stretch", "0 for no bound, or a number above 1", o.max_linf_stretch);
+}
+
+// One run: the surface on which decisions are made, and how charts grow on it.
+class Designer {
+public:
+    Designer(const Mesh& mesh, const DevelopableChartsOptions& options, Progress& progress)
+        : options_(options), progress_(progress), creased_(is_creased(mesh)), growing_(options),
+          working_(mesh, creased_, std::max(options.charts_number, automatic_seeds), progress) {
+        if (options.charts_number == 0)
+            growing_.charts_number = std::min(automatic_seeds, mesh.face_count());
+        if (creased_)
+            growing_.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
+    }
+
+    DevelopableCharts run() {
+        grow_patches();
+        return options_.charts_number == 0 ? run_automatic() : run_with_estimate();
+    }
+
+private:
+    struct Aim {
+        StretchBounds chart;
+        double max_excess = infinite;
+        bool few = false; // few charts matter more than wide necks between their parts
+    };
+
+    void grow_patches() {
+        const Mesh& mesh = working_.mesh();
+        const DChartsResult grown = segment_dcharts(mesh, growing_, progress_);
+        result_.rounds = grown.rounds;
+        result_.converged = grown.converged;
+        result_.hole_charts = grown.hole_charts;
+        patch_ = grown.chart;
+        progress_.begin_phase("straightening borders", 0.1);
+        if (options_.straighten_boundaries) {
+            ExpansionOptions expansion;
+            expansion.max_fitting_error = growing_.max_fitting_error;
+            expansion.length_weight = creased_ ? creased_length_weight : smooth_length_weight;
+            relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
+        }
+        patch_ = absorb_fragments(mesh, patch_, fragment_share);
+    }
+
+    DevelopableCharts run_with_estimate() {
+        if (!options_.merge_charts && !options_.add_darts)
+            return finish(make_untried_draft(working_.mesh(), patch_), Straightening::smooth);
+        Aim aim;
+        aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
+        Draft draft = try_patches(aim);
+        if (options_.merge_charts && options_.charts_number <= few_seeds &&
+            draft.charts_number() > options_.charts_number)
+            begin_with_more(aim, draft);
+        return finish(draft, Straightening::smooth);
+    }
+
+    Draft try_patches(const Aim& aim) {
+        progress_.begin_phase("trying charts", 0.05);
+        Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
+        improve(aim, draft);
+        return draft;
+    }
+
+    // What few seeds do not reach becomes charts of its own, of any shape: charts of more seeds may
+    // be joined to fewer.
+    void begin_with_more(const Aim& aim, Draft& draft) {
+        const std::vector<Index> patch = patch_;
+        const DevelopableCharts result = result_;
+        growing_.charts_number = std::min(more_seeds, working_.mesh().face_count());
+        grow_patches();
+        Draft other = try_patches(aim);
+        if (other.charts_number() < draft.charts_number()) {
+            draft = std::move(other);
+        } else {
+            patch_ = patch;
+            result_ = result;
+        }
+    }
+
+    void improve(const Aim& aim, Draft& draft) {
+        if (options_.merge_charts) {
+            progress_.begin_phase("joining charts", 0.3);
+            MergeOptions merging;
+            merging.chart = aim.chart;
+            merging.max_excess = aim.max_excess;
+            merging.least_neck = aim.few ? 0.0 : merging.least_neck;
+            result_.joins = merge_charts(working_.mesh(), merging, draft, progress_);
+        }
+        if (options_.add_darts) {
+            progress_.begin_phase("cutting darts", 0.1);
+            DartOptions darts;
+            darts.chart = aim.chart;
+            cut_darts(working_.mesh(), darts, draft, progress_);
+        }
+    }
+
+    // Splits the charts that contribute most until the stretch of all leaves room for joins.
+    void split_worst(const Aim& aim, Draft& draft) {
+        std::vector<std::uint8_t> whole; // charts that could not be split
+        for (int i = 0; i < most_splits && draft.excess() > room_for_joins * aim.max_excess; ++i) {
+            whole.resize(draft.faces.size(), 0);
+            Index worst = -1;
+            for (Index c = 0; c < static_cast<Index>(draft.faces.size()); ++c)
+                if (!draft.faces[at(c)].empty() && whole[at(c)] == 0 &&
+                    (worst < 0 || draft.map[at(c)].excess() > draft.map[at(worst)].excess()))
+                    worst = c;
+            if (worst < 0)
+                return;
+            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+                whole[at(worst)] = 1;
+        }
+    }
+
+    // The fewest charts within the bounds: what the coarse surface may use of them is lowered until
+    // the map of the full surface keeps them.
+    DevelopableCharts run_automatic() {
+        const double allowed = options_.max_l2_stretch * options_.max_l2_stretch - 1.0;
+        const bool has_linf = options_.max_linf_stretch > 0.0;
+        double share = first_share;
+        double linf = has_linf ? options_.max_linf_stretch
+                               : bounds_from(loose_linf * (options_.max_l2_stretch - 1.0)).linf;
+        progress_.begin_phase("trying charts", 0.05);
+        const Draft start =
+            make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, progress_);
+        DevelopableCharts best;
+        const int attempts = has_linf ? most_linf_attempts : most_attempts;
+        for (int attempt = 0; attempt < attempts; ++attempt) {
+            Aim aim;
+            aim.chart = {std::sqrt(1.0 + chart_excess * allowed), linf};
+            aim.max_excess = share * allowed * working_.mesh().total_area;
+            aim.few = true;
+            Draft draft = start;
+            split_worst(aim, draft);
+            improve(aim, draft);
+            StretchBounds reached;
+            for (const auto straightening : {Straightening::smooth, Straightening::fitting}) {
+                DevelopableCharts found = finish_within_bounds(aim, draft, straightening);
+                reached = {found.l2_stretch, found.linf_stretch};
+                if (best.chart.empty() || distance(found) < distance(best))
+                    best = std::move(found);
+                if (best.bounds_kept)
+                    return best;
+            }
+            share *= std::min(0.9, allowed / (reached.l2 * reached.l2 - 1.0));
+            if (has_linf)
+                linf = 1.0 + (linf - 1.0) * std::min(0.9, (options_.max_linf_stretch - 1.0) /
+                                                              (reached.linf - 1.0));
+        }
+        if (has_linf && best.l2_stretch <= options_.max_l2_stretch) {
+            const FinalStretch reached = working_.split_above(options_.max_linf_stretch, growing_,
+                                                              best.chart, best.seam, progress_);
+            note_stretch(reached.all, best);
+            best.fitting_error = working_.fitting_errors(best.chart);
+        }
+        return best;
+    }
+
+    // From isometry, in bounds: at most 1 where they are kept.
+    double distance(const DevelopableCharts& charts) const {
+        const auto excess = [](double stretch) { return stretch * stretch - 1.0; };
+        const double l2 = excess(charts.l2_stretch) / excess(options_.max_l2_stretch);
+        return options_.max_linf_stretch == 0.0
+                   ? l2
+                   : std::max(l2, excess(charts.linf_stretch) / excess(options_.max_linf_stretch));
+    }
+
+    // With more darts where the worst spot needs them, and measured.
+    DevelopableCharts finish_within_bounds(const Aim& aim, const Draft& draft,
+                                           Straightening straightening) {
+        DevelopableCharts found = finish(draft, straightening);
+        note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+        if (options_.max_linf_stretch > 0.0 && options_.add_darts && !found.bounds_kept &&
+            found.l2_stretch <= options_.max_l2_stretch) {
+            DartOptions darts;
+            darts.chart = {aim.chart.l2, options_.max_linf_stretch};
+            found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
+            note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+        }
+        return found;
+    }
+
+    void note_stretch(const StretchBounds& reached, DevelopableCharts& charts) const {
+        charts.l2_stretch = reached.l2;
+        charts.linf_stretch = reached.linf;
+        charts.bounds_kept = distance(charts) <= 1.0;
+    }
+
+    DevelopableCharts finish(const Draft& draft, Straightening straightening) {
+        progress_.begin_phase("finishing borders", 0.1);
+        if (!options_.straighten_boundaries)
+            straightening = Straightening::none;
+        else if (!options_.merge_charts) // the bound is F_max then, and not a stretch
+            straightening = Straightening::fitting;
+        FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
+                                              straightening, progress_);
+        DevelopableCharts result = result_;
+        result.chart = std::move(full.chart);
+        result.seam = std::move(full.seam);
+        result.darts = full.darts;
+        result.fitting_error = working_.fitting_errors(result.chart);
+        progress_.check();
+        return result;
+    }
+
+    const DevelopableChartsOptions& options_;
+    Progress& progress_;
+    const bool creased_;
+    DChartsOptions growing_;
+    WorkingSurface working_;
+    std::vector<Index> patch_; // #F of the working surface: charts before joining
+    DevelopableCharts result_; // what is known so far
+};
+
+} // namespace
+
+DevelopableCharts segment_developable_charts(const Mesh& mesh,
+                                             const DevelopableChartsOptions& options,
+                                             Progress& progress) {
+    DChartsOptions growing = options;
+    if (growing.charts_number == 0)
+        growing.charts_number = 1;
+    check_options(mesh, growing);
+    check_bounds(options);
+    progress.begin_phase("coarsening", 0.2);
+    return Designer(mesh, options, progress).run();
+}
+
+} // namespace devseg

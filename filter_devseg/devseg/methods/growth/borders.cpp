@@ -1,0 +1,471 @@
+#include "devseg/methods/growth/borders.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "devseg/graph/min_cut.h"
+#include "devseg/atlas/charts.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr int smoothing_rounds = 4;
+constexpr double crease_cosine = 0.7; // of 45 degrees: sharper edges are features, not noise
+
+bool is_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
+    const Index twin = mesh.twin[at(h)];
+    return twin >= 0 && chart[at(h / 3)] != chart[at(twin / 3)];
+}
+
+// Vertices where borders end: three or more borders meet, or the mesh's boundary is reached.
+std::vector<std::uint8_t> find_junctions(const Mesh& mesh, const std::vector<Index>& chart) {
+    std::vector<std::uint8_t> borders(mesh.points.size(), 0);
+    std::vector<std::uint8_t> on_boundary(mesh.points.size(), 0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (is_border(mesh, chart, h) && borders[at(mesh.origin(h))] < 3)
+            ++borders[at(mesh.origin(h))];
+        if (mesh.twin[at(h)] < 0)
+            on_boundary[at(mesh.origin(h))] = on_boundary[at(mesh.target(h))] = 1;
+    }
+    std::vector<std::uint8_t> junction(mesh.points.size(), 0);
+    for (std::size_t v = 0; v < junction.size(); ++v)
+        junction[v] = borders[v] > 2 || (borders[v] > 0 && on_boundary[v] != 0) ? 1 : 0;
+    return junction;
+}
+
+// The border half-edge of the same chart that goes on from the end of h.
+Index next_on_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
+    h = Mesh::next(h);
+    while (mesh.twin[at(h)] >= 0 && !is_border(mesh, chart, h))
+        h = Mesh::next(mesh.twin[at(h)]);
+    return h;
+}
+
+} // namespace
+
+std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vector<Index>& chart) {
+    const std::vector<std::uint8_t> junction = find_junctions(mesh, chart);
+    std::vector<std::uint8_t> done(mesh.twin.size(), 0);
+    std::vector<BorderSegment> segments;
+    const auto walk = [&](Index start, bool is_loop) {
+        BorderSegment segment;
+        segment.chart_a = chart[at(start / 3)];
+        segment.chart_b = chart[at(mesh.twin[at(start)] / 3)];
+        segment.is_loop = is_loop;
+        for (Index h = start; done[at(h)] == 0; h = next_on_border(mesh, chart, h)) {
+            done[at(h)] = done[at(mesh.twin[at(h)])] = 1;
+            segment.half_edges.push_back(h);
+            if (junction[at(mesh.target(h))] != 0)
+                break;
+        }
+        segments.push_back(std::move(segment));
+    };
+    const auto starts = [&](Index h) {
+        return is_border(mesh, chart, h) && done[at(h)] == 0 &&
+               chart[at(h / 3)] < chart[at(mesh.twin[at(h)] / 3)];
+    };
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (starts(h) && junction[at(mesh.origin(h))] != 0)
+            walk(h, false);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (starts(h))
+            walk(h, true);
+    return segments;
+}
+
+namespace {
+
+// Normals averaged over neighbours, but not across creases: single faces of a scan lean far to one
+// side, and would leave holes in the fuzzy area that the border has to wind around.
+std::vector<Vec3> smooth_normals(const Mesh& mesh, const Progress& progress) {
+    Heartbeat beat(progress);
+    std::vector<Vec3> normals = mesh.face_normals;
+    for (int round = 0; round < smoothing_rounds; ++round) {
+        std::vector<Vec3> next(normals.size());
+        for (Index f = 0; f < mesh.face_count(); ++f) {
+            beat();
+            Vec3 sum = mesh.face_areas[at(f)] * normals[at(f)];
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh.twin[at(h)];
+                if (twin >= 0 &&
+                    mesh.face_normals[at(f)].dot(mesh.face_normals[at(twin / 3)]) > crease_cosine)
+                    sum += mesh.face_areas[at(twin / 3)] * normals[at(twin / 3)];
+            }
+            next[at(f)] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : normals[at(f)];
+        }
+        normals = std::move(next);
+    }
+    return normals;
+}
+
+// Straightens one border after the other. The scratch arrays are for the whole mesh and are put
+// back after each border, so that the cost follows the borders and not the mesh.
+class Straightener {
+public:
+    Straightener(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error, int rings,
+                 std::vector<Index>& chart, const Progress& progress)
+        : mesh_(mesh), normals_(smooth_normals(mesh, progress)), proxies_(proxies),
+          max_fitting_error_(max_fitting_error), rings_(rings), chart_(chart),
+          fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
+          distance_(mesh.points.size(), infinite),
+          arrival_(mesh.points.size(), -1), new_border_(mesh.twin.size(), 0),
+          outgoing_(mesh.points.size(), -1), valence_(mesh.points.size(), 0),
+          corners_(mesh.points.size(), 0), in_flood_(mesh.faces.size(), 0) {
+        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+            // On a boundary, prefer the half-edge from which the whole fan is reached one way.
+            Index& first = outgoing_[at(mesh.origin(h))];
+            if (first < 0 || mesh.twin[at(h)] < 0)
+                first = h;
+            ++valence_[at(mesh.origin(h))];
+        }
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            if (mesh.twin[at(h)] < 0)
+                valence_[at(mesh.origin(h))] = valence_[at(mesh.target(h))] = -1;
+    }
+
+    bool straighten(const BorderSegment& segment) {
+        grow_fuzzy_area(segment);
+        const bool replaced = segment.is_loop ? straighten_loop(segment) : straighten_path(segment);
+        for (const Index f : area_)
+            fuzzy_[at(f)] = 0;
+        area_.clear();
+        return replaced;
+    }
+
+private:
+    // Both charts grown into each other [JKS05, section 3.3], from the faces at this border.
+    void grow_fuzzy_area(const BorderSegment& segment) {
+        std::vector<Index> left;
+        std::vector<Index> right;
+        for (const Index h : segment.half_edges) {
+            left.push_back(h / 3);
+            right.push_back(mesh_.twin[at(h)] / 3);
+        }
+        grow_from(std::move(left), segment.chart_a, segment.chart_b);
+        grow_from(std::move(right), segment.chart_b, segment.chart_a);
+    }
+    // Breadth first, so that the number of rings can be limited.
+    void grow_from(std::vector<Index> ring, Index own, Index into) {
+        const auto take = [&](Index f) {
+            if (chart_[at(f)] != own || fuzzy_[at(f)] != 0 || !fits(f, into))
+                return false;
+            fuzzy_[at(f)] = 1;
+            area_.push_back(f);
+            return true;
+        };
+        ring.erase(std::remove_if(ring.begin(), ring.end(), [&](Index f) { return !take(f); }),
+                   ring.end());
+        for (int depth = 1; !ring.empty() && (rings_ == 0 || depth < rings_); ++depth) {
+            std::vector<Index> next;
+            for (const Index f : ring)
+                for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                    const Index twin = mesh_.twin[at(h)];
+                    if (twin >= 0 && take(twin / 3))
+                        next.push_back(twin / 3);
+                }
+            ring = std::move(next);
+        }
+    }
+    bool fits(Index f, Index c) const {
+        for (const ConicProxy& proxy : proxies_[at(c)])
+            if (proxy.fitting_error(normals_[at(f)]) < max_fitting_error_)
+                return true;
+        return false;
+    }
+
+    // A vertex that a new border may pass: no other chart, no boundary and no other border of the
+    // two charts comes there.
+    bool is_free(Index v, const BorderSegment& segment) const {
+        bool allowed = true;
+        const bool whole = visit_star(mesh_, outgoing_[at(v)], [&](Index h) {
+            const Index c = chart_[at(h / 3)];
+            allowed = allowed && (c == segment.chart_a || c == segment.chart_b);
+            if (is_border(mesh_, chart_, h) && blocked_[at(v)] == 0)
+                allowed = false; // a border, but not of this segment
+        });
+        return whole && allowed;
+    }
+
+    bool straighten_path(const BorderSegment& segment) {
+        const Index from = mesh_.origin(segment.half_edges.front());
+        const Index to = mesh_.target(segment.half_edges.back());
+        if (from == to || segment.half_edges.size() < 2)
+            return false;
+        for (const Index h : segment.half_edges)
+            blocked_[at(mesh_.origin(h))] = blocked_[at(mesh_.target(h))] = 1; // own border: free
+        mark(segment.half_edges, passable);
+        const std::vector<Index> path = shortest_path(segment, from, to);
+        mark(segment.half_edges, 0);
+        for (const Index h : segment.half_edges)
+            blocked_[at(mesh_.origin(h))] = blocked_[at(mesh_.target(h))] = 0;
+        return !path.empty() && length(path) < length(segment.half_edges) * worthwhile &&
+               relabel(segment, path);
+    }
+
+    void mark(const std::vector<Index>& half_edges, std::uint8_t value) {
+        for (const Index h : half_edges)
+            new_border_[at(h)] = new_border_[at(mesh_.twin[at(h)])] = value;
+    }
+
+    double length(const std::vector<Index>& half_edges) const {
+        double sum = 0.0;
+        for (const Index h : half_edges)
+            sum += mesh_.edge_length(h);
+        return sum;
+    }
+
+    // Dijkstra over the old border and the edges that touch the fuzzy area; half-edges from `from`
+    // to `to`, head to tail.
+    std::vector<Index> shortest_path(const BorderSegment& segment, Index from, Index to) {
+        using Entry = std::pair<double, Index>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        std::vector<Index> touched{from};
+        distance_[at(from)] = 0.0;
+        queue.emplace(0.0, from);
+        while (!queue.empty()) {
+            const auto [d, v] = queue.top();
+            queue.pop();
+            if (v == to)
+                break;
+            if (d > distance_[at(v)])
+                continue;
+            visit_star(mesh_, outgoing_[at(v)], [&, d = d](Index h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0 || (fuzzy_[at(h / 3)] == 0 && fuzzy_[at(twin / 3)] == 0 &&
+                                 new_border_[at(h)] != passable))
+                    return;
+                const Index w = mesh_.target(h);
+                const double through = d + mesh_.edge_length(h);
+                if (through >= distance_[at(w)] || (w != to && !is_free(w, segment)))
+                    return;
+                if (arrival_[at(w)] < 0)
+                    touched.push_back(w);
+                distance_[at(w)] = through;
+                arrival_[at(w)] = h;
+                queue.emplace(through, w);
+            });
+        }
+        std::vector<Index> path;
+        for (Index v = to; v != from && arrival_[at(v)] >= 0; v = mesh_.origin(path.back()))
+            path.push_back(arrival_[at(v)]);
+        std::reverse(path.begin(), path.end());
+        for (const Index v : touched) {
+            distance_[at(v)] = infinite;
+            arrival_[at(v)] = -1;
+        }
+        return path;
+    }
+
+    // Gives the parts of the fuzzy area beside the path to the chart on their side.
+    bool relabel(const BorderSegment& segment, const std::vector<Index>& path) {
+        mark(segment.half_edges, passable);
+        mark(path, closed);
+        std::vector<std::pair<Index, Index>> labels; // (face, new chart)
+        bool consistent = true;
+        const auto flood = [&](Index start, Index c) {
+            std::vector<Index> stack;
+            const auto take = [&](Index f) {
+                if (fuzzy_[at(f)] == 1) {
+                    fuzzy_[at(f)] = c == segment.chart_a ? 2 : 3;
+                    labels.emplace_back(f, c);
+                    stack.push_back(f);
+                } else if (fuzzy_[at(f)] == (c == segment.chart_a ? 3 : 2)) {
+                    consistent = false;
+                } else if (fuzzy_[at(f)] == 0 && chart_[at(f)] != c) {
+                    consistent = false; // the area between the borders must be fuzzy
+                }
+            };
+            take(start);
+            while (!stack.empty() && consistent) {
+                const Index f = stack.back();
+                stack.pop_back();
+                for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                    const Index twin = mesh_.twin[at(h)];
+                    if (twin < 0 || new_border_[at(h)] == closed)
+                        continue;
+                    if (is_border(mesh_, chart_, h) && new_border_[at(h)] != passable)
+                        continue;
+                    take(twin / 3);
+                }
+            }
+        };
+        for (const Index h : path) {
+            flood(h / 3, segment.chart_a);
+            flood(mesh_.twin[at(h)] / 3, segment.chart_b);
+        }
+        mark(segment.half_edges, 0);
+        mark(path, 0);
+        return consistent && apply(segment, labels);
+    }
+
+    // A loop that two charts share: the least cut between their cores.
+    bool straighten_loop(const BorderSegment& segment) {
+        if (area_.empty())
+            return false;
+        std::vector<std::pair<Index, Index>> index_of; // (face, node), sorted
+        for (std::size_t i = 0; i < area_.size(); ++i)
+            index_of.emplace_back(area_[i], static_cast<Index>(i));
+        std::sort(index_of.begin(), index_of.end());
+        const auto node_of = [&](Index f) {
+            return std::lower_bound(index_of.begin(), index_of.end(), std::pair(f, Index{0}))
+                ->second;
+        };
+        // Two more nodes stand for all that lies outside of the area.
+        std::vector<CutSide> sides(area_.size() + 2, CutSide::open);
+        const Index core_a = static_cast<Index>(area_.size());
+        sides[at(core_a)] = CutSide::source;
+        sides[at(core_a + 1)] = CutSide::sink;
+        MinCut cut(std::move(sides));
+        bool has_core[2] = {false, false};
+        for (const Index f : area_)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0)
+                    continue;
+                const Index c = chart_[at(twin / 3)];
+                if (fuzzy_[at(twin / 3)] != 0) {
+                    if (twin > h)
+                        cut.link(node_of(f), node_of(twin / 3), mesh_.edge_length(h));
+                } else if (c == segment.chart_a || c == segment.chart_b) {
+                    const int side = c == segment.chart_a ? 0 : 1;
+                    has_core[side] = true;
+                    cut.link(node_of(f), core_a + side, mesh_.edge_length(h));
+                }
+            }
+        if (!has_core[0] || !has_core[1])
+            return false;
+        const std::vector<CutSide> result = cut.solve();
+        std::vector<std::pair<Index, Index>> labels;
+        for (std::size_t i = 0; i < area_.size(); ++i)
+            labels.emplace_back(area_[i],
+                                result[i] == CutSide::source ? segment.chart_a : segment.chart_b);
+        return apply(segment, labels);
+    }
+
+    // Faces that hang together with `start` in its chart, and their Euler characteristic: with b
+    // boundary edges and i inner vertices, V = i + b and 2 E = 3 F + b.
+    struct Topology {
+        Index faces = 0;
+        Index doubled_euler = 0;
+    };
+    Topology topology(Index start) {
+        const Index c = chart_[at(start)];
+        Topology result;
+        Index boundary = 0;
+        Index inner = 0;
+        std::vector<Index> reached{start};
+        in_flood_[at(start)] = 1;
+        for (std::size_t i = 0; i < reached.size(); ++i)
+            for (Index h = 3 * reached[i]; h < 3 * reached[i] + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                const Index v = mesh_.origin(h);
+                inner += ++corners_[at(v)] == valence_[at(v)] ? 1 : 0;
+                if (twin < 0 || chart_[at(twin / 3)] != c) {
+                    ++boundary;
+                } else if (in_flood_[at(twin / 3)] == 0) {
+                    in_flood_[at(twin / 3)] = 1;
+                    reached.push_back(twin / 3);
+                }
+            }
+        result.faces = static_cast<Index>(reached.size());
+        result.doubled_euler = 2 * inner + boundary - result.faces;
+        for (const Index f : reached) {
+            in_flood_[at(f)] = 0;
+            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+                corners_[at(mesh_.origin(h))] = 0;
+        }
+        return result;
+    }
+
+    // Takes the new labels unless a chart would fall apart, shrink by much or change its topology.
+    bool apply(const BorderSegment& segment, const std::vector<std::pair<Index, Index>>& labels) {
+        const Index first = segment.half_edges.front();
+        const Topology before_a = topology(first / 3);
+        const Topology before_b = topology(mesh_.twin[at(first)] / 3);
+        std::vector<std::pair<Index, Index>> undo;
+        Index sum[2] = {before_a.faces, before_b.faces}; // faces that the charts should have
+        Index lost[2] = {0, 0};
+        for (const auto& [f, c] : labels) {
+            if (chart_[at(f)] == c)
+                continue;
+            undo.emplace_back(f, chart_[at(f)]);
+            sum[c == segment.chart_a ? 0 : 1] += 1;
+            sum[c == segment.chart_a ? 1 : 0] -= 1;
+            lost[c == segment.chart_a ? 1 : 0] += 1;
+            chart_[at(f)] = c;
+        }
+        if (undo.empty())
+            return false;
+        bool good = sum[0] > 0 && sum[1] > 0 && lost[0] <= largest_loss * before_a.faces &&
+                    lost[1] <= largest_loss * before_b.faces;
+        for (int i = 0; i < 2 && good; ++i) {
+            const Index c = i == 0 ? segment.chart_a : segment.chart_b;
+            const auto found = std::find_if(labels.begin(), labels.end(),
+                                            [&](const auto& l) { return l.second == c; });
+            if (found == labels.end())
+                good = false;
+            else {
+                const Topology after = topology(found->first);
+                good = after.faces == sum[i] &&
+                       after.doubled_euler == (i == 0 ? before_a : before_b).doubled_euler;
+            }
+        }
+        if (!good)
+            for (const auto& [f, c] : undo)
+                chart_[at(f)] = c;
+        return good;
+    }
+
+    static constexpr double worthwhile = 1.0 - 1e-9; // shorter than rounding would explain
+    static constexpr double largest_loss = 0.3;      // of a chart's faces: it must stay what it is
+    static constexpr std::uint8_t passable = 1;
+    static constexpr std::uint8_t closed = 2;
+
+    const Mesh& mesh_;
+    std::vector<Vec3> normals_; // #F
+    const ChartProxies& proxies_;
+    double max_fitting_error_;
+    int rings_;
+    std::vector<Index>& chart_;
+    std::vector<std::uint8_t> fuzzy_;      // #F: 1 = in the area; 2, 3 = given to chart a, b
+    std::vector<Index> area_;              // the faces in the fuzzy area
+    std::vector<std::uint8_t> blocked_;    // #V: 1 on the border at hand
+    std::vector<double> distance_;         // #V
+    std::vector<Index> arrival_;           // #V: half-edge of the shortest path
+    std::vector<std::uint8_t> new_border_; // 3 #F
+    std::vector<Index> outgoing_;          // #V: a half-edge that leaves the vertex
+    std::vector<Index> valence_;           // #V: faces of an inner vertex, −1 on the boundary
+    std::vector<Index> corners_;           // #V: scratch of topology()
+    std::vector<std::uint8_t> in_flood_;   // #F: scratch of topology()
+};
+
+} // namespace
+
+Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
+                         int rings, std::vector<Index>& chart, Progress& progress) {
+    Straightener straightener(mesh, proxies, max_fitting_error, rings, chart, progress);
+    Index replaced = 0;
+    progress.check();
+    std::vector<BorderSegment> segments = find_border_segments(mesh, chart);
+    // Each border changes what the next ones find: the longest first, whatever the order of faces.
+    const auto length = [&](const BorderSegment& segment) {
+        double sum = 0.0;
+        for (const Index h : segment.half_edges)
+            sum += mesh.edge_length(h);
+        return sum;
+    };
+    std::stable_sort(
+        segments.begin(), segments.end(),
+        [&](const BorderSegment& a, const BorderSegment& b) { return length(a) > length(b); });
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(segments.size()));
+        replaced += straightener.straighten(segments[i]) ? 1 : 0;
+    }
+    return replaced;
+}
+
+} // namespace devseg

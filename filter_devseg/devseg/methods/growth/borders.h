@@ -1,0 +1,38 @@
+// Borders between charts: finding them, and making them straight [JKS05, section 3.3].
+//
+// References
+//   [JKS05] D. Julius, V. Kraevoy, A. Sheffer: D-Charts: Quasi-Developable Mesh Segmentation.
+//           Computer Graphics Forum 24(3), 2005. doi:10.1111/j.1467-8659.2005.00883.x
+#pragma once
+
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/base/progress.h"
+#include "devseg/metrics/conic_proxy.h"
+
+namespace devseg {
+
+/// A piece of the border between two charts: from one junction to the next, or a whole loop. A
+/// junction is a vertex where three charts meet, or where the border reaches the mesh's boundary.
+struct BorderSegment {
+    Index chart_a = 0;             // the chart on the left
+    Index chart_b = 0;             // the chart on the right
+    std::vector<Index> half_edges; // of chart a, head to tail
+    bool is_loop = false;
+};
+
+std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vector<Index>& chart);
+
+/// What faces may fit in each chart: one proxy, or several for charts that were joined.
+using ChartProxies = std::vector<std::vector<ConicProxy>>;
+
+/// Replaces each border by the shortest path between its ends, or the shortest loop around it,
+/// within the fuzzy area of its two charts: the faces near the border that fit both proxies better
+/// than `max_fitting_error`, at most `rings` faces away from it (0: any number). A border stays as
+/// it is where a new one would take a chart apart or change its number of boundary loops. Returns
+/// the number of borders that were replaced.
+Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
+                         int rings, std::vector<Index>& chart, Progress& progress);
+
+} // namespace devseg

@@ -1,0 +1,174 @@
+#include "devseg/methods/growth/expansion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/atlas/border_path.h"
+#include "devseg/graph/min_cut.h"
+
+namespace devseg {
+
+namespace {
+
+// Above F_max a face pays this many times the excess, so that only faces that fit nowhere, and
+// faces enclosed by others, are given to a chart that they do not fit.
+constexpr double excess_weight = 20.0;
+// A chart is offered faces up to this multiple of F_max; beyond it they cannot be worth it.
+constexpr double reach = 1.5;
+constexpr double settled_share = 2e-3; // of the faces: fewer changes in a round end it
+
+class Expansion {
+public:
+    Expansion(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
+              const ExpansionOptions& options, std::vector<Index>& chart)
+        : mesh_(mesh), proxies_(proxies), options_(options), chart_(chart),
+          node_(mesh.faces.size(), -1), weight_(mesh.twin.size(), 0.0) {
+        const double scale = options.length_weight * std::sqrt(mesh.total_area);
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            if (mesh.twin[at(h)] >= 0)
+                weight_[at(h)] = scale * crease_factor(mesh, h) * mesh.edge_length(h);
+    }
+
+    // Lets one chart take what lowers the sum; returns the number of faces that it took.
+    Index expand(Index label) {
+        find_candidates(label);
+        if (faces_.empty())
+            return 0;
+        const Index taken = solve(label);
+        for (const Index f : faces_)
+            node_[at(f)] = -1;
+        faces_.clear();
+        return taken;
+    }
+
+private:
+    double cost(Index f, Index label) const {
+        const double error = proxies_[at(label)].fitting_error(mesh_.face_normals[at(f)]);
+        const double beyond = std::max(0.0, error - options_.max_fitting_error);
+        return mesh_.face_areas[at(f)] * (error + excess_weight * beyond);
+    }
+
+    // Faces of other charts that the chart reaches over faces which it may take.
+    void find_candidates(Index label) {
+        const auto offer = [&](Index f) {
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0 || chart_[at(twin / 3)] == label || node_[at(twin / 3)] >= 0)
+                    continue;
+                const Index g = twin / 3;
+                if (proxies_[at(label)].fitting_error(mesh_.face_normals[at(g)]) >=
+                    reach * options_.max_fitting_error)
+                    continue;
+                node_[at(g)] = static_cast<Index>(faces_.size());
+                faces_.push_back(g);
+            }
+        };
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            if (chart_[at(f)] == label)
+                offer(f);
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            offer(faces_[i]);
+    }
+
+    // Nodes on the source's side take the label, the others keep theirs.
+    Index solve(Index label) {
+        const Index count = static_cast<Index>(faces_.size());
+        const Index source = count;
+        const Index sink = count + 1;
+        std::vector<CutSide> sides(faces_.size() + 2, CutSide::open);
+        sides[at(source)] = CutSide::source;
+        sides[at(sink)] = CutSide::sink;
+        std::vector<double> take(faces_.size());
+        std::vector<double> keep(faces_.size());
+        links_.clear();
+        for (Index i = 0; i < count; ++i) {
+            const Index f = faces_[at(i)];
+            const Index own = chart_[at(f)];
+            take[at(i)] += cost(f, label);
+            keep[at(i)] += cost(f, own);
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0)
+                    continue;
+                const Index other = chart_[at(twin / 3)];
+                const Index node = node_[at(twin / 3)];
+                const double w = weight_[at(h)];
+                if (node >= 0 && other == own) {
+                    if (h < twin)
+                        links_.push_back({i, node, w});
+                } else if (node >= 0) {
+                    if (h < twin)
+                        link_across_border(i, node, source, w, sides);
+                } else if (other == label) {
+                    keep[at(i)] += w;
+                } else {
+                    take[at(i)] += w;
+                    keep[at(i)] += other == own ? 0.0 : w;
+                }
+            }
+        }
+        MinCut cut(std::move(sides));
+        for (Index i = 0; i < count; ++i) {
+            const double difference = keep[at(i)] - take[at(i)];
+            if (difference > 0.0)
+                cut.link(source, i, difference);
+            else
+                cut.link(i, sink, -difference);
+        }
+        for (const Link& link : links_)
+            cut.link(link.a, link.b, link.weight);
+        const std::vector<CutSide> side = cut.solve();
+        Index taken = 0;
+        for (Index i = 0; i < count; ++i)
+            if (side[at(i)] == CutSide::source) {
+                chart_[at(faces_[at(i)])] = label;
+                ++taken;
+            }
+        return taken;
+    }
+
+    // An edge on a border costs w unless both faces take the label: one more node [BVZ01, fig. 5].
+    void link_across_border(Index a, Index b, Index source, double w, std::vector<CutSide>& sides) {
+        const Index extra = static_cast<Index>(sides.size());
+        sides.push_back(CutSide::open);
+        links_.push_back({extra, a, w});
+        links_.push_back({extra, b, w});
+        links_.push_back({extra, source, w});
+    }
+
+    struct Link {
+        Index a, b;
+        double weight;
+    };
+
+    const Mesh& mesh_;
+    const std::vector<ConicProxy>& proxies_;
+    const ExpansionOptions& options_;
+    std::vector<Index>& chart_;
+    std::vector<Index> faces_;   // candidates of the current move
+    std::vector<Index> node_;    // #F: number among the candidates, −1 for others
+    std::vector<double> weight_; // 3 #F: what the edge costs as a border
+    std::vector<Link> links_;
+};
+
+} // namespace
+
+void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
+                          const ExpansionOptions& options, std::vector<Index>& chart,
+                          Progress& progress) {
+    Expansion expansion(mesh, proxies, options, chart);
+    const std::size_t count = proxies.size();
+    for (int round = 0; round < options.max_rounds; ++round) {
+        Index changed = 0;
+        for (std::size_t c = 0; c < count; ++c) {
+            progress.update((static_cast<double>(c) / static_cast<double>(count) + round) /
+                            options.max_rounds);
+            changed += expansion.expand(static_cast<Index>(c));
+        }
+        if (changed < settled_share * static_cast<double>(mesh.faces.size()))
+            return;
+        proxies = fit_conics(mesh, chart, static_cast<Index>(count));
+    }
+}
+
+} // namespace devseg

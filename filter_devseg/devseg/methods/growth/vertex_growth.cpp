@@ -1,0 +1,220 @@
+#include "devseg/methods/growth/vertex_growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "devseg/mesh/angle_defects.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr Index update_every = 4096; // vertices between two looks at the progress object
+
+} // namespace
+
+VertexGrowth::VertexGrowth(const Mesh& mesh, std::vector<double> cost)
+    : mesh_(mesh), cost_(std::move(cost)), leaving_(leaving_half_edges(mesh)),
+      boundary_(boundary_vertices(mesh)) {}
+
+void VertexGrowth::start(std::size_t charts) {
+    state_.inside.assign(mesh_.points.size(), -1);
+    state_.chart.assign(mesh_.faces.size(), -1);
+    state_.face_count.assign(charts, 0);
+    state_.cost.assign(charts, 0.0);
+    heaps_.resize(charts);
+    for (CandidateHeap& heap : heaps_)
+        heap.clear();
+}
+
+bool VertexGrowth::is_free(Index v) const {
+    bool free = leaving_[at(v)] >= 0;
+    if (free)
+        visit_star(mesh_, leaving_[at(v)],
+                   [&](Index h) { free = free && state_.chart[at(h / 3)] < 0; });
+    return free;
+}
+
+// A chart stays a disk if the vertex has one fan of the chart's faces and a gap of free ones. A
+// vertex without a gap is surrounded by the chart: it is the tip of a slit, and stays one.
+bool VertexGrowth::can_take(Index v, Index c) const {
+    if (state_.inside[at(v)] >= 0 || !std::isfinite(cost_[at(v)]))
+        return false;
+    int fans = 0;
+    bool gap = false;
+    bool foreign = false;
+    bool first = true;
+    bool first_glued = false;
+    bool before = false; // whether the edge before hangs together
+    const auto visit_edge = [&](bool glued) {
+        if (first)
+            first_glued = glued;
+        else if (glued && !before)
+            ++fans;
+        first = false;
+        before = glued;
+    };
+    const auto visit = [&](Index h) {
+        const Index chart = state_.chart[at(h / 3)];
+        const bool from = state_.inside[at(mesh_.target(h))] == c;
+        const bool to = state_.inside[at(mesh_.origin(Mesh::previous(h)))] == c;
+        visit_edge(from);
+        if (!from && !to) {
+            gap = gap || chart < 0;
+            foreign = foreign || chart >= 0;
+        }
+        if (boundary_[at(v)] != 0 && mesh_.twin[at(Mesh::previous(h))] < 0)
+            visit_edge(to);
+    };
+    visit_star(mesh_, leaving_[at(v)], visit);
+    // Around an inner vertex the first edge comes after the last one; on the boundary, after none.
+    if (first_glued && (boundary_[at(v)] != 0 || !before || fans == 0))
+        ++fans;
+    return fans == 1 && gap && !foreign;
+}
+
+void VertexGrowth::take(Index v, Index c, float distance) {
+    state_.inside[at(v)] = c;
+    state_.cost[at(c)] += cost_[at(v)];
+    visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+        if (state_.chart[at(h / 3)] < 0) {
+            state_.chart[at(h / 3)] = c;
+            ++state_.face_count[at(c)];
+        }
+    });
+    const auto offer = [&](Index u, double length) {
+        const float d = distance + static_cast<float>(length);
+        if (state_.inside[at(u)] < 0)
+            heaps_[at(c)].push({static_cast<float>(cost_[at(u)]), d, u});
+    };
+    visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+        offer(mesh_.target(h), mesh_.edge_length(h));
+        if (mesh_.twin[at(Mesh::previous(h))] < 0)
+            offer(mesh_.origin(Mesh::previous(h)), mesh_.edge_length(Mesh::previous(h)));
+    });
+}
+
+// The best candidate of chart c, −1 for none. A vertex that cannot be taken now is dropped: it is
+// offered again when a neighbour is taken, and nothing else can make it fit.
+Index VertexGrowth::best(Index c) {
+    CandidateHeap& heap = heaps_[at(c)];
+    while (!heap.empty() && !can_take(heap.top().face, c))
+        heap.pop();
+    return heap.empty() ? -1 : heap.top().face;
+}
+
+std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress) {
+    start(0);
+    std::vector<Index> order(mesh_.points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+        return std::make_tuple(boundary_[at(a)], cost_[at(a)]) <
+               std::make_tuple(boundary_[at(b)], cost_[at(b)]);
+    });
+    std::vector<Index> seeds;
+    Index taken = 0;
+    for (const Index seed : order) {
+        if (!is_free(seed))
+            continue;
+        const Index c = static_cast<Index>(seeds.size());
+        seeds.push_back(seed);
+        heaps_.resize(1);
+        heaps_.front().clear();
+        heaps_.resize(seeds.size());
+        heaps_[at(c)].clear();
+        state_.face_count.push_back(0);
+        state_.cost.push_back(0.0);
+        take(seed, c, 0.0F);
+        for (Index v = best(c); v >= 0; v = best(c)) {
+            if (state_.cost[at(c)] + cost_[at(v)] > threshold)
+                break;
+            const float distance = heaps_[at(c)].top().distance;
+            heaps_[at(c)].pop();
+            take(v, c, distance);
+            if (++taken % update_every == 0)
+                progress.update(0.0);
+        }
+    }
+    return seeds;
+}
+
+VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progress) {
+    start(seeds.size());
+    const Index count = static_cast<Index>(seeds.size());
+    for (Index c = 0; c < count; ++c)
+        take(seeds[at(c)], c, 0.0F);
+    Tournament<double> tournament(count);
+    const auto rank = [&](Index c) {
+        tournament.set(c,
+                       best(c) < 0 ? infinite : state_.cost[at(c)]);
+    };
+    for (Index c = 0; c < count; ++c)
+        rank(c);
+    for (Index taken = 0;
+         tournament.key(tournament.winner()) < infinite;) {
+        const Index c = tournament.winner();
+        const Index v = best(c); // another chart may have come in between
+        if (v >= 0) {
+            const float distance = heaps_[at(c)].top().distance;
+            heaps_[at(c)].pop();
+            take(v, c, distance);
+            if (++taken % update_every == 0)
+                progress.update(0.0);
+        }
+        rank(c);
+    }
+    return state_;
+}
+
+ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
+    ChartMap charts;
+    charts.chart = grown.chart;
+    charts.count = static_cast<Index>(grown.face_count.size());
+    charts.seam.assign(mesh.twin.size(), 1);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index c = grown.chart[at(h / 3)];
+        if (mesh.twin[at(h)] >= 0 && c >= 0 && c == grown.chart[at(mesh.twin[at(h)] / 3)] &&
+            (grown.inside[at(mesh.origin(h))] == c || grown.inside[at(mesh.target(h))] == c))
+            charts.seam[at(h)] = 0;
+    }
+    // The face with the longest share of its border to gain goes first; half-edges of taken faces.
+    using Offer = std::pair<double, Index>;
+    std::priority_queue<Offer> offers;
+    const auto offer_across = [&](Index h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin < 0 || charts.chart[at(twin / 3)] >= 0)
+            return;
+        double shared = 0.0;
+        double all = 0.0;
+        for (Index k = 3 * (twin / 3); k < 3 * (twin / 3) + 3; ++k) {
+            all += mesh.edge_length(k);
+            if (mesh.twin[at(k)] >= 0 &&
+                charts.chart[at(mesh.twin[at(k)] / 3)] == charts.chart[at(h / 3)])
+                shared += mesh.edge_length(k);
+        }
+        // Among the edges to one chart the longest is the best hinge: it counts a little.
+        offers.emplace((shared + 1e-3 * mesh.edge_length(h)) / all, -h);
+    };
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (charts.chart[at(h / 3)] >= 0)
+            offer_across(h);
+    while (!offers.empty()) {
+        const Index h = -offers.top().second;
+        offers.pop();
+        const Index twin = mesh.twin[at(h)];
+        if (charts.chart[at(twin / 3)] >= 0)
+            continue;
+        charts.chart[at(twin / 3)] = charts.chart[at(h / 3)];
+        charts.seam[at(h)] = charts.seam[at(twin)] = 0;
+        for (Index k = 3 * (twin / 3); k < 3 * (twin / 3) + 3; ++k)
+            offer_across(k);
+    }
+    return charts;
+}
+
+} // namespace devseg

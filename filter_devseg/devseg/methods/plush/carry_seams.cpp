@@ -1,0 +1,220 @@
+#include "devseg/methods/plush/carry_seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "devseg/mesh/surface_search.h"
+#include "devseg/methods/plush/seam_curves.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double reach = 2.5;   // mean edges of the first surface: how far paths may leave the line
+constexpr double leaning = 2.0; // mean edges of the second one: a path so far away costs double
+constexpr double stray_share = 0.4; // of an edge's cost: what goes where seams look natural
+constexpr double least_leaning =
+    0.1; // of that, where the second surface is no finer than the first
+constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
+
+double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
+    double least = infinite;
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        const Vec3 edge = line[i + 1] - line[i];
+        const double t =
+            std::clamp((p - line[i]).dot(edge) / std::max(edge.squaredNorm(), 1e-300), 0.0, 1.0);
+        least = std::min(least, (line[i] + t * edge - p).squaredNorm());
+    }
+    return std::sqrt(least);
+}
+
+class Carrier {
+public:
+    Carrier(const Mesh& from, const Mesh& to, const VertexGraph& graph,
+            const std::vector<double>& stray)
+        : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
+          normal_(vertex_normals(from)), on_border_(boundary_vertices(from)),
+          may_border_(boundary_vertices(to)), reach_(reach * mean_edge_length(from)),
+          leaning_(leaning * mean_edge_length(to) *
+                   std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
+                              least_leaning, 1.0)),
+          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
+        for (Index h = 0; h < to.half_edge_count(); ++h)
+            cost_.push_back(cost_of(h, reach_));
+    }
+
+    SeamMarks run(const SeamMarks& seam, Progress& progress) {
+        points_ = smooth_seams(from_, seam);
+        const std::vector<double> even(seam.size(), 1.0);
+        std::vector<SeamSegment> segments = find_segments(from_, seam, {}, even);
+        std::stable_sort(
+            segments.begin(), segments.end(),
+            [](const SeamSegment& a, const SeamSegment& b) { return a.length > b.length; });
+        std::vector<std::vector<Index>> lines;
+        for (const SeamSegment& segment : segments)
+            add_lines(segment, lines);
+        for (const std::vector<Index>& line : lines)
+            for (const Index v : {line.front(), line.back()})
+                if (place(v) >= 0)
+                    taken_[at(place(v))] = 1;
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            progress.update(static_cast<double>(i) / static_cast<double>(lines.size()));
+            carry(lines[i], progress);
+        }
+        return std::move(seam_);
+    }
+
+private:
+    // Vertices of a segment, in short parts.
+    void add_lines(const SeamSegment& segment, std::vector<std::vector<Index>>& lines) const {
+        const std::size_t count = segment.half_edges.size();
+        const std::size_t least = segment.is_loop ? std::min<std::size_t>(3, count) : 1;
+        const std::size_t parts = std::max(least, count / part_edges);
+        for (std::size_t part = 0; part < parts; ++part) {
+            std::vector<Index> line;
+            for (std::size_t k = part * count / parts; k < (part + 1) * count / parts; ++k) {
+                const Index h = segment.half_edges[k];
+                if (line.empty())
+                    line.push_back(from_.origin(h));
+                line.push_back(from_.target(h));
+            }
+            lines.push_back(std::move(line));
+        }
+    }
+
+    Index place(Index v) {
+        if (place_[at(v)] < 0)
+            place_[at(v)] = search_.vertex(points_[at(v)], normal_[at(v)], [&](Index u) {
+                return on_border_[at(v)] == 0 || may_border_[at(u)] != 0;
+            });
+        return place_[at(v)];
+    }
+
+    void carry(const std::vector<Index>& line, const Progress& progress) {
+        const Index start = place(line.front());
+        const Index end = place(line.back());
+        if (start < 0 || end < 0 || start == end)
+            return;
+        const std::vector<std::uint8_t> strip = lean_towards(line);
+        std::vector<std::uint8_t> free = strip;
+        for (std::size_t v = 0; v < free.size(); ++v)
+            if (taken_[v] != 0)
+                free[v] = 0;
+        free[at(start)] = free[at(end)] = 1;
+        // Where other seams leave no room the path shares their edges.
+        for (const std::vector<std::uint8_t>& allowed :
+             {free, strip, std::vector<std::uint8_t>{}}) {
+            const PathTree tree = shortest_paths(graph_, cost_, {start}, progress, allowed);
+            if (!std::isfinite(tree.distance[at(end)]))
+                continue;
+            for (const Index h : trace_path(to_, tree, end)) {
+                mark(to_, h, 1, seam_);
+                taken_[at(to_.origin(h))] = taken_[at(to_.target(h))] = 1;
+            }
+            return;
+        }
+    }
+
+    double cost_of(Index h, double away) const {
+        const double d = away / leaning_;
+        return to_.edge_length(h) * (1.0 + d * d) *
+               (1.0 - stray_share + stray_share * stray_[at(h)]);
+    }
+
+    // Sets the cost of the edges near the line; returns the vertices there.
+    std::vector<std::uint8_t> lean_towards(const std::vector<Index>& line) {
+        std::vector<Vec3> points;
+        for (const Index v : line)
+            points.push_back(points_[at(v)]);
+        std::vector<double> away(to_.points.size(), reach_);
+        std::vector<std::uint8_t> strip(to_.points.size(), 0);
+        std::vector<Index> queue;
+        const auto visit = [&](Index v) {
+            if (strip[at(v)] != 0)
+                return;
+            const double distance = distance_to_line(to_.points[at(v)], points);
+            if (distance > reach_)
+                return;
+            strip[at(v)] = 1;
+            away[at(v)] = distance;
+            queue.push_back(v);
+        };
+        for (const Index v : line)
+            if (const Index u = place(v); u >= 0) {
+                visit(u);
+            }
+        for (std::size_t k = 0; k < queue.size(); ++k)
+            for (Index i = graph_.begin[at(queue[k])]; i < graph_.begin[at(queue[k]) + 1]; ++i)
+                visit(graph_.vertex[at(i)]);
+        for (const Index h : near_)
+            cost_[at(h)] = cost_of(h, reach_);
+        near_.clear();
+        for (const Index v : queue)
+            for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
+                const Index h = graph_.half_edge[at(i)];
+                cost_[at(h)] =
+                    cost_of(h, 0.5 * (away[at(to_.origin(h))] + away[at(to_.target(h))]));
+                near_.push_back(h);
+            }
+        strip[at(place(line.front()))] = strip[at(place(line.back()))] = 1;
+        return strip;
+    }
+
+    const Mesh& from_;
+    const Mesh& to_;
+    const VertexGraph& graph_;
+    const std::vector<double>& stray_; // 3 #F of to
+    const SurfaceSearch search_;
+    std::vector<Vec3> points_;                   // #V of from: on smooth seams
+    const std::vector<Vec3> normal_;             // #V of from
+    const std::vector<std::uint8_t> on_border_;  // #V of from
+    const std::vector<std::uint8_t> may_border_; // #V of to
+    const double reach_;
+    const double leaning_;
+    SeamMarks seam_;
+    std::vector<std::uint8_t> taken_; // #V of to: on a seam, or an end of one
+    std::vector<Index> place_;        // #V of from: nearest vertex of to
+    std::vector<double> cost_;        // 3 #F of to
+    std::vector<Index> near_;         // half-edges of to that are near the line of the last turn
+};
+
+} // namespace
+
+SeamMarks carry_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
+                      const VertexGraph& graph, const std::vector<double>& stray,
+                      Progress& progress) {
+    return Carrier(from, to, graph, stray).run(seam, progress);
+}
+
+void cut_corners(const Mesh& mesh, SeamMarks& seam) {
+    std::vector<Index> degree = seam_degrees(mesh, seam);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+            const Index n = Mesh::next(h);
+            const Index third = Mesh::previous(h);
+            if (seam[at(h)] == 0 || seam[at(n)] == 0 || seam[at(third)] != 0 ||
+                mesh.twin[at(third)] < 0)
+                continue;
+            if (degree[at(mesh.target(h))] != 2) {
+                const Index longer = mesh.edge_length(h) >= mesh.edge_length(n) ? h : n;
+                const Index outer = longer == h ? mesh.origin(h) : mesh.target(n);
+                if (degree[at(outer)] != 2 || !(mesh.edge_length(third) < mesh.edge_length(longer)))
+                    continue;
+                mark(mesh, longer, 0, seam);
+                --degree[at(mesh.target(h))];
+                ++degree[at(longer == h ? mesh.target(n) : mesh.origin(h))];
+            } else {
+                mark(mesh, h, 0, seam);
+                mark(mesh, n, 0, seam);
+                degree[at(mesh.target(h))] = 0;
+            }
+            mark(mesh, third, 1, seam);
+            changed = true;
+        }
+    }
+}
+
+} // namespace devseg

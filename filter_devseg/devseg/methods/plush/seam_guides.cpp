@@ -1,0 +1,231 @@
+#include "devseg/methods/plush/seam_guides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace devseg {
+
+namespace {
+
+constexpr double beside = 0.015;          // of the diagonal: how far beside an edge normals count
+constexpr double window = 0.04;           // of the diagonal: over which a seam has a direction
+constexpr double along = 30.0 * degrees;   // from the skeleton
+constexpr double crease = 30.0 * degrees;  // of bend
+constexpr double concave = 10.0 * degrees; // of bend the other way
+constexpr double near_border = 0.015;     // of the diagonal
+constexpr double near_image = 0.02;       // of the diagonal
+constexpr double sample_distance = 0.005; // of the diagonal
+
+double diagonal_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        box.extend(mesh.points[at(mesh.origin(h))]);
+    return box.diagonal().norm();
+}
+
+double smooth_step(double from, double to, double x) {
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// Mean normals beside edges.
+class EdgeShapes {
+public:
+    explicit EdgeShapes(const Mesh& mesh)
+        : mesh_(mesh), reach_(beside * diagonal_of(mesh)), seen_(mesh.faces.size(), -1) {}
+
+    EdgeShape at_edge(Index h) {
+        const Index twin = mesh_.twin[at(h)];
+        const Side left = side_of(h);
+        if (twin < 0)
+            return {0.0, left.normal};
+        const Side right = side_of(twin);
+        const Vec3 edge =
+            (mesh_.points[at(mesh_.target(h))] - mesh_.points[at(mesh_.origin(h))]).normalized();
+        const double angle =
+            std::atan2(left.normal.cross(right.normal).dot(edge), left.normal.dot(right.normal));
+        // Large faces see more of a curved surface.
+        const double bend = angle * std::min(1.0, reach_ / (right.center - left.center).norm());
+        return {bend, (left.normal + right.normal).stableNormalized()};
+    }
+
+private:
+    struct Side {
+        Vec3 normal;
+        Vec3 center;
+    };
+
+    // Of the faces that hang together with the half-edge's own on its side and are near.
+    Side side_of(Index h) {
+        const Vec3& a = mesh_.points[at(mesh_.origin(h))];
+        const Vec3& b = mesh_.points[at(mesh_.target(h))];
+        const Vec3 middle = 0.5 * (a + b);
+        const Vec3 inward = mesh_.face_normals[at(h / 3)].cross(b - a);
+        std::vector<Index> faces{h / 3};
+        seen_[at(h / 3)] = h;
+        Vec3 normal = Vec3::Zero();
+        Vec3 center = Vec3::Zero();
+        double area = 0.0;
+        for (std::size_t k = 0; k < faces.size(); ++k) {
+            normal += mesh_.face_areas[at(faces[k])] * mesh_.face_normals[at(faces[k])];
+            center += mesh_.face_areas[at(faces[k])] * mesh_.face_centers[at(faces[k])];
+            area += mesh_.face_areas[at(faces[k])];
+            for (Index e = 3 * faces[k]; e < 3 * faces[k] + 3; ++e) {
+                const Index twin = mesh_.twin[at(e)];
+                if (e == h || twin < 0 || seen_[at(twin / 3)] == h)
+                    continue;
+                const Vec3 away = mesh_.face_centers[at(twin / 3)] - middle;
+                if (away.norm() > reach_ || away.dot(inward) <= 0.0)
+                    continue;
+                seen_[at(twin / 3)] = h;
+                faces.push_back(twin / 3);
+            }
+        }
+        return {normal.stableNormalized(), center / std::max(area, 1e-300)};
+    }
+
+    const Mesh& mesh_;
+    const double reach_;
+    std::vector<Index> seen_; // #F: the half-edge that asked last
+};
+
+// The direction of a seam at each of its edges: between the points half a window before and behind.
+std::vector<Vec3> smooth_directions(const Mesh& mesh, const SeamSegment& segment, double width) {
+    std::vector<Vec3> point{mesh.points[at(mesh.origin(segment.half_edges.front()))]};
+    std::vector<double> place{0.0};
+    for (const Index h : segment.half_edges) {
+        point.push_back(mesh.points[at(mesh.target(h))]);
+        place.push_back(place.back() + mesh.edge_length(h));
+    }
+    const auto point_at = [&](double s) {
+        const auto next = std::upper_bound(place.begin() + 1, place.end() - 1, s);
+        const auto i = static_cast<std::size_t>(next - place.begin());
+        const double t = (s - place[i - 1]) / std::max(place[i] - place[i - 1], 1e-300);
+        return Vec3(point[i - 1] + t * (point[i] - point[i - 1]));
+    };
+    std::vector<Vec3> directions;
+    for (std::size_t i = 0; i + 1 < place.size(); ++i) {
+        const double middle = 0.5 * (place[i] + place[i + 1]);
+        const Vec3 chord = point_at(std::min(place.back(), middle + 0.5 * width)) -
+                           point_at(std::max(0.0, middle - 0.5 * width));
+        directions.push_back(chord.stableNormalized());
+    }
+    return directions;
+}
+
+struct Sample {
+    Vec3 point;
+    double length = 0.0;
+};
+
+std::vector<Sample> sample_seams(const Mesh& mesh, const SeamMarks& seam, double distance) {
+    std::vector<Sample> samples;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (seam[at(h)] == 0 || mesh.twin[at(h)] < h)
+            continue;
+        const Vec3& a = mesh.points[at(mesh.origin(h))];
+        const Vec3& b = mesh.points[at(mesh.target(h))];
+        const int count = std::max(1, static_cast<int>(std::ceil((b - a).norm() / distance)));
+        for (int k = 0; k < count; ++k)
+            samples.push_back({a + (k + 0.5) / count * (b - a), (b - a).norm() / count});
+    }
+    return samples;
+}
+
+double mirrored_share(const std::vector<Sample>& samples, const MirrorPlane& plane, double reach,
+                      const Progress& progress) {
+    double mirrored = 0.0;
+    double total = 0.0;
+    for (const Sample& sample : samples) {
+        progress.check();
+        const Vec3 image = plane.reflect(sample.point);
+        total += sample.length;
+        const bool has_image = std::any_of(samples.begin(), samples.end(), [&](const Sample& s) {
+            return (s.point - image).squaredNorm() < reach * reach;
+        });
+        mirrored += has_image ? sample.length : 0.0;
+    }
+    return total > 0.0 ? mirrored / total : 0.0;
+}
+
+bool is_along_border(const Vec3& middle, const Vec3& direction,
+                     const std::vector<SeamGuides::Line>& borders, double reach) {
+    return std::any_of(borders.begin(), borders.end(), [&](const SeamGuides::Line& line) {
+        const Vec3 edge = line.to - line.from;
+        const double t = std::clamp((middle - line.from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+        return (line.from + t * edge - middle).squaredNorm() < reach * reach &&
+               std::abs(edge.dot(direction)) >= std::cos(along) * edge.norm();
+    });
+}
+
+} // namespace
+
+std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress) {
+    EdgeShapes shapes(mesh);
+    std::vector<EdgeShape> result(mesh.twin.size());
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        if (h % 1024 == 0)
+            progress.check();
+        const Index twin = mesh.twin[at(h)];
+        if (twin < h)
+            result[at(h)] = shapes.at_edge(h);
+        if (twin >= 0 && twin < h)
+            result[at(twin)] = result[at(h)];
+    }
+    return result;
+}
+
+double straying(double across, double bend) {
+    const double bent = std::max(smooth_step(0.5 * crease, crease, bend),
+                                 smooth_step(0.25 * concave, concave, -bend));
+    return std::min(
+        smooth_step(1.0 - std::cos(20.0 * degrees), 1.0 - std::cos(50.0 * degrees), across),
+        1.0 - bent);
+}
+
+SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
+                       const std::optional<MirrorPlane>& plane, const Progress& progress) {
+    const double diagonal = diagonal_of(mesh);
+    const Skeleton& skeleton = guides.skeleton;
+    BoneWeights bones;
+    if (!skeleton.empty())
+        bones = bone_weights(mesh, skeleton, progress);
+    EdgeShapes shapes(mesh);
+    double guided = 0.0;
+    double total = 0.0;
+    const auto is_guided = [&](Index h, const Vec3& direction) {
+        const Index a = mesh.origin(h);
+        const Index b = mesh.target(h);
+        const EdgeShape shape = shapes.at_edge(h);
+        if (shape.bend >= crease || shape.bend <= -concave)
+            return true;
+        const Vec3 lying = direction - direction.dot(shape.normal) * shape.normal;
+        if (!skeleton.empty() &&
+            std::abs(skeleton_direction(skeleton, bones, a, b, shape.normal)
+                         .direction.dot(lying.stableNormalized())) >= std::cos(along))
+            return true;
+        return is_along_border(0.5 * (mesh.points[at(a)] + mesh.points[at(b)]), direction,
+                               guides.limb_borders, near_border * diagonal);
+    };
+    for (const SeamSegment& segment :
+         find_segments(mesh, seam, {}, std::vector<double>(seam.size(), 1.0))) {
+        const std::vector<Vec3> direction = smooth_directions(mesh, segment, window * diagonal);
+        for (std::size_t i = 0; i < direction.size(); ++i) {
+            progress.check();
+            const Index h = segment.half_edges[i];
+            total += mesh.edge_length(h);
+            if (is_guided(h, direction[i]))
+                guided += mesh.edge_length(h);
+        }
+    }
+    SeamShares result;
+    result.guided = total > 0.0 ? guided / total : 1.0;
+    if (plane)
+        result.mirrored = mirrored_share(sample_seams(mesh, seam, sample_distance * diagonal),
+                                         *plane, near_image * diagonal, progress);
+    return result;
+}
+
+} // namespace devseg

@@ -1,0 +1,258 @@
+#include "devseg/methods/plush/seam_smoothing.h"
+
+#include <algorithm>
+#include <array>
+
+#include "devseg/base/parallel.h"
+#include "devseg/methods/plush/patch_trial.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr int most_rounds = 12;   // of taking teeth away
+constexpr int corridor_rings = 3; // of vertices beside a segment
+constexpr double worth = 0.97;    // of its cost: what a new path must save
+constexpr double natural_share =
+    0.5; // of the seam weight in the cost of an edge, beside its length
+
+// An open part of a segment, which is made straight between its ends.
+struct Line {
+    std::vector<Index> half_edges; // head to tail
+    bool may_slide = false;        // its end, along the plane, where the mirror image goes on
+};
+
+class Straightener {
+public:
+    Straightener(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
+                 Progress& progress)
+        : s_(setting), mesh_(setting.mesh()), graph_(graph), seam_(seam), progress_(progress),
+          cost_(seam.size()), side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
+            cost_[at(h)] =
+                mesh_.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[at(h)]);
+            side_[at(mesh_.origin(h))] = s_.surface.is_symmetric() && s_.surface.image[at(h)] < h;
+            on_plane_[at(mesh_.origin(h))] = s_.surface.starts_on_plane(h) ? 1 : 0;
+        }
+    }
+
+    Index run() {
+        Index replaced = 0;
+        // Loops have other ends the second time.
+        for (const int turn : {0, 1}) {
+            const std::vector<Line> lines = find_lines(turn);
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                progress_.update(0.5 * turn +
+                                 0.5 * static_cast<double>(i) / static_cast<double>(lines.size()));
+                const std::vector<Index> path = shorter_path(lines[i]);
+                if (!path.empty() && replace(lines[i].half_edges, path))
+                    ++replaced;
+            }
+        }
+        return replaced;
+    }
+
+private:
+    std::vector<Line> find_lines(int turn) const {
+        std::vector<Line> lines;
+        std::vector<std::uint8_t> done(seam_.size(), 0);
+        for (const SeamSegment& segment : find_segments(mesh_, seam_, s_.hard, s_.weight)) {
+            const std::vector<Index>& line = segment.half_edges;
+            if (segment.is_hard || line.size() < 3 || s_.surface.is_on_plane(line.front()) ||
+                done[at(line.front())] != 0)
+                continue;
+            if (s_.surface.is_symmetric())
+                for (const Index h : line) {
+                    const Index image = s_.surface.image[at(h)];
+                    done[at(image)] = done[at(mesh_.twin[at(image)])] = 1;
+                }
+            if (segment.is_loop)
+                split_loop(line, turn, lines);
+            else
+                lines.push_back(up_to_plane(line));
+        }
+        return lines;
+    }
+
+    Line up_to_plane(const std::vector<Index>& line) const {
+        for (std::size_t k = 1; k < line.size(); ++k)
+            if (on_plane_[at(mesh_.origin(line[k]))] != 0)
+                return {{line.begin(), line.begin() + static_cast<std::ptrdiff_t>(k)}, true};
+        return {line, false};
+    }
+
+    // Where it crosses the plane, the part on one side; else two halves.
+    void split_loop(std::vector<Index> line, int turn, std::vector<Line>& lines) const {
+        const auto crosses = [&](Index h) { return on_plane_[at(mesh_.origin(h))] != 0; };
+        auto first = std::find_if(line.begin(), line.end(), crosses);
+        const bool is_crossing = first != line.end();
+        if (!is_crossing)
+            first = line.begin() + turn * static_cast<std::ptrdiff_t>(line.size()) / 4;
+        std::rotate(line.begin(), first, line.end());
+        auto middle = line.begin() + static_cast<std::ptrdiff_t>(line.size() / 2);
+        if (is_crossing)
+            middle = std::find_if(line.begin() + 1, line.end(), crosses);
+        lines.push_back({{line.begin(), middle}, false});
+        if (!is_crossing)
+            lines.push_back({{middle, line.end()}, false});
+    }
+
+    // Vertices near the line, on its side of the plane, that are on no other seam.
+    std::vector<std::uint8_t> corridor(const std::vector<Index>& line) const {
+        std::vector<std::uint8_t> near(mesh_.points.size(), 0);
+        std::vector<Index> ring;
+        for (const Index h : line)
+            for (const Index v : {mesh_.origin(h), mesh_.target(h)})
+                if (near[at(v)] == 0) {
+                    near[at(v)] = 1;
+                    ring.push_back(v);
+                }
+        const std::uint8_t side =
+            s_.surface.is_symmetric() && s_.surface.image[at(line.front())] < line.front();
+        for (int k = 0; k < corridor_rings; ++k) {
+            std::vector<Index> next;
+            for (const Index v : ring)
+                for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
+                    const Index u = graph_.vertex[at(i)];
+                    if (near[at(u)] != 0 || is_on_seam(u) ||
+                        (side_[at(u)] != side && on_plane_[at(u)] == 0))
+                        continue;
+                    near[at(u)] = 1;
+                    next.push_back(u);
+                }
+            ring = std::move(next);
+        }
+        return near;
+    }
+
+    // Empty if there is none.
+    std::vector<Index> shorter_path(const Line& whole) const {
+        const std::vector<Index>& line = whole.half_edges;
+        double before = 0.0;
+        for (const Index h : line) {
+            if (seam_[at(h)] == 0)
+                return {}; // another line took its place
+            before += cost_[at(h)];
+        }
+        const Index start = mesh_.origin(line.front());
+        Index end = mesh_.target(line.back());
+        if (start == end)
+            return {};
+        const std::vector<std::uint8_t> near = corridor(line);
+        // Paths end where they reach the plane.
+        const PathTree tree = shortest_paths(graph_, cost_, {start}, progress_, near, on_plane_);
+        for (std::size_t v = 0; v < near.size() && whole.may_slide; ++v)
+            if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[at(end)])
+                end = static_cast<Index>(v);
+        if (!(tree.distance[at(end)] < worth * before))
+            return {};
+        return trace_path(mesh_, tree, end);
+    }
+
+    bool is_on_seam(Index v) const {
+        for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
+            const Index h = graph_.half_edge[at(i)];
+            if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
+                return true;
+        }
+        return false;
+    }
+
+    void mark_both(const std::vector<Index>& line, std::uint8_t value, SeamMarks& marks) const {
+        for (const Index h : line) {
+            mark(mesh_, h, value, marks);
+            if (s_.surface.is_symmetric())
+                mark(mesh_, s_.surface.image[at(h)], value, marks);
+        }
+    }
+
+    // Whether the new path meets no seam but at its ends.
+    bool is_free(const std::vector<Index>& line, const std::vector<Index>& path,
+                 const SeamMarks& without) const {
+        for (const Index h : path)
+            for (const Index v : {mesh_.origin(h), mesh_.target(h)}) {
+                if (v == mesh_.origin(line.front()) || v == mesh_.target(line.back()))
+                    continue;
+                for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
+                    const Index e = graph_.half_edge[at(i)];
+                    if (without[at(e)] != 0 || mesh_.twin[at(e)] < 0)
+                        return false;
+                }
+            }
+        return true;
+    }
+
+    bool replace(const std::vector<Index>& line, const std::vector<Index>& path) {
+        SeamMarks marks = seam_;
+        mark_both(line, 0, marks);
+        if (!is_free(line, path, marks))
+            return false;
+        mark_both(path, 1, marks);
+        if (!keeps_patches(line, path, marks))
+            return false;
+        seam_ = std::move(marks);
+        return true;
+    }
+
+    bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
+                       const SeamMarks& marks) const {
+        // The patches beside the old and the new line, as they would be.
+        std::vector<Index> start;
+        for (const std::vector<Index>* edges : {&line, &path})
+            for (const Index h : *edges)
+                for (const Index side : {h, mesh_.twin[at(h)]})
+                    start.push_back(side / 3);
+        const std::vector<std::vector<Index>> parts = patches_of(mesh_, marks, start);
+        std::vector<std::uint8_t> fits(parts.size(), 0);
+        parallel_for(
+            static_cast<int>(parts.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                fits[k] = s_.tester.accepts(parts[k], marks, progress_) ? 1 : 0;
+            },
+            progress_);
+        return std::find(fits.begin(), fits.end(), 0) == fits.end();
+    }
+
+    const SeamSetting& s_;
+    const Mesh& mesh_;
+    const VertexGraph& graph_;
+    SeamMarks& seam_;
+    Progress& progress_;
+    std::vector<double> cost_;           // 3 #F
+    std::vector<std::uint8_t> side_;     // #V: 1 on the mirror image
+    std::vector<std::uint8_t> on_plane_; // #V
+};
+
+} // namespace
+
+void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
+    for (int round = 0; round < most_rounds; ++round) {
+        bool changed = false;
+        for (Index f = 0; f < mesh.face_count(); ++f) {
+            std::array<Index, 3> other{-1, -1, -1};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Index twin = mesh.twin[at(3 * f) + k];
+                if (twin >= 0 && label[at(twin / 3)] != label[at(f)])
+                    other[k] = label[at(twin / 3)];
+            }
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t n = (k + 1) % 3;
+                if (other[k] < 0 || other[k] != other[n] || other[(k + 2) % 3] == other[k])
+                    continue;
+                label[at(f)] = other[k];
+                changed = true;
+                break;
+            }
+        }
+        if (!changed)
+            return;
+    }
+}
+
+Index straighten_seams(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
+                       Progress& progress) {
+    return Straightener(setting, graph, seam, progress).run();
+}
+
+} // namespace devseg

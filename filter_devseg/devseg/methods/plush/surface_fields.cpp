@@ -1,0 +1,183 @@
+#include "devseg/methods/plush/surface_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/SparseCholesky>
+
+#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/rest_shape.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double shift = 1e-8;      // of the mean diagonal: constants are in the Laplacian's kernel
+constexpr double least_size = 1e-9; // internal units: faces whose corners coincide need a shape
+constexpr double smoothing_edges = 2.0; // radius of the curvature's smoothing, in mean edges
+
+RestTriangle rest_of(const Mesh& mesh, Index f) {
+    return make_rest_triangle(
+        {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
+        least_size);
+}
+
+Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::VectorXd& rhs) {
+    const double amount = shift * matrix.diagonal().sum() /
+                          static_cast<double>(std::max<Eigen::Index>(1, rhs.size()));
+    for (Eigen::Index v = 0; v < rhs.size(); ++v)
+        matrix.coeffRef(v, v) += amount;
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    Eigen::VectorXd solution = solver.solve(rhs);
+    if (solver.info() != Eigen::Success || !solution.allFinite())
+        throw NumericalFailure(
+            "expected a solvable Laplacian of the surface, found a singular one; "
+            "remesh or clean the mesh first");
+    return solution;
+}
+
+} // namespace
+
+VertexGraph build_vertex_graph(const Mesh& mesh) {
+    std::vector<std::array<Index, 3>> links; // vertex, neighbour, half-edge
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        if (mesh.twin[at(h)] < h) {
+            links.push_back({mesh.origin(h), mesh.target(h), h});
+            links.push_back({mesh.target(h), mesh.origin(h), h});
+        }
+    std::sort(links.begin(), links.end());
+    VertexGraph graph;
+    graph.begin.assign(mesh.points.size() + 1, 0);
+    for (const auto& [v, u, h] : links) {
+        ++graph.begin[at(v) + 1];
+        graph.vertex.push_back(u);
+        graph.half_edge.push_back(h);
+    }
+    std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+    return graph;
+}
+
+Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(12 * mesh.faces.size());
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const RestTriangle rest = rest_of(mesh, f);
+        for (Index k = 0; k < 3; ++k) {
+            const Index i = mesh.faces[at(f)][at(k)];
+            const Index j = mesh.faces[at(f)][at((k + 1) % 3)];
+            const double w = 0.5 * rest.cotangent[at(k)];
+            entries.emplace_back(i, i, w);
+            entries.emplace_back(j, j, w);
+            entries.emplace_back(i, j, -w);
+            entries.emplace_back(j, i, -w);
+        }
+    }
+    Eigen::SparseMatrix<double> matrix(mesh.vertex_count(), mesh.vertex_count());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+}
+
+double mean_edge_length(const Mesh& mesh) {
+    double sum = 0.0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        sum += mesh.edge_length(h);
+    return sum / std::max<Index>(1, mesh.half_edge_count());
+}
+
+std::vector<double> vertex_areas(const Mesh& mesh) {
+    std::vector<double> areas(mesh.points.size(), 0.0);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        areas[at(mesh.origin(h))] += mesh.face_areas[at(h / 3)] / 3.0;
+    return areas;
+}
+
+std::vector<double> conformal_factor(const Mesh& mesh) {
+    const std::vector<double> areas = vertex_areas(mesh);
+    std::vector<double> defect(mesh.points.size(), 2.0 * pi);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Vec3& corner = mesh.points[at(mesh.origin(h))];
+        const Vec3 p = mesh.points[at(mesh.target(h))] - corner;
+        const Vec3 q = mesh.points[at(mesh.origin(Mesh::previous(h)))] - corner;
+        defect[at(mesh.origin(h))] -= std::atan2(p.cross(q).norm(), p.dot(q));
+        if (mesh.twin[at(h)] < 0) // each boundary vertex has one such half-edge
+            defect[at(mesh.origin(h))] -= pi;
+    }
+    const double total = std::accumulate(defect.begin(), defect.end(), 0.0);
+    Eigen::VectorXd rhs(mesh.vertex_count());
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        rhs[v] = total * areas[at(v)] / mesh.total_area - defect[at(v)];
+    const Eigen::VectorXd solution = solve_shifted(cotangent_laplacian(mesh), rhs);
+    std::vector<double> factor(solution.data(), solution.data() + solution.size());
+    const double mean = solution.mean();
+    for (double& value : factor)
+        value -= mean;
+    return factor;
+}
+
+std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<double>& value,
+                                Index count) {
+    struct Extremum {
+        double prominence;
+        Index vertex;
+    };
+    const auto neighbours = [&](Index v, auto visit) {
+        for (Index i = graph.begin[at(v)]; i < graph.begin[at(v) + 1]; ++i)
+            visit(graph.vertex[at(i)]);
+    };
+    std::vector<Extremum> found;
+    for (Index v = 0; v < static_cast<Index>(value.size()); ++v) {
+        bool lowest = graph.begin[at(v)] < graph.begin[at(v) + 1];
+        bool highest = lowest;
+        neighbours(v, [&](Index u) {
+            neighbours(u, [&](Index w) {
+                if (w == v || !(lowest || highest))
+                    return;
+                const double difference = value[at(w)] - value[at(v)];
+                lowest = lowest && (difference > 0.0 || (difference == 0.0 && w > v));
+                highest = highest && (difference < 0.0 || (difference == 0.0 && w > v));
+            });
+        });
+        if (lowest || highest)
+            found.push_back({std::abs(value[at(v)]), v});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Extremum& a, const Extremum& b) {
+        return a.prominence > b.prominence;
+    });
+    std::vector<Index> extrema;
+    for (const Extremum& e : found)
+        if (static_cast<Index>(extrema.size()) < count)
+            extrema.push_back(e.vertex);
+    return extrema;
+}
+
+std::vector<double> mean_curvature(const Mesh& mesh) {
+    const std::vector<double> areas = vertex_areas(mesh);
+    Eigen::VectorXd integral = Eigen::VectorXd::Zero(mesh.vertex_count());
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin < 0)
+            continue;
+        const Vec3& n = mesh.face_normals[at(h / 3)];
+        const Vec3& m = mesh.face_normals[at(twin / 3)];
+        const Vec3 edge = mesh.points[at(mesh.target(h))] - mesh.points[at(mesh.origin(h))];
+        const double angle = std::atan2(n.cross(m).dot(edge.normalized()), n.dot(m));
+        // A quarter of length times angle to each end, once from each side.
+        integral[mesh.origin(h)] += 0.25 * edge.norm() * angle;
+        integral[mesh.target(h)] += 0.25 * edge.norm() * angle;
+    }
+    integral *= 0.5;
+    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
+    const double radius = smoothing_edges * mean_edge_length(mesh);
+    matrix *= radius * radius;
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        matrix.coeffRef(v, v) += areas[at(v)];
+    const Eigen::VectorXd smooth = solve_shifted(matrix, integral);
+    const double sphere = std::sqrt(mesh.total_area / (4.0 * pi));
+    std::vector<double> curvature(mesh.points.size());
+    for (std::size_t v = 0; v < curvature.size(); ++v)
+        curvature[v] = sphere * smooth[static_cast<Eigen::Index>(v)];
+    return curvature;
+}
+
+} // namespace devseg

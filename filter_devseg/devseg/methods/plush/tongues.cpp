@@ -1,0 +1,281 @@
+#include "devseg/methods/plush/tongues.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "devseg/base/parallel.h"
+
+namespace devseg {
+
+namespace {
+
+constexpr double slack = 1.3;       // paths over faces are longer than straight lines
+constexpr double least_reach = 0.8; // of half the width: how far a tongue sticks out at least
+
+
+struct Tongue {
+    std::vector<Index> faces;
+    double reach = 0.0; // of its tip from its root
+};
+
+// A seam beside a tongue that would go, and the one across its root that would come.
+struct Change {
+    std::vector<Index> tongue; // faces
+    std::vector<Index> opened;
+    std::vector<Index> closed;
+};
+
+class TongueGiver {
+public:
+    TongueGiver(const SeamSetting& setting, double width, SeamMarks& seam, Progress& progress)
+        : s_(setting), mesh_(setting.mesh()), radius_(0.5 * width), seam_(seam),
+          progress_(progress) {}
+
+    Index run() {
+        std::vector<Change> changes = find_changes();
+        auto tried = static_cast<Index>(changes.size());
+        progress_.update(0.1);
+        if (apply_together(changes)) {
+            changes = find_changes();
+            tried += static_cast<Index>(changes.size());
+        }
+        progress_.update(0.6);
+        apply_each(changes);
+        return tried;
+    }
+
+private:
+    // Distances over faces from those where the distance is 0, inside patches.
+    void spread(std::vector<double>& distance) const {
+        using Entry = std::pair<double, Index>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            if (distance[at(f)] == 0.0)
+                queue.emplace(0.0, f);
+        Heartbeat beat(progress_);
+        while (!queue.empty()) {
+            beat();
+            const auto [d, f] = queue.top();
+            queue.pop();
+            if (d > distance[at(f)])
+                continue;
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0 || seam_[at(h)] != 0)
+                    continue;
+                const Index g = twin / 3;
+                const double next =
+                    d + (mesh_.face_centers[at(f)] - mesh_.face_centers[at(g)]).norm();
+                if (next < distance[at(g)]) {
+                    distance[at(g)] = next;
+                    queue.emplace(next, g);
+                }
+            }
+        }
+    }
+
+    // What is left of the patches when disks of the radius have rolled over them, in components.
+    std::vector<Tongue> find_tongues() const {
+        std::vector<std::uint8_t> on_seam(mesh_.points.size(), 0);
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
+                on_seam[at(mesh_.origin(h))] = on_seam[at(mesh_.target(h))] = 1;
+        std::vector<double> to_seam(mesh_.faces.size(), infinite);
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            for (const Index v : mesh_.faces[at(f)])
+                if (on_seam[at(v)] != 0)
+                    to_seam[at(f)] = 0.0;
+        spread(to_seam);
+        std::vector<double> to_body(mesh_.faces.size(), infinite);
+        for (std::size_t f = 0; f < to_body.size(); ++f)
+            if (to_seam[f] > radius_)
+                to_body[f] = 0.0;
+        spread(to_body);
+        const auto is_thin = [&](Index f) { return to_body[at(f)] > slack * radius_; };
+        const FaceComponents parts = face_components(mesh_, [&](Index h) {
+            return seam_[at(h)] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[at(h)] / 3);
+        });
+        std::vector<Tongue> tongues(at(parts.count));
+        for (Index f = 0; f < mesh_.face_count(); ++f) {
+            Tongue& tongue = tongues[at(parts.label[at(f)])];
+            tongue.faces.push_back(f);
+            tongue.reach = std::max(tongue.reach, to_body[at(f)] - slack * radius_);
+        }
+        // Patches that are thin everywhere have no body.
+        tongues.erase(std::remove_if(tongues.begin(), tongues.end(),
+                                     [&](const Tongue& tongue) {
+                                         return tongue.reach < least_reach * radius_ ||
+                                                tongue.reach == infinite;
+                                     }),
+                      tongues.end());
+        std::stable_sort(tongues.begin(), tongues.end(),
+                         [](const Tongue& a, const Tongue& b) { return a.reach > b.reach; });
+        return tongues;
+    }
+
+    std::vector<Change> find_changes() const {
+        const FaceComponents patches = find_patches(mesh_, seam_);
+        std::vector<Change> changes;
+        for (const Tongue& tongue : find_tongues())
+            find_changes(tongue, patches, changes);
+        return changes;
+    }
+
+    void find_changes(const Tongue& tongue, const FaceComponents& patches,
+                      std::vector<Change>& changes) const {
+        const ChartSurface surface =
+            extract_surface(mesh_, tongue.faces, enclose(mesh_, tongue.faces, seam_));
+        if (!surface.is_disk())
+            return;
+        // Who lies on the other side: −1 the tongue's own body, −2 nobody.
+        const auto beyond = [&](Index h) -> Index {
+            if (mesh_.twin[at(h)] < 0 || (!s_.hard.empty() && s_.hard[at(h)] != 0))
+                return -2;
+            return seam_[at(h)] == 0 ? -1 : patches.label[at(mesh_.twin[at(h)] / 3)];
+        };
+        struct Side {
+            Index beyond = 0;
+            std::vector<Index> edges;
+            double length = 0.0;
+        };
+        std::vector<Index> loop;
+        for (const Index h : surface.loops.front())
+            loop.push_back(surface.mesh_half_edge(h));
+        auto first = loop.begin(); // a place where a side begins
+        while (first != loop.end() &&
+               beyond(*first) == beyond(first == loop.begin() ? loop.back() : *std::prev(first)))
+            ++first;
+        if (first == loop.end())
+            return;
+        std::rotate(loop.begin(), first, loop.end());
+        std::vector<Side> sides;
+        for (const Index h : loop) {
+            if (sides.empty() || sides.back().beyond != beyond(h))
+                sides.push_back({beyond(h), {}, 0.0});
+            sides.back().edges.push_back(h);
+            sides.back().length += mesh_.edge_length(h);
+        }
+        std::stable_sort(sides.begin(), sides.end(),
+                         [](const Side& a, const Side& b) { return a.length > b.length; });
+        const auto is_root = [](const Side& side) { return side.beyond == -1; };
+        if (std::count_if(sides.begin(), sides.end(), is_root) != 1)
+            return;
+        const Side& root = *std::find_if(sides.begin(), sides.end(), is_root);
+        const auto longest = std::find_if(sides.begin(), sides.end(),
+                                          [](const Side& side) { return side.beyond >= 0; });
+        if (longest != sides.end() && longest->length > root.length)
+            changes.push_back({tongue.faces, longest->edges, root.edges});
+    }
+
+    void apply_to(const Change& change, SeamMarks& marks) const {
+        for (const Index h : change.closed)
+            mark(mesh_, h, 1, marks);
+        for (const Index h : change.opened)
+            mark(mesh_, h, 0, marks);
+    }
+
+    // The patches of both sides, with other marks.
+    std::vector<std::vector<Index>> patches_beside(const Change& change,
+                                                   const SeamMarks& marks) const {
+        std::vector<Index> start = change.tongue;
+        for (const Index h : change.closed)
+            start.push_back(mesh_.twin[at(h)] / 3);
+        return patches_of(mesh_, marks, start);
+    }
+
+    // All at once; those beside patches that are not accepted are left out.
+    bool apply_together(const std::vector<Change>& changes) {
+        std::vector<const Change*> group;
+        std::vector<std::uint8_t> is_used(mesh_.twin.size(), 0);
+        for (const Change& change : changes) {
+            bool is_free = true;
+            for (const auto* edges : {&change.opened, &change.closed})
+                for (const Index h : *edges)
+                    is_free = is_free && is_used[at(h)] == 0;
+            if (!is_free)
+                continue;
+            for (const auto* edges : {&change.opened, &change.closed})
+                for (const Index h : *edges)
+                    mark(mesh_, h, 1, is_used);
+            group.push_back(&change);
+        }
+        while (!group.empty()) {
+            SeamMarks marks = seam_;
+            std::vector<Index> start;
+            for (const Change* change : group)
+                apply_to(*change, marks);
+            for (const Change* change : group)
+                for (const Index h : change->closed) {
+                    start.push_back(h / 3);
+                    start.push_back(mesh_.twin[at(h)] / 3);
+                }
+            const std::vector<std::vector<Index>> patches = patches_of(mesh_, marks, start);
+            std::vector<std::uint8_t> fails(mesh_.faces.size(), 0);
+            parallel_for(
+                static_cast<int>(patches.size()),
+                [&](int i) {
+                    const auto& patch = patches[static_cast<std::size_t>(i)];
+                    if (!s_.tester.accepts(patch, marks, progress_))
+                        for (const Index f : patch)
+                            fails[at(f)] = 1;
+                },
+                progress_);
+            const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change* change) {
+                const Index h = change->closed.front();
+                return fails[at(h / 3)] != 0 || fails[at(mesh_.twin[at(h)] / 3)] != 0;
+            });
+            if (kept == group.end()) {
+                seam_ = std::move(marks);
+                return true;
+            }
+            group.erase(kept, group.end());
+        }
+        return false;
+    }
+
+    // Each by itself, of each patch one.
+    void apply_each(const std::vector<Change>& changes) {
+        std::vector<std::uint8_t> is_accepted(changes.size(), 0);
+        std::vector<std::vector<std::vector<Index>>> patches(changes.size());
+        parallel_for(
+            static_cast<int>(changes.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                SeamMarks marks = seam_;
+                apply_to(changes[k], marks);
+                patches[k] = patches_beside(changes[k], marks);
+                is_accepted[k] = s_.tester.accepts_all(patches[k], marks, progress_) ? 1 : 0;
+            },
+            progress_);
+        std::vector<std::uint8_t> is_changed(mesh_.faces.size(), 0);
+        for (std::size_t k = 0; k < changes.size(); ++k) {
+            bool is_free = is_accepted[k] != 0;
+            for (const auto& patch : patches[k])
+                for (const Index f : patch)
+                    is_free = is_free && is_changed[at(f)] == 0;
+            if (!is_free)
+                continue;
+            apply_to(changes[k], seam_);
+            for (const auto& patch : patches[k])
+                for (const Index f : patch)
+                    is_changed[at(f)] = 1;
+        }
+    }
+
+    const SeamSetting& s_;
+    const Mesh& mesh_;
+    const double radius_;
+    SeamMarks& seam_;
+    Progress& progress_;
+};
+
+} // namespace
+
+Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
+                        Progress& progress) {
+    return TongueGiver(setting, width, seam, progress).run();
+}
+
+} // namespace devseg

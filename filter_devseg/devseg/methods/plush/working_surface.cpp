@@ -1,0 +1,236 @@
+#include "devseg/methods/plush/working_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "devseg/atlas/charts.h"
+#include "devseg/mesh/coarsen.h"
+
+namespace devseg {
+
+namespace {
+
+// Vertices nearer to the plane than this share of their shortest edge are moved onto it: no
+// slivers.
+constexpr double snap = 0.35;
+constexpr double on_plane = 1e-9;  // internal units
+constexpr double speck = 2e-3;     // of the surface: smaller pieces beside the plane are left out
+constexpr double least_area = 0.8; // of the surface: what both halves have at least together
+constexpr double most_area = 1.25;
+
+// Vertices, edges and faces of a surface: V − E + F.
+Index euler_characteristic(const Mesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    Index twice = 0;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        used[at(mesh.origin(h))] = 1;
+        twice += mesh.twin[at(h)] < 0 ? 2 : 1;
+    }
+    const auto vertices = static_cast<Index>(std::count(used.begin(), used.end(), 1));
+    return vertices - twice / 2 + mesh.face_count();
+}
+
+void link_twins(Mesh& mesh) {
+    struct Edge {
+        Index low, high, half_edge;
+    };
+    std::vector<Edge> edges;
+    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        edges.push_back({std::min(mesh.origin(h), mesh.target(h)),
+                         std::max(mesh.origin(h), mesh.target(h)), h});
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return std::array{a.low, a.high, a.half_edge} < std::array{b.low, b.high, b.half_edge};
+    });
+    mesh.twin.assign(3 * mesh.faces.size(), -1);
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+        if (edges[i].low == edges[i + 1].low && edges[i].high == edges[i + 1].high) {
+            mesh.twin[at(edges[i].half_edge)] = edges[i + 1].half_edge;
+            mesh.twin[at(edges[i + 1].half_edge)] = edges[i].half_edge;
+        }
+}
+
+// Cuts a mesh along a plane and keeps what lies below it.
+class Slicer {
+public:
+    Slicer(const Mesh& mesh, const MirrorPlane& plane)
+        : mesh_(mesh), plane_(plane), crossing_(mesh.twin.size(), -1) {
+        snap_vertices();
+    }
+
+    Mesh slice() {
+        Mesh half;
+        half.points = points_;
+        half.unit_length = mesh_.unit_length;
+        for (Index f = 0; f < mesh_.face_count(); ++f)
+            add_part(f, half);
+        link_twins(half);
+        compute_face_geometry(half);
+        return half;
+    }
+
+private:
+    void snap_vertices() {
+        points_ = mesh_.points;
+        std::vector<double> shortest(points_.size(), infinite);
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            for (const Index v : {mesh_.origin(h), mesh_.target(h)})
+                shortest[at(v)] = std::min(shortest[at(v)], mesh_.edge_length(h));
+        for (std::size_t v = 0; v < points_.size(); ++v) {
+            height_.push_back(plane_.height(points_[v]));
+            if (std::abs(height_[v]) > snap * shortest[v])
+                continue;
+            points_[v] -= height_[v] * plane_.normal;
+            height_[v] = 0.0;
+        }
+    }
+
+    Index crossing(Index h, Mesh& half) {
+        const Index twin = mesh_.twin[at(h)];
+        if (crossing_[at(h)] < 0) {
+            const Index a = std::min(mesh_.origin(h), mesh_.target(h));
+            const Index b = std::max(mesh_.origin(h), mesh_.target(h));
+            const double t = height_[at(a)] / (height_[at(a)] - height_[at(b)]);
+            crossing_[at(h)] = half.vertex_count();
+            if (twin >= 0)
+                crossing_[at(twin)] = crossing_[at(h)];
+            const Vec3 p = points_[at(a)] + t * (points_[at(b)] - points_[at(a)]);
+            half.points.push_back(p - plane_.height(p) * plane_.normal);
+        }
+        return crossing_[at(h)];
+    }
+
+    void add_part(Index f, Mesh& half) {
+        const auto height = [&](Index v) { return height_[at(v)]; };
+        std::vector<Index> corners;
+        bool is_below = false;
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index a = mesh_.origin(h);
+            const Index b = mesh_.target(h);
+            is_below = is_below || height(a) < 0.0;
+            if (height(a) <= 0.0)
+                corners.push_back(a);
+            if (height(a) * height(b) < 0.0)
+                corners.push_back(crossing(h, half));
+        }
+        if (!is_below || corners.size() < 3)
+            return;
+        const auto distance = [&](std::size_t i, std::size_t k) {
+            return (half.points[at(corners[i])] - half.points[at(corners[k])]).norm();
+        };
+        if (corners.size() == 4 && distance(1, 3) < distance(0, 2))
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+        for (std::size_t k = 2; k < corners.size(); ++k)
+            half.faces.push_back({corners[0], corners[k - 1], corners[k]});
+    }
+
+    const Mesh& mesh_;
+    const MirrorPlane& plane_;
+    std::vector<Vec3> points_;
+    std::vector<double> height_;  // #V
+    std::vector<Index> crossing_; // 3 #F: new vertex on the edge
+};
+
+// Without small pieces, and with one fan of faces at each vertex.
+Mesh clean_half(const Mesh& half, double surface_area) {
+    const FaceComponents pieces = face_components(half, [](Index) { return true; });
+    std::vector<double> area(at(pieces.count), 0.0);
+    for (std::size_t f = 0; f < half.faces.size(); ++f)
+        area[at(pieces.label[f])] += half.face_areas[f];
+    std::vector<Index> kept;
+    for (Index f = 0; f < half.face_count(); ++f)
+        if (area[at(pieces.label[at(f)])] > speck * surface_area)
+            kept.push_back(f);
+    return mesh_of(half, extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
+}
+
+// Half-edge h of a face, on the mirror image of the face: it turns the other way.
+Index mirrored(Index h, Index faces) {
+    return 3 * (h / 3 + faces) + 2 - h % 3;
+}
+
+WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
+    const Index n = half.face_count();
+    const auto is_seam = [&](Index h) {
+        return half.twin[at(h)] < 0 &&
+               std::abs(plane.height(half.points[at(half.origin(h))])) < on_plane &&
+               std::abs(plane.height(half.points[at(half.target(h))])) < on_plane;
+    };
+    std::vector<Index> other(half.points.size(), -1);
+    for (Index h = 0; h < half.half_edge_count(); ++h)
+        if (is_seam(h))
+            for (const Index v : {half.origin(h), half.target(h)})
+                other[at(v)] = v;
+    WorkingSurface result;
+    Mesh& mesh = result.mesh;
+    mesh.points = half.points;
+    mesh.unit_length = half.unit_length;
+    for (std::size_t v = 0; v < other.size(); ++v)
+        if (other[v] < 0) {
+            other[v] = mesh.vertex_count();
+            mesh.points.push_back(plane.reflect(half.points[v]));
+        }
+    mesh.faces = half.faces;
+    for (const Triangle& t : half.faces)
+        mesh.faces.push_back({other[at(t[0])], other[at(t[2])], other[at(t[1])]});
+    mesh.twin.assign(at(6 * n), -1);
+    result.image.assign(at(6 * n), -1);
+    for (Index h = 0; h < 3 * n; ++h) {
+        const Index image = mirrored(h, n);
+        result.image[at(h)] = image;
+        result.image[at(image)] = h;
+        const Index twin = is_seam(h) ? image : half.twin[at(h)];
+        mesh.twin[at(h)] = twin;
+        if (twin >= 0)
+            mesh.twin[at(image)] = twin == image ? h : mirrored(twin, n);
+    }
+    compute_face_geometry(mesh);
+    // To the last bit: what is measured on both sides must agree.
+    for (Index f = 0; f < n; ++f)
+        mesh.face_areas[at(f + n)] = mesh.face_areas[at(f)];
+    return result;
+}
+
+} // namespace
+
+WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progress& progress) {
+    if (mesh.face_count() <= most_faces)
+        return {mesh, {}};
+    return {extract_coarse_mesh(mesh, coarsen_in_parallel(mesh, most_faces, progress)).mesh, {}};
+}
+
+std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
+                                                       Index most_faces, const Progress& progress) {
+    MirrorPlane turned = plane;
+    turned.normal = -plane.normal;
+    turned.offset = -plane.offset;
+    std::optional<WorkingSurface> best;
+    double least = infinite;
+    for (const MirrorPlane& side : {plane, turned}) {
+        progress.check();
+        Mesh half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
+        if (half.faces.empty())
+            continue;
+        const double area = 2.0 * half.total_area / mesh.total_area;
+        if (std::abs(std::log(area)) >= least || area < least_area || area > most_area)
+            continue;
+        if (2 * half.face_count() > most_faces)
+            half = extract_coarse_mesh(
+                       half, coarsen(half.points, half.faces, half.twin, most_faces / 2, progress))
+                       .mesh;
+        WorkingSurface surface = glue(half, side);
+        if (euler_characteristic(surface.mesh) != euler_characteristic(mesh))
+            continue;
+        least = std::abs(std::log(area));
+        best = std::move(surface);
+    }
+    return best;
+}
+
+void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& marks) {
+    for (std::size_t h = 0; h < surface.image.size() / 2; ++h)
+        marks[at(surface.image[h])] = marks[h];
+}
+
+} // namespace devseg

@@ -1,0 +1,42 @@
+// The surface on which seams are decided: coarse, and its own mirror image where the model nearly
+// is one.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
+#include "devseg/methods/plush/symmetry.h"
+#include "devseg/base/progress.h"
+
+namespace devseg {
+
+/// With a mirror plane, faces n … 2n − 1 are the mirror images of faces 0 … n − 1, in their order,
+/// and edges along the plane divide the two.
+struct WorkingSurface {
+    Mesh mesh;
+    std::vector<Index> image; // 3 #F: the half-edge on the mirrored edge, an involution; or empty
+
+    bool is_symmetric() const { return !image.empty(); }
+    Index face_image(Index f) const { return image[at(3 * f)] / 3; }
+    /// Whether the origin of the half-edge is its own mirror image.
+    bool starts_on_plane(Index h) const {
+        return is_symmetric() && mesh.target(image[at(h)]) == mesh.origin(h);
+    }
+    /// Whether the edge lies on the plane, between the two halves.
+    bool is_on_plane(Index h) const { return is_symmetric() && image[at(h)] == mesh.twin[at(h)]; }
+};
+
+/// The mesh with at most about `most_faces` faces, without a mirror plane.
+WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progress& progress);
+
+/// The part of the mesh on one side of the plane, coarsened to half of `most_faces`, with its
+/// mirror image, glued along the plane: the side that changes the surface's topology and area less.
+/// Nothing where both sides change the topology.
+std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
+                                                       Index most_faces, const Progress& progress);
+
+/// Marks (3 #F) of the first half on both halves.
+void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& marks);
+
+} // namespace devseg

@@ -1,0 +1,447 @@
+#include "devseg/methods/t_flooding/balanced_borders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "devseg/graph/min_cut.h"
+#include "devseg/atlas/charts.h"
+#include "devseg/methods/growth/growth.h"
+
+namespace devseg {
+
+namespace {
+
+// The first price of Gauss area that is tried, as a share of the price of all the difference.
+constexpr double first_price = 1.0 / 64.0;
+
+// Strips are at most this many faces wide on each side: the time for their cuts grows much faster
+// than their width.
+constexpr double strip_steps = 4.0;
+
+constexpr Index update_every = 4096; // faces between two looks at the progress object
+
+// The least share of a strip's width that is tried.
+constexpr double narrowest = 0.2;
+
+constexpr double worthwhile = 1.0 - 1e-9; // lower than rounding would explain
+
+using Pair = std::pair<Index, Index>;
+
+class BorderBalancer {
+public:
+    BorderBalancer(const Mesh& mesh, const GaussAreas& areas, const BorderBalance& options,
+                   Index count, std::vector<Index>& chart)
+        : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
+          crease_(long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
+          depth_(mesh.faces.size()), node_(mesh.faces.size(), -1), reached_(mesh.faces.size(), 0),
+          corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0), changes_(at(count), 0) {
+        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+            border_cost_.push_back(static_cast<float>(
+                mesh.edge_length(h) * (areas.crease[at(h)] != 0 ? options.crease_cost : 1.0)));
+            const Index twin = mesh.twin[at(h)];
+            step_.push_back(
+                twin < 0
+                    ? 0.0F
+                    : static_cast<float>(
+                          (mesh.face_centers[at(h / 3)] - mesh.face_centers[at(twin / 3)]).norm()));
+            ++valence_[at(mesh.origin(h))];
+        }
+        face_area_ = areas.face;
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            face_area_[at(h / 3)] += 0.5 * areas.edge[at(h)] + areas.vertex[at(mesh.origin(h))] /
+                                                                   valence_[at(mesh.origin(h))];
+        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            if (mesh.twin[at(h)] < 0)
+                valence_[at(mesh.origin(h))] = valence_[at(mesh.target(h))] = -1;
+        double steps = 0.0;
+        for (const float step : step_)
+            steps += step;
+        widest_ = static_cast<float>(strip_steps * steps / static_cast<double>(step_.size()));
+        const double average = areas.total / count;
+        if (average > 0.0)
+            stiffness_ =
+                options.stiffness * std::sqrt(mesh.total_area / count) / (average * average);
+    }
+
+    void sweep(Progress& progress) {
+        fix_creases();
+        measure_depths(progress);
+        gauss_area_ = chart_gauss_areas(mesh_, areas_, chart_, count_);
+        std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
+            const Index twin = mesh_.twin[at(h)];
+            if (twin >= 0 && chart_[at(h / 3)] < chart_[at(twin / 3)])
+                borders.push_back({{chart_[at(h / 3)], chart_[at(twin / 3)]}, h});
+        }
+        std::sort(borders.begin(), borders.end());
+        for (std::size_t i = 0; i < borders.size();) {
+            std::vector<Index> edges;
+            const Pair pair = borders[i].first;
+            for (; i < borders.size() && borders[i].first == pair; ++i)
+                edges.push_back(borders[i].second);
+            // Nothing new since a try that failed: it would fail again.
+            const int now = changes_[at(pair.first)] + changes_[at(pair.second)];
+            const auto tried = settled_.find(pair);
+            if (tried != settled_.end() && tried->second == now)
+                continue;
+            if (move_border(pair, edges)) {
+                ++changes_[at(pair.first)];
+                ++changes_[at(pair.second)];
+            } else {
+                settled_[pair] = now;
+            }
+            progress.update(0.0);
+        }
+    }
+
+private:
+    // Faces at borders that follow a long crease stay where they are.
+    void fix_creases() {
+        std::fill(fixed_.begin(), fixed_.end(), 0);
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+            if (crease_[at(h)] != 0 && chart_[at(h / 3)] != chart_[at(mesh_.twin[at(h)] / 3)])
+                fixed_[at(h / 3)] = 1;
+    }
+
+    void measure_depths(Progress& progress) {
+        std::fill(depth_.begin(), depth_.end(), std::numeric_limits<float>::infinity());
+        heap_.clear();
+        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
+            const Index twin = mesh_.twin[at(h)];
+            if ((twin < 0 || chart_[at(twin / 3)] != chart_[at(h / 3)]) && depth_[at(h / 3)] > 0) {
+                depth_[at(h / 3)] = 0.0F;
+                heap_.push({0.0F, 0.0F, h / 3});
+            }
+        }
+        deepest_.assign(at(count_), 0.0F);
+        anchor_.assign(at(count_), -1);
+        for (Index settled = 1; !heap_.empty(); ++settled) {
+            const CandidateHeap::Entry entry = heap_.top();
+            heap_.pop();
+            if (entry.key > depth_[at(entry.face)])
+                continue;
+            if (settled % update_every == 0)
+                progress.update(0.0);
+            const Index c = chart_[at(entry.face)];
+            if (anchor_[at(c)] < 0 || entry.key > deepest_[at(c)]) {
+                deepest_[at(c)] = entry.key;
+                anchor_[at(c)] = entry.face;
+            }
+            for (Index h = 3 * entry.face; h < 3 * entry.face + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                const float through = entry.key + step_[at(h)];
+                if (twin < 0 || chart_[at(twin / 3)] != c || through >= depth_[at(twin / 3)])
+                    continue;
+                depth_[at(twin / 3)] = through;
+                heap_.push({through, through, twin / 3});
+            }
+        }
+    }
+
+    // Faces on both sides that are near this border; the deepest face of a chart stays.
+    std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges, double share) {
+        std::vector<Index> faces;
+        std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
+        const float reach = static_cast<float>(share * options_.reach);
+        const float widest = static_cast<float>(share) * widest_;
+        const auto offer = [&](Index f, float d) {
+            const std::size_t c = at(chart_[at(f)]);
+            if (fixed_[at(f)] != 0 || f == anchor_[c] || d > std::min(reach * deepest_[c], widest))
+                return;
+            front.emplace_back(-d, f);
+            std::push_heap(front.begin(), front.end());
+        };
+        for (const Index h : edges) {
+            const Index twin = mesh_.twin[at(h)];
+            // Other borders that moved in this sweep may have given a side to a third chart.
+            if (chart_[at(h / 3)] != pair.first || chart_[at(twin / 3)] != pair.second)
+                continue;
+            offer(h / 3, 0.0F);
+            offer(twin / 3, 0.0F);
+        }
+        while (!front.empty()) {
+            std::pop_heap(front.begin(), front.end());
+            const auto [d, f] = front.back();
+            front.pop_back();
+            if (node_[at(f)] >= 0)
+                continue;
+            node_[at(f)] = static_cast<Index>(faces.size());
+            faces.push_back(f);
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin >= 0 && node_[at(twin / 3)] < 0 && chart_[at(twin / 3)] == chart_[at(f)])
+                    offer(twin / 3, step_[at(h)] - d);
+            }
+        }
+        return faces;
+    }
+
+    // One way to part the strip: its sides, what the border in it costs, and the Gauss area that
+    // goes from the first chart to the second.
+    struct Parting {
+        std::vector<CutSide> side;
+        double length = 0.0;
+        double moved = 0.0;
+    };
+
+    // [length + κ/2 Σ area²] of the two charts after `moved` has gone from a to b.
+    double energy(const Pair& pair, const Parting& parting) const {
+        const double a = gauss_area_[at(pair.first)] - parting.moved;
+        const double b = gauss_area_[at(pair.second)] + parting.moved;
+        return parting.length + 0.5 * stiffness_ * (a * a + b * b);
+    }
+    double difference(const Pair& pair, const Parting& parting) const {
+        return gauss_area_[at(pair.first)] - gauss_area_[at(pair.second)] - 2.0 * parting.moved;
+    }
+
+    // Border of a parting: links of the strip's faces to each other and to the charts' cores.
+    template <class Visit>
+    void visit_links(const Pair& pair, const std::vector<Index>& faces, Visit visit) const {
+        const Index core_a = static_cast<Index>(faces.size());
+        for (const Index f : faces)
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                if (twin < 0)
+                    continue;
+                const Index other = node_[at(twin / 3)];
+                const Index c = chart_[at(twin / 3)];
+                if (other >= 0 && h < twin)
+                    visit(node_[at(f)], other, border_cost_[at(h)]);
+                else if (other < 0 && c == pair.first)
+                    visit(node_[at(f)], core_a, border_cost_[at(h)]);
+                else if (other < 0 && c == pair.second)
+                    visit(node_[at(f)], core_a + 1, border_cost_[at(h)]);
+            }
+    }
+
+    void evaluate(const Pair& pair, const std::vector<Index>& faces, Parting& parting) const {
+        parting.length = parting.moved = 0.0;
+        visit_links(pair, faces, [&](Index a, Index b, float cost) {
+            if (parting.side[at(a)] != parting.side[at(b)])
+                parting.length += cost;
+        });
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            const bool was_a = chart_[at(faces[i])] == pair.first;
+            const bool is_a = parting.side[i] == CutSide::source;
+            parting.moved += (was_a ? 1 : 0) * face_area_[at(faces[i])] -
+                             (is_a ? 1 : 0) * face_area_[at(faces[i])];
+        }
+    }
+
+    Parting solve(const Pair& pair, const std::vector<Index>& faces, MinCut& cut) const {
+        Parting result;
+        result.side = cut.solve();
+        drop_islands(pair, faces, CutSide::source, result.side);
+        drop_islands(pair, faces, CutSide::sink, result.side);
+        evaluate(pair, faces, result);
+        return result;
+    }
+
+    // Faces of the strip that hang together with their chart's core only through the other chart
+    // go to that one. A price on Gauss area makes islands of single curved faces.
+    void drop_islands(const Pair& pair, const std::vector<Index>& faces, CutSide which,
+                      std::vector<CutSide>& side) const {
+        const Index own = which == CutSide::source ? pair.first : pair.second;
+        std::vector<std::uint8_t> held(faces.size(), 0);
+        std::vector<Index> stack;
+        const auto hold = [&](std::size_t i) {
+            if (held[i] == 0 && side[i] == which) {
+                held[i] = 1;
+                stack.push_back(faces[i]);
+            }
+        };
+        const auto for_neighbours = [&](Index f, auto visit) {
+            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+                if (mesh_.twin[at(h)] >= 0)
+                    visit(mesh_.twin[at(h)] / 3);
+        };
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            for_neighbours(faces[i], [&](Index g) {
+                if (node_[at(g)] < 0 && chart_[at(g)] == own)
+                    hold(i);
+            });
+        while (!stack.empty()) {
+            const Index f = stack.back();
+            stack.pop_back();
+            for_neighbours(f, [&](Index g) {
+                if (node_[at(g)] >= 0)
+                    hold(at(node_[at(g)]));
+            });
+        }
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            if (held[i] == 0 && side[i] == which)
+                side[i] = which == CutSide::source ? CutSide::sink : CutSide::source;
+    }
+
+    // The least cut for growing prices of Gauss area, from none to one that agrees with the
+    // difference of the charts that is left.
+    Parting best_parting(const Pair& pair, const std::vector<Index>& faces) {
+        const Index core_a = static_cast<Index>(faces.size());
+        std::vector<CutSide> sides(faces.size() + 2, CutSide::open);
+        sides[at(core_a)] = CutSide::source;
+        sides[at(core_a) + 1] = CutSide::sink;
+        MinCut cut(std::move(sides));
+        visit_links(pair, faces, [&](Index a, Index b, float cost) { cut.link(a, b, cost); });
+        Parting best = solve(pair, faces, cut);
+        double due = stiffness_ * difference(pair, best);
+        const Index core = due > 0.0 ? core_a + 1 : core_a;
+        std::vector<Index> links(faces.size());
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            links[i] = cut.link(static_cast<Index>(i), core, 0.0);
+        // The price that served last time is near; otherwise a small share of the whole.
+        double& last = last_price_[pair];
+        double price = 0.0;
+        double next = std::abs(due) * first_price;
+        if (last > next && last < std::abs(due))
+            next = 0.5 * last;
+        for (; next < std::abs(due); next *= 2.0) {
+            for (std::size_t i = 0; i < faces.size(); ++i)
+                cut.raise(links[i], (next - price) * face_area_[at(faces[i])]);
+            price = next;
+            Parting trial = solve(pair, faces, cut);
+            const double left = stiffness_ * difference(pair, trial);
+            if (energy(pair, trial) < energy(pair, best))
+                best = std::move(trial);
+            if (std::abs(left) < price || (left > 0.0) != (due > 0.0))
+                break;
+        }
+        last = price;
+        return best;
+    }
+
+    // A wide strip may take a chart apart where a narrow one does not.
+    bool move_border(const Pair& pair, const std::vector<Index>& edges) {
+        bool improves = true;
+        for (double share = 1.0; improves && share > narrowest; share *= 0.5) {
+            const std::vector<Index> faces = strip(pair, edges, share);
+            Parting now;
+            now.side.assign(faces.size() + 2, CutSide::source);
+            now.side.back() = CutSide::sink;
+            for (std::size_t i = 0; i < faces.size(); ++i)
+                if (chart_[at(faces[i])] == pair.second)
+                    now.side[i] = CutSide::sink;
+            evaluate(pair, faces, now);
+            const Parting best = best_parting(pair, faces);
+            improves = energy(pair, best) < energy(pair, now) * worthwhile;
+            for (const Index f : faces)
+                node_[at(f)] = -1;
+            if (improves && apply(pair, faces, best))
+                return true;
+        }
+        return false;
+    }
+
+    static constexpr Index disk = 2; // twice the Euler characteristic
+
+    struct Topology {
+        std::size_t faces = 0;
+        Index doubled_euler = 0;
+    };
+
+    // Faces that hang together with `start` in its chart, and twice their Euler characteristic:
+    // with b boundary edges and i inner vertices, V = i + b and 2 E = 3 F + b.
+    Topology topology(Index start) {
+        Topology result;
+        stack_.assign(1, start);
+        reached_[at(start)] = 1;
+        for (std::size_t i = 0; i < stack_.size(); ++i)
+            for (Index h = 3 * stack_[i]; h < 3 * stack_[i] + 3; ++h) {
+                const Index twin = mesh_.twin[at(h)];
+                const Index v = mesh_.origin(h);
+                result.doubled_euler += ++corners_[at(v)] == valence_[at(v)] ? 2 : 0;
+                if (twin < 0 || chart_[at(twin / 3)] != chart_[at(start)]) {
+                    ++result.doubled_euler;
+                } else if (reached_[at(twin / 3)] == 0) {
+                    reached_[at(twin / 3)] = 1;
+                    stack_.push_back(twin / 3);
+                }
+            }
+        result.faces = stack_.size();
+        result.doubled_euler -= static_cast<Index>(stack_.size());
+        for (const Index f : stack_) {
+            reached_[at(f)] = 0;
+            for (const Index v : mesh_.faces[at(f)])
+                corners_[at(v)] = 0;
+        }
+        return result;
+    }
+
+    // Takes the new sides unless a chart would fall apart or change its topology.
+    bool apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
+        const Topology before_a = topology(anchor_[at(pair.first)]);
+        const Topology before_b = topology(anchor_[at(pair.second)]);
+        std::vector<Pair> undo; // (face, chart)
+        std::size_t size_a = before_a.faces;
+        std::size_t size_b = before_b.faces;
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            const bool to_a = parting.side[i] == CutSide::source;
+            Index& c = chart_[at(faces[i])];
+            if (c == (to_a ? pair.first : pair.second))
+                continue;
+            undo.emplace_back(faces[i], c);
+            c = to_a ? pair.first : pair.second;
+            size_a += to_a ? 1U : 0U;
+            size_a -= to_a ? 0U : 1U;
+            size_b += to_a ? 0U : 1U;
+            size_b -= to_a ? 1U : 0U;
+        }
+        if (undo.empty())
+            return false;
+        const Topology a = topology(anchor_[at(pair.first)]);
+        const Topology b = topology(anchor_[at(pair.second)]);
+        const auto keeps = [](const Topology& after, std::size_t size, const Topology& before) {
+            return after.faces == size &&
+                   (after.doubled_euler == before.doubled_euler ||
+                    (after.doubled_euler > before.doubled_euler && after.doubled_euler <= disk));
+        };
+        if (keeps(a, size_a, before_a) && keeps(b, size_b, before_b)) {
+            gauss_area_[at(pair.first)] -= parting.moved;
+            gauss_area_[at(pair.second)] += parting.moved;
+            return true;
+        }
+        for (const auto& [f, c] : undo)
+            chart_[at(f)] = c;
+        return false;
+    }
+
+    const Mesh& mesh_;
+    const GaussAreas& areas_;
+    const BorderBalance& options_;
+    std::vector<Index>& chart_;
+    Index count_;
+    float widest_ = 0.0F;               // bound of the strips' width: their cuts cost time
+    std::vector<double> face_area_;     // #F: Gauss area with its share of edges and corners
+    std::vector<double> gauss_area_;    // of each chart
+    double stiffness_ = 0.0;            // κ: length per Gauss area squared
+    std::vector<std::uint8_t> crease_;  // 3 #F: long creases
+    std::vector<std::uint8_t> fixed_;   // #F: keeps its chart in this sweep
+    std::vector<float> border_cost_;    // 3 #F
+    std::vector<float> step_;           // 3 #F: distance of the centroids on both sides
+    std::vector<float> depth_;          // #F: distance from the chart's border
+    std::vector<float> deepest_;        // of each chart: the largest depth
+    std::vector<Index> anchor_;         // of each chart: the deepest face
+    std::vector<Index> node_;           // #F: node in the strip at hand, −1 = none
+    std::vector<std::uint8_t> reached_; // #F: scratch of topology()
+    std::vector<Index> corners_;        // #V: scratch of topology()
+    std::vector<Index> valence_;        // #V: faces of an inner vertex, −1 on the boundary
+    std::vector<int> changes_;          // of each chart: borders moved so far
+    std::map<Pair, int> settled_;       // changes of both charts when nothing could be gained
+    std::map<Pair, double> last_price_;
+    std::vector<Index> stack_;
+    CandidateHeap heap_;
+};
+
+} // namespace
+
+void balance_borders(const Mesh& mesh, const GaussAreas& areas, const BorderBalance& options,
+                     Index count, std::vector<Index>& chart, Progress& progress) {
+    BorderBalancer balancer(mesh, areas, options, count, chart);
+    for (int sweep = 0; sweep < options.sweeps; ++sweep) {
+        progress.update(static_cast<double>(sweep) / options.sweeps);
+        balancer.sweep(progress);
+    }
+}
+
+} // namespace devseg

@@ -1,0 +1,296 @@
+// Every filter of the table, run on one mesh: it does what its declaration says.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/errors.h"
+#include "devseg/declare/filter.h"
+#include "unit/checks.h"
+#include "unit/host_checks.h"
+#include "unit/mesh_edits.h"
+#include "unit/pattern_samples.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+using checks::contains;
+using checks::number;
+
+// A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
+// that it is packed at once.
+HostMesh prepared() {
+    HostMesh host = checks::host_of(shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4));
+    const HostResult flat = checks::run("Charts: Flatten", host);
+    checks::take_charts(host, flat);
+    host.wedge_uv = flat.wedge_uv;
+    for (std::array<Vec2, 3>& corners : host.wedge_uv)
+        for (Vec2& p : corners)
+            p = Eigen::Rotation2Dd(0.5) * p; // no box stands upright
+    return host;
+}
+
+HostResult run(const FilterDeclaration& filter, const HostMesh& host,
+               const ParameterValues& values) {
+    Progress progress;
+    return run_filter(filter, host, values, progress);
+}
+
+TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
+    const HostMesh host = prepared();
+    const std::size_t faces = host.geometry.faces.size();
+    for (const FilterDeclaration& filter : filter_table()) {
+        SCOPED_TRACE(filter.menu_name);
+        const HostResult r = run(filter, host, {});
+        std::vector<std::string> declared;
+        std::vector<std::string> returned;
+        for (const ResultField& field : filter.results)
+            declared.push_back(field.name);
+        for (const auto& [name, value] : r.values) {
+            returned.push_back(name);
+            const bool is_count = name.size() > 7 && name.substr(name.size() - 7) == "_number";
+            EXPECT_EQ(is_count, std::holds_alternative<int>(value)) << name;
+        }
+        EXPECT_EQ(returned, declared);
+        const auto expect_written = [&](unsigned what, std::size_t size) {
+            EXPECT_EQ(size, (filter.writes & what) != 0 ? faces : 0U) << what;
+        };
+        expect_written(writes_charts, r.chart_id.size());
+        expect_written(writes_charts, r.seam_edges.size());
+        expect_written(writes_quality, r.face_quality.size());
+        expect_written(writes_color, r.face_color.size());
+        expect_written(writes_uv, r.wedge_uv.size());
+        EXPECT_EQ(r.points.size(),
+                  (filter.writes & writes_points) != 0 ? host.geometry.points.size() : 0U);
+        EXPECT_EQ(r.layer.has_value(), (filter.writes & writes_layer) != 0);
+    }
+}
+
+bool same_layer(const HostResult& a, const HostResult& b) {
+    if (!a.layer || !b.layer)
+        return a.layer.has_value() == b.layer.has_value();
+    return a.layer->geometry.points == b.layer->geometry.points &&
+           a.layer->geometry.faces == b.layer->geometry.faces &&
+           a.layer->face_color == b.layer->face_color &&
+           a.layer->face_quality == b.layer->face_quality &&
+           a.layer->face_attributes == b.layer->face_attributes;
+}
+
+bool same(const HostResult& a, const HostResult& b) {
+    return a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
+           a.face_quality == b.face_quality && a.face_color == b.face_color &&
+           a.wedge_uv == b.wedge_uv && a.points == b.points && same_layer(a, b);
+}
+
+TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table()) {
+        const HostResult a = run(filter, host, {});
+        const HostResult b = run(filter, host, {});
+        EXPECT_TRUE(same(a, b)) << filter.menu_name;
+        EXPECT_EQ(a.values, b.values) << filter.menu_name;
+    }
+}
+
+TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table()) {
+        ParameterValues all;
+        for (const Parameter& p : filter.parameters)
+            all[p.name] = p.default_value;
+        EXPECT_TRUE(same(run(filter, host, {}), run(filter, host, all))) << filter.menu_name;
+    }
+}
+
+// Other values in the range, as different as can be.
+std::vector<ParameterValue> other_values(const Parameter& p) {
+    const double now = number(p.default_value);
+    switch (p.kind) {
+    case ParameterKind::boolean:
+        return {now == 0.0};
+    case ParameterKind::choice:
+        return {now == 0.0 ? 1 : 0};
+    case ParameterKind::integer:
+        return {static_cast<int>(now == p.minimum ? now + 3.0 : p.minimum)};
+    case ParameterKind::text:
+    case ParameterKind::output_file:
+        return {std::get<std::string>(p.default_value) + " 2"};
+    case ParameterKind::real:
+        break;
+    }
+    if (p.name == "max_linf_stretch")
+        return {1.01}; // 0 means no bound, and between 0 and 1 there is nothing to ask for
+    return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
+}
+
+// Twenty cubes, for creases, and a finger, for a tip: one chart each.
+HostMesh cubes_and_a_finger() {
+    RawMesh all = shapes::finger(12, 20, 1.0, 9.0);
+    for (int i = 1; i <= 20; ++i)
+        all = shapes::join(all, shapes::moved(shapes::cube(2), 1.0, Vec3(3.0 * i, 0.0, 0.0)));
+    return checks::host_of(all);
+}
+
+// A filter that refuses because it cannot reach a bound has another result than one that does.
+HostResult run_or_refuse(const FilterDeclaration& filter, const HostMesh& host,
+                         const ParameterValues& values) {
+    try {
+        return run(filter, host, values);
+    } catch (const NumericalFailure& error) {
+        HostResult refused;
+        refused.notes = {error.what()};
+        return refused;
+    }
+}
+
+// A long bumpy body with a skeleton.
+HostMesh bumpy_body() {
+    RawMesh raw = shapes::sphere(3);
+    for (Vec3& p : raw.points) {
+        p *= 1.0 + 0.25 * std::sin(4.0 * p.z() + 1.0) + 0.1 * std::cos(3.0 * p.x() + p.z());
+        p.z() *= 2.2;
+    }
+    return checks::host_of(raw);
+}
+
+// They need a file, and faces that are selected: plush_test and test_plush.py have them.
+bool needs_more_than_a_mesh(const std::string& name) {
+    return name == "skeleton_file" || name == "material_borders";
+}
+
+// Parameters that work only together with another value.
+ParameterValues needed_for(const std::string& name) {
+    if (name == "keep_unfinished")
+        return {{"max_iterations", 1}};
+    if (name == "max_l2_stretch" || name == "max_linf_stretch")
+        return {{"charts_number", 0}};
+    return {};
+}
+
+// Whether some other value of the parameter gives another result than `plain`.
+bool changes_the_result(const FilterDeclaration& filter, const HostMesh& host, const Parameter& p,
+                        const HostResult& plain) {
+    for (const ParameterValue& value : other_values(p)) {
+        ParameterValues changed = needed_for(p.name);
+        changed[p.name] = value;
+        const HostResult other = run_or_refuse(filter, host, changed);
+        if (!same(plain, other) ||
+            (filter.writes == writes_nothing && plain.values != other.values))
+            return true;
+    }
+    return false;
+}
+
+TEST(DeclaredFilters, EveryParameterChangesTheResult) {
+    // What one mesh does not have, such as two pieces of one shape, another one has.
+    const std::vector<HostMesh> hosts{prepared(), samples::unfinished().host(),
+                                      samples::nearly_equal().host(), cubes_and_a_finger(),
+                                      bumpy_body()};
+    for (const FilterDeclaration& filter : filter_table()) {
+        std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
+        const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
+            const auto [place, fresh] = unchanged.try_emplace({host, values});
+            if (fresh)
+                place->second = run_or_refuse(filter, hosts[host], values);
+            return place->second;
+        };
+        for (const Parameter& p : filter.parameters) {
+            if (needs_more_than_a_mesh(p.name))
+                continue;
+            bool changes = false;
+            for (std::size_t i = 0; i < hosts.size() && !changes; ++i)
+                if (!filter.needs_uv || !hosts[i].wedge_uv.empty())
+                    changes = changes_the_result(filter, hosts[i], p, plain(i, needed_for(p.name)));
+            EXPECT_TRUE(changes) << filter.menu_name << ", " << p.name;
+        }
+    }
+}
+
+TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table())
+        for (const Parameter& p : filter.parameters) {
+            if (p.kind != ParameterKind::integer && p.kind != ParameterKind::real)
+                continue;
+            SCOPED_TRACE(filter.menu_name + ", " + p.name);
+            const auto refused = [&](const ParameterValue& value) {
+                const std::string text = checks::error_of<InvalidParameter>([&] {
+                    run(filter, host, {{p.name, value}});
+                });
+                EXPECT_EQ(text.rfind(p.name + ": expected ", 0), 0U) << text;
+                EXPECT_TRUE(contains(text, "found "));
+            };
+            if (p.kind == ParameterKind::integer) {
+                refused(static_cast<int>(p.minimum) - 1);
+                if (p.maximum < 1e6) {
+                    refused(static_cast<int>(p.maximum) + 1);
+                }
+            } else {
+                refused(p.minimum - 1.0);
+                refused(p.maximum + 1.0);
+                refused(std::numeric_limits<double>::quiet_NaN());
+            }
+        }
+}
+
+TEST(DeclaredFilters, ChoicesOutOfRangeAreRefused) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table())
+        for (const Parameter& p : filter.parameters) {
+            if (p.kind != ParameterKind::choice)
+                continue;
+            for (const int value : {-1, static_cast<int>(p.choices.size())})
+                EXPECT_THROW(run(filter, host, {{p.name, value}}), InvalidParameter)
+                    << filter.menu_name << ", " << p.name << ' ' << value;
+        }
+}
+
+TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
+    HostMesh host;
+    host.geometry = shapes::sphere(1);
+    for (const FilterDeclaration& filter : filter_table()) {
+        if (!filter.needs_uv) {
+            EXPECT_NO_THROW(run(filter, host, {})) << filter.menu_name;
+            continue;
+        }
+        const std::string text = checks::error_of<InvalidMesh>([&] { run(filter, host, {}); });
+        EXPECT_TRUE(contains(text, "expected wedge texture coordinates, found none"));
+        EXPECT_TRUE(contains(text, "Charts: Flatten"));
+    }
+}
+
+TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table()) {
+        int calls = 0;
+        Progress progress([&](double, const char*) { return ++calls < 1; });
+        try {
+            run_filter(filter, host, {}, progress);
+            EXPECT_EQ(calls, 0) << filter.menu_name; // over before the host could be asked
+        } catch (const Cancelled&) {
+            EXPECT_EQ(calls, 1);
+        }
+    }
+}
+
+TEST(DeclaredFilters, ProgressNeverGoesBackAndPhasesHaveNames) {
+    const HostMesh host = prepared();
+    for (const FilterDeclaration& filter : filter_table()) {
+        double last = 0.0;
+        Progress progress([&](double fraction, const char* phase) {
+            EXPECT_GE(fraction, last);
+            EXPECT_LE(fraction, 1.0);
+            last = fraction;
+            EXPECT_NE(std::string(phase), "") << filter.menu_name;
+            return true;
+        });
+        run_filter(filter, host, {}, progress);
+    }
+}
+
+} // namespace
+} // namespace devseg

@@ -1,0 +1,395 @@
+// Deformation to exact developability and exact unfolding.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "devseg/develop/angle_constraints.h"
+#include "devseg/develop/deform.h"
+#include "devseg/develop/intersections.h"
+#include "devseg/base/errors.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/flatten/maps/unfold.h"
+#include "devseg/methods/papercraft/papercraft.h"
+#include "unit/checks.h"
+#include "unit/mesh_edits.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+std::vector<Index> own_points(const Mesh& mesh) {
+    std::vector<Index> point_of;
+    for (Index v = 0; v < mesh.vertex_count(); ++v)
+        point_of.push_back(v);
+    return point_of;
+}
+
+DeformResult deform(const Mesh& mesh, const ChartMap& charts, const DeformOptions& options = {}) {
+    Progress progress;
+    return deform_to_developable(mesh, charts, own_points(mesh), options, progress);
+}
+
+Mesh with_points(Mesh mesh, const std::vector<Vec3>& points) {
+    mesh.points = points;
+    compute_face_geometry(mesh);
+    return mesh;
+}
+
+// The largest |2π − Σ θ| over vertices without cut or boundary edges, by the law of cosines.
+double worst_defect(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
+    std::vector<double> sum(mesh.points.size(), 0.0);
+    std::vector<bool> outer(mesh.points.size(), false);
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const double a = mesh.edge_length(h);
+        const double b = mesh.edge_length(Mesh::previous(h));
+        const double c = mesh.edge_length(Mesh::next(h));
+        sum[at(mesh.origin(h))] += std::acos((a * a + b * b - c * c) / (2.0 * a * b));
+        if (seam[at(h)] != 0 || mesh.twin[at(h)] < 0)
+            outer[at(mesh.origin(h))] = outer[at(mesh.target(h))] = true;
+    }
+    double worst = 0.0;
+    for (std::size_t v = 0; v < sum.size(); ++v)
+        if (!outer[v])
+            worst = std::max(worst, std::abs(2.0 * shapes::pi - sum[v]));
+    return worst;
+}
+
+Mesh lumpy_torus() {
+    return checks::gated(shapes::with_noise(shapes::torus(48, 24, 2.0, 0.9), 0.02, 4));
+}
+
+struct Deformed {
+    explicit Deformed(const Mesh& start, int charts) : mesh(start) {
+        PapercraftOptions options;
+        options.charts_number = charts;
+        Progress progress;
+        result = deform(start, segment_papercraft(start, options, progress).charts);
+        mesh = with_points(start, result.points);
+    }
+    Mesh mesh;
+    DeformResult result;
+};
+
+TEST(AngleConstraints, GradientsAreThoseOfFiniteDifferences) {
+    const Mesh mesh = checks::gated(shapes::with_noise(shapes::sphere(1), 0.1, 2));
+    const std::vector<Index> vertices{3, 7, 20};
+    AngleConstraints constraints(mesh, vertices, own_points(mesh));
+    constraints.linearise(mesh.points);
+    const std::vector<double> ones(mesh.points.size(), 1.0);
+    const double step = 1e-6;
+    for (Index r = 0; r < 3; ++r) {
+        const std::vector<Vec3> gradient =
+            constraints.displacement(ones, Eigen::VectorXd::Unit(3, r));
+        for (std::size_t p = 0; p < mesh.points.size(); ++p)
+            for (int k = 0; k < 3; ++k) {
+                std::vector<Vec3> more = mesh.points;
+                std::vector<Vec3> less = mesh.points;
+                more[p][k] += step;
+                less[p][k] -= step;
+                const double change = constraints.defects(less)[r] - constraints.defects(more)[r];
+                EXPECT_NEAR(gradient[p][k], change / (2.0 * step), 1e-7);
+            }
+    }
+    const Normal& matrix = constraints.normal_matrix(ones, Eigen::VectorXd::Constant(3, 0.25));
+    for (Index r = 0; r < 3; ++r)
+        for (Index s = 0; s <= r; ++s) {
+            const auto a = constraints.displacement(ones, Eigen::VectorXd::Unit(3, r));
+            const auto b = constraints.displacement(ones, Eigen::VectorXd::Unit(3, s));
+            double product = r == s ? 0.25 : 0.0;
+            for (std::size_t p = 0; p < a.size(); ++p)
+                product += a[p].dot(b[p]);
+            EXPECT_NEAR(matrix.coeff(r, s), product, 1e-12);
+        }
+}
+
+TEST(Deform, ChartsBecomeExactlyDevelopable) {
+    const Mesh start = lumpy_torus();
+    const Deformed d(start, 8);
+    EXPECT_GT(d.result.start_residual, 0.01);
+    EXPECT_TRUE(d.result.converged);
+    EXPECT_LE(worst_defect(d.mesh, d.result.charts.seam), 1e-9);
+    EXPECT_GT(d.result.inner_vertices, start.vertex_count() / 2);
+    EXPECT_EQ(d.result.new_intersections, 0);
+    double largest = 0.0;
+    double sum = 0.0;
+    for (std::size_t v = 0; v < start.points.size(); ++v) {
+        const double moved = (d.mesh.points[v] - start.points[v]).norm();
+        largest = std::max(largest, moved);
+        sum += moved;
+    }
+    EXPECT_NEAR(d.result.largest_displacement, largest, 1e-12);
+    EXPECT_NEAR(d.result.mean_displacement, sum / start.vertex_count(), 1e-12);
+    EXPECT_LT(largest * start.unit_length, 0.3); // of a torus of 5.8
+    for (Index f = 0; f < start.face_count(); ++f)
+        EXPECT_GT(start.face_normals[at(f)].dot(d.mesh.face_normals[at(f)]), 0.0);
+}
+
+TEST(Deform, WhatIsDevelopableStays) {
+    const Mesh mesh = checks::gated(shapes::folded_strip(8, 6, 0.7));
+    const DeformResult r = deform(mesh, checks::components(mesh));
+    EXPECT_EQ(r.largest_displacement, 0.0);
+    EXPECT_EQ(r.rounds, 0);
+    EXPECT_TRUE(r.converged);
+}
+
+TEST(Deform, SlitsStayWhereTheyMustNotBeAdjusted) {
+    const Mesh mesh = checks::gated(shapes::with_noise(shapes::hemisphere(32, 10), 0.01, 1));
+    PapercraftOptions options;
+    options.charts_number = 6;
+    options.slit_threshold = 0.0;
+    Progress progress;
+    const ChartMap charts = segment_papercraft(mesh, options, progress).charts;
+    const DeformResult r = deform(mesh, charts, {200, 1e-6, false, false});
+    EXPECT_EQ(r.charts.seam, charts.seam);
+    EXPECT_LE(worst_defect(with_points(mesh, r.points), charts.seam), 1e-6);
+}
+
+TEST(Deform, WhatCannotConvergeIsRefusedOrReturnedOnRequest) {
+    // A sphere with a short slit: curvature of 4π has nowhere to go.
+    const checks::Disk disk(shapes::sphere(2));
+    EXPECT_THROW(deform(disk.mesh, disk.charts, {20, 1e-6, false, false}), NumericalFailure);
+    const std::string text = checks::error_of<NumericalFailure>([&] {
+        deform(disk.mesh, disk.charts, {20, 1e-6, false, false});
+    });
+    EXPECT_TRUE(checks::contains(text, "expected angle sums of 2 pi"));
+    EXPECT_TRUE(checks::contains(text, "keep_unfinished"));
+    const DeformResult r = deform(disk.mesh, disk.charts, {20, 1e-6, false, true});
+    EXPECT_FALSE(r.converged);
+    EXPECT_NEAR(r.residual, worst_defect(with_points(disk.mesh, r.points), r.charts.seam), 1e-6);
+}
+
+TEST(Deform, TheSameSphereConvergesWithMoreSlits) {
+    const checks::Disk disk(shapes::sphere(2));
+    const DeformResult r = deform(disk.mesh, disk.charts, {400, 1e-6, true, false});
+    EXPECT_TRUE(r.converged);
+    EXPECT_GT(r.added_slits, 0);
+    EXPECT_TRUE(checks::is_valid(disk.mesh, r.charts));
+    EXPECT_LE(worst_defect(with_points(disk.mesh, r.points), r.charts.seam), 1e-6);
+    EXPECT_EQ(checks::topology(disk.mesh, r.charts, 0).euler, 1);
+}
+
+TEST(Deform, SurfacesThatWouldCrossAreRefused) {
+    // Two shells with charts of their own, nearer to each other than they have to move.
+    const RawMesh shell = shapes::with_noise(shapes::sphere(3), 0.003, 8);
+    const RawMesh inside = shapes::with_noise(shapes::sphere(3), 0.003, 9);
+    const Mesh mesh =
+        checks::gated(shapes::join(shell, shapes::moved(inside, 0.975, Vec3::Zero())));
+    PapercraftOptions options;
+    options.charts_number = 12;
+    Progress progress;
+    const ChartMap charts = segment_papercraft(mesh, options, progress).charts;
+    ASSERT_TRUE(find_intersections(mesh.points, mesh.faces, progress).empty());
+    DeformOptions anyway;
+    anyway.keep_unfinished = true;
+    const DeformResult r = deform(mesh, charts, anyway);
+    EXPECT_TRUE(r.converged);
+    EXPECT_EQ(r.new_intersections,
+              static_cast<Index>(find_intersections(r.points, mesh.faces, progress).size()));
+    EXPECT_GT(r.new_intersections, 0); // they are too close, and so it is refused
+    const std::string text = checks::error_of<NumericalFailure>([&] { deform(mesh, charts); });
+    EXPECT_TRUE(checks::contains(text, "new pairs of faces that intersect"));
+}
+
+TEST(Deform, VerticesThatShareAPointStayTogether) {
+    // Two fans that touch in a vertex of the host: the gate splits it.
+    RawMesh raw = shapes::with_noise(shapes::hemisphere(12, 4), 0.02, 1);
+    const RawMesh other = shapes::moved(raw, -1.0, 2.0 * raw.points[0]);
+    RawMesh both = shapes::join(raw, other);
+    const Index offset = static_cast<Index>(raw.points.size());
+    for (Triangle& t : both.faces)
+        for (Index& v : t)
+            v = (both.points[at(v)] - both.points[0]).norm() < 1e-9 ? 0 : v;
+    const GatedMesh gated = gate_mesh(both);
+    ASSERT_GT(offset, 0);
+    ASSERT_NE(std::count(gated.source_vertex.begin(), gated.source_vertex.end(), 0), 0);
+    const std::vector<Index> point_of(gated.source_vertex.begin(), gated.source_vertex.end());
+    Progress progress;
+    const DeformResult r = deform_to_developable(
+        gated.mesh, checks::components_cut_to_disks(gated.mesh), point_of, {}, progress);
+    Vec3 shared = Vec3::Zero();
+    Index copies = 0;
+    for (std::size_t v = 0; v < point_of.size(); ++v)
+        if (point_of[v] == 0) {
+            if (copies++ == 0)
+                shared = r.points[v];
+            EXPECT_EQ(r.points[v], shared);
+        }
+    EXPECT_EQ(copies, 2);
+}
+
+TEST(Intersections, CrossingCountsAndTouchingDoesNot) {
+    const std::vector<Vec3> points{{0, 0, 0},     {2, 0, 0},   {0, 2, 0},   {0.5, 0.5, -1},
+                                   {0.5, 0.5, 1}, {3, 3, 0.5}, {1, 0.5, 0}, {0.2, 0.2, 0}};
+    const std::vector<Triangle> faces{
+        {0, 1, 2}, // in the plane
+        {3, 4, 5}, // through it
+        {6, 4, 5}, // with a corner on it
+        {0, 4, 5}, // from its corner, beside it
+    };
+    using Pairs = std::vector<std::pair<Index, Index>>;
+    EXPECT_EQ(find_intersections(points, {faces[0], faces[1]}, Progress()), (Pairs{{0, 1}}));
+    EXPECT_EQ(find_intersections(points, {faces[0], faces[2]}, Progress()), Pairs{});
+    EXPECT_EQ(find_intersections(points, {faces[0], faces[3]}, Progress()), Pairs{});
+    // With a common corner, but the opposite edge runs through the inside.
+    EXPECT_EQ(find_intersections(points, {faces[0], {0, 3, 4}}, Progress()), (Pairs{{0, 1}}));
+    EXPECT_EQ(find_intersections(lumpy_torus().points, lumpy_torus().faces, Progress()), Pairs{});
+}
+
+TEST(Intersections, TheTreeFindsWhatAllPairsFind) {
+    RawMesh raw = shapes::join(shapes::sphere(2), shapes::moved(shapes::torus(20, 10, 1.0, 0.4),
+                                                                1.0, Vec3(0.3, 0.2, 0.1)));
+    const auto all = find_intersections(raw.points, raw.faces, Progress());
+    EXPECT_GT(all.size(), 20U);
+    std::vector<std::pair<Index, Index>> one_by_one;
+    const Index count = static_cast<Index>(raw.faces.size());
+    for (Index f = 0; f < count; ++f)
+        for (Index g = f + 1; g < count; ++g)
+            if (!find_intersections(raw.points, {raw.faces[at(f)], raw.faces[at(g)]}, Progress())
+                     .empty())
+                one_by_one.emplace_back(f, g);
+    EXPECT_EQ(all, one_by_one);
+}
+
+// The chart folded back: each face beside its neighbour, turned by the fold angle of their edge.
+std::vector<Vec3> fold_back(const Mesh& mesh, const ChartSurface& surface,
+                            const std::vector<Vec2>& uv) {
+    std::vector<Eigen::Isometry3d> place(surface.face.size(), Eigen::Isometry3d::Identity());
+    std::vector<bool> seen(surface.face.size(), false);
+    std::vector<Vec3> folded(surface.vertex.size());
+    const auto flat = [&](Index v) { return Vec3(uv[at(v)].x(), uv[at(v)].y(), 0.0); };
+    std::vector<Index> queue{0};
+    seen[0] = true;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+        const Index f = queue[i];
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            folded[at(surface.origin(h))] = place[at(f)] * flat(surface.origin(h));
+            const Index other = surface.twin[at(h)];
+            if (other < 0 || seen[at(other / 3)])
+                continue;
+            const Vec3& n = mesh.face_normals[at(surface.face[at(f)])];
+            const Vec3& m = mesh.face_normals[at(surface.face[at(other / 3)])];
+            const Vec3 edge = (mesh.points[at(surface.vertex[at(surface.target(h))])] -
+                               mesh.points[at(surface.vertex[at(surface.origin(h))])])
+                                  .normalized();
+            const double angle = std::atan2(n.cross(m).dot(edge), n.dot(m));
+            const Vec3 a = flat(surface.origin(h));
+            const Vec3 axis = (flat(surface.target(h)) - a).normalized();
+            place[at(other / 3)] = place[at(f)] * Eigen::Translation3d(a) *
+                                   Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-a);
+            seen[at(other / 3)] = true;
+            queue.push_back(other / 3);
+        }
+    }
+    return folded;
+}
+
+void expect_folds_back(const Mesh& mesh, const ChartSurface& surface, const std::vector<Vec2>& uv) {
+    const std::vector<Vec3> folded = fold_back(mesh, surface, uv);
+    Eigen::Matrix3Xd from(3, folded.size());
+    Eigen::Matrix3Xd to(3, folded.size());
+    for (std::size_t v = 0; v < folded.size(); ++v) {
+        from.col(static_cast<Eigen::Index>(v)) = folded[v];
+        to.col(static_cast<Eigen::Index>(v)) = mesh.points[at(surface.vertex[v])];
+    }
+    const Eigen::Matrix4d rigid = Eigen::umeyama(from, to, false);
+    for (Eigen::Index v = 0; v < from.cols(); ++v)
+        EXPECT_LT((rigid * from.col(v).homogeneous() - to.col(v).homogeneous()).norm(), 1e-6);
+}
+
+TEST(Unfold, DeformedChartsUnfoldWithoutStretchAndFoldBack) {
+    const Deformed d(lumpy_torus(), 8);
+    Progress progress;
+    const FlattenResult flat =
+        flatten_charts(d.mesh, d.result.charts, FlattenMethod::lscm, progress);
+    EXPECT_GE(flat.charts.count, d.result.charts.count);
+    for (const FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+            EXPECT_NEAR(
+                (chart.uv[at(chart.surface.target(h))] - chart.uv[at(chart.surface.origin(h))])
+                    .norm(),
+                d.mesh.edge_length(chart.surface.mesh_half_edge(h)), 1e-9);
+        expect_folds_back(d.mesh, chart.surface, chart.uv);
+    }
+}
+
+TEST(Unfold, WhatIsNotDevelopableIsNotUnfolded) {
+    for (const RawMesh& raw : {shapes::hemisphere(16, 6), shapes::sphere(2)}) {
+        const checks::Disk disk(raw);
+        EXPECT_FALSE(unfold(disk.problem, disk.surface.twin).has_value());
+    }
+    const checks::Disk strip(shapes::folded_strip(8, 6, 0.7));
+    EXPECT_TRUE(unfold(strip.problem, strip.surface.twin).has_value());
+}
+
+// Rays from the origin in a zigzag, each at the same angle from the last: a folded ring sector of
+// so many sectors of `angle`, which may be more than a full turn in the plane.
+RawMesh zigzag_fan(int sectors, double angle, double inner, double outer, int rows) {
+    const double turn = 0.9 * 2.0 * shapes::pi / sectors; // between rays, seen from above
+    // cos(angle) = cos²ψ cos(turn) − sin²ψ
+    const double c = (std::cos(angle) + 1.0) / (std::cos(turn) + 1.0);
+    const double psi = std::acos(std::sqrt(c));
+    RawMesh raw = shapes::grid(sectors, rows);
+    for (Index v = 0; v < static_cast<Index>(raw.points.size()); ++v) {
+        const int i = static_cast<int>(std::lround(raw.points[at(v)].x() * sectors));
+        const double r = inner + (outer - inner) * raw.points[at(v)].y();
+        const double up = i % 2 == 0 ? psi : -psi;
+        raw.points[at(v)] = r * Vec3(std::cos(turn * i) * std::cos(up),
+                                     -std::sin(turn * i) * std::cos(up), std::sin(up));
+    }
+    return raw;
+}
+
+TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
+    const Mesh mesh = checks::gated(zigzag_fan(24, shapes::pi / 8.0, 1.0, 2.0, 4));
+    Progress progress;
+    const FlattenResult flat = flatten_charts(mesh, checks::components(mesh),
+                                              FlattenMethod::symmetric_dirichlet, progress);
+    EXPECT_EQ(flat.cuts, 1);
+    EXPECT_EQ(flat.charts.count, 2);
+    double area = 0.0;
+    for (const FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        EXPECT_FALSE(chart.pushed);
+        for (const Triangle& t : chart.surface.corners) {
+            const Vec2 a = chart.uv[at(t[1])] - chart.uv[at(t[0])];
+            const Vec2 b = chart.uv[at(t[2])] - chart.uv[at(t[0])];
+            area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+        }
+    }
+    EXPECT_NEAR(area, mesh.total_area, 1e-9 * mesh.total_area);
+}
+
+TEST(Unfold, ASmallPartIsHingedToANeighbour) {
+    // The same with one sector more than fits, and a sheet at either end.
+    RawMesh raw = zigzag_fan(17, shapes::pi / 8.0, 1.0, 2.0, 1);
+    const auto add_sheet = [&](Index a, Index b, const Vec3& offset) {
+        const Index n = static_cast<Index>(raw.points.size());
+        raw.points.push_back(raw.points[at(a)] + offset);
+        raw.points.push_back(raw.points[at(b)] + offset);
+        raw.faces.push_back({a, n, b});
+        raw.faces.push_back({n, n + 1, b});
+    };
+    add_sheet(17, 17 + 18, Vec3(0.7, 0.2, 0.3)); // points run along rows of 18
+    add_sheet(18, 0, Vec3(0.7, -0.2, 0.3));
+    const Mesh mesh = checks::gated(raw);
+    std::vector<Index> labels(mesh.faces.size(), 0);
+    for (std::size_t i = 1; i <= 4; ++i)
+        labels[labels.size() - i] = i <= 2 ? 1 : 2;
+    Progress progress;
+    const FlattenResult flat = flatten_charts(mesh, make_chart_map(mesh, labels, {}, false),
+                                              FlattenMethod::symmetric_dirichlet, progress);
+    EXPECT_EQ(flat.cuts, 1);
+    EXPECT_EQ(flat.reattached, 1);
+    EXPECT_EQ(flat.charts.count, 3);
+    EXPECT_TRUE(checks::is_valid(mesh, flat.charts));
+    ASSERT_EQ(flat.flat.size(), 3U);
+    for (std::size_t c = 0; c < 3; ++c)
+        for (const Index f : flat.flat[c].surface.face)
+            EXPECT_EQ(flat.charts.chart[at(f)], static_cast<Index>(c));
+}
+
+} // namespace
+} // namespace devseg

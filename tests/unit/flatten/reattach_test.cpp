@@ -1,0 +1,140 @@
+#include "devseg/flatten/reattach.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "devseg/atlas/disks.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/mesh/input_gate.h"
+#include "devseg/atlas/texture.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+constexpr double tolerance = 1e-9;
+
+// A plate in two charts, and a piece of two squares at its lower edge between them.
+Mesh plate() {
+    return gate_mesh(shapes::grid(20, 20, 20.0, 20.0)).mesh;
+}
+
+FlattenResult flat_with_sliver(const Mesh& mesh) {
+    const Vec3 low = mesh.points.front();
+    const double side = (mesh.points.back() - low).x() / 20.0;
+    std::vector<Index> label;
+    for (const Vec3& center : mesh.face_centers) {
+        const Vec3 p = (center - low) / side;
+        label.push_back(p.x() > 10.0 && p.x() < 11.0 && p.y() < 2.0 ? 2 : p.x() < 10.0 ? 0 : 1);
+    }
+    Progress progress;
+    return flatten_charts(mesh, make_chart_map(mesh, label, {}, false),
+                          FlattenMethod::symmetric_dirichlet, progress);
+}
+
+Index sliver_of(const FlattenResult& flat) {
+    for (Index c = 0; c < flat.charts.count; ++c)
+        if (flat.flat[at(c)].surface.face_count() == 4)
+            return c;
+    return -1;
+}
+
+TEST(Slivers, GoToANeighbourThatHasRoom) {
+    const Mesh mesh = plate();
+    FlattenResult flat = flat_with_sliver(mesh);
+    ASSERT_EQ(flat.charts.count, 3);
+    flat.flat[at(sliver_of(flat))].cut_off = true;
+    Progress progress;
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    ASSERT_EQ(flat.charts.count, 2);
+    ASSERT_EQ(flat.flat.size(), 2U);
+    EXPECT_TRUE(checks::is_valid(mesh, flat.charts));
+    Index faces = 0;
+    for (Index c = 0; c < 2; ++c) {
+        const FlatChart& chart = flat.flat[at(c)];
+        faces += chart.surface.face_count();
+        EXPECT_NEAR(chart.energy, 1.0, 1e-9);
+        EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
+        for (const Index f : chart.surface.face)
+            EXPECT_EQ(flat.charts.chart[at(f)], c);
+    }
+    EXPECT_EQ(faces, mesh.face_count());
+}
+
+TEST(Slivers, ChartsThatWereGivenStay) {
+    const Mesh mesh = plate();
+    FlattenResult flat = flat_with_sliver(mesh);
+    Progress progress;
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    EXPECT_EQ(flat.charts.count, 3);
+}
+
+TEST(Slivers, StayWhereTheJoinedMapWouldOverlap) {
+    // A ring but for a gap of one sector, which is its only piece: gluing closes the ring.
+    const RawMesh raw = shapes::annulus(240, 2, 0.97, 1.0);
+    const Mesh mesh = gate_mesh(raw).mesh;
+    std::vector<Index> label(mesh.faces.size(), 0);
+    for (std::size_t f = 0; f < label.size(); ++f) {
+        const Vec3& p = mesh.face_centers[f];
+        label[f] = p.x() > 0.0 && std::abs(p.y()) < 0.03 * p.x() ? 1 : 0;
+    }
+    Progress progress;
+    FlattenResult flat = flatten_charts(mesh, make_chart_map(mesh, label, {}, false),
+                                        FlattenMethod::symmetric_dirichlet, progress);
+    const Index before = flat.charts.count;
+    ASSERT_GE(before, 2);
+    for (FlatChart& chart : flat.flat)
+        chart.cut_off = chart.surface.face_count() < 10;
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    EXPECT_EQ(flat.charts.count, before);
+    for (const FlatChart& chart : flat.flat)
+        EXPECT_TRUE(chart.surface.is_disk());
+}
+
+// Charts that readers of the texture coordinates take for disks.
+Index disks_in_the_plane(const Mesh& mesh, const FlattenResult& flat) {
+    CornerUv uv(3 * mesh.faces.size());
+    double shift = 0.0;
+    for (const FlatChart& chart : flat.flat) {
+        for (std::size_t f = 0; f < chart.surface.face.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k)
+                uv[3 * at(chart.surface.face[f]) + k] =
+                    chart.uv[at(chart.surface.corners[f][k])] + Vec2(shift, 0.0);
+        shift += 10.0;
+    }
+    Index disks = 0;
+    for (const ChartSurface& surface : extract_charts(mesh, charts_from_uv(mesh, uv)))
+        disks += surface.is_disk() ? 1 : 0;
+    return disks;
+}
+
+// The sides of cuts around holes in a flat sheet lie on each other.
+TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
+    const Mesh mesh = gate_mesh(shapes::plate(shapes::mask_with_holes(3))).mesh;
+    double right = -1e9;
+    for (const Vec3& center : mesh.face_centers)
+        right = std::max(right, center.x());
+    std::vector<Index> label; // the last column is a chart of its own
+    const double cell = std::sqrt(2.0 * mesh.face_areas.front());
+    for (const Vec3& center : mesh.face_centers)
+        label.push_back(center.x() > right - 0.7 * cell ? 1 : 0);
+    Progress progress;
+    const ChartMap cut =
+        cut_charts_to_disks(mesh, make_chart_map(mesh, label, {}, false), progress).charts;
+    FlattenResult flat = flatten_charts(mesh, cut, FlattenMethod::symmetric_dirichlet, progress);
+    ASSERT_EQ(flat.charts.count, 2);
+    EXPECT_EQ(disks_in_the_plane(mesh, flat), 2);
+
+    for (FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        chart.cut_off = chart.surface.face_count() < mesh.face_count() / 2;
+    }
+    EXPECT_EQ(reattach_parts(mesh, tolerance, flat, progress), 1);
+    ASSERT_EQ(flat.charts.count, 1);
+    EXPECT_EQ(disks_in_the_plane(mesh, flat), 1);
+}
+
+} // namespace
+} // namespace devseg

@@ -1,0 +1,158 @@
+#include "devseg/flatten/repair/snap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "unit/checks.h"
+#include "unit/mesh_edits.h"
+
+namespace devseg {
+namespace {
+
+using shapes::Random;
+
+std::vector<Vec2> rounded(std::vector<Vec2> uv) {
+    for (Vec2& p : uv)
+        p = checks::single(p);
+    return uv;
+}
+
+bool all_single(const std::vector<Vec2>& uv) {
+    return rounded(uv) == uv;
+}
+
+struct Map {
+    std::vector<Triangle> faces;
+    std::vector<Vec2> uv;
+};
+
+// A straight strip of `count` slivers of the given height, along a slope.
+Map sliver_strip(int count, double slope, double height, const Vec2& start) {
+    Map map;
+    const double step = 0.2 / count;
+    const Vec2 along = Vec2(1.0, slope).normalized();
+    const Vec2 across(-along.y(), along.x());
+    for (int i = 0; i <= count; ++i) {
+        map.uv.push_back(start + i * step * along);
+        map.uv.push_back(start + (i + 0.5) * step * along + height * across);
+        if (i == 0)
+            continue;
+        const Index n = static_cast<Index>(map.uv.size());
+        map.faces.push_back({n - 4, n - 2, n - 3});
+        map.faces.push_back({n - 3, n - 2, n - 1});
+    }
+    return map;
+}
+
+// A regular grid, distorted so that some triangles are thin.
+Map thin_grid(Index n, double height, std::uint32_t seed) {
+    Map map;
+    Random random(seed);
+    const double slope = random.uniform(-1.0, 1.0);
+    for (Index y = 0; y <= n; ++y)
+        for (Index x = 0; x <= n; ++x) {
+            const double u = 0.4 + 0.2 * x / n;
+            map.uv.emplace_back(u, 0.4 + slope * u + height * y);
+        }
+    for (Index y = 0; y < n; ++y)
+        for (Index x = 0; x < n; ++x) {
+            const Index a = y * (n + 1) + x;
+            map.faces.push_back({a, a + 1, a + n + 2});
+            map.faces.push_back({a, a + n + 2, a + n + 1});
+        }
+    return map;
+}
+
+TEST(Snap, OrdinaryMapsAreJustRounded) {
+    const Map map = thin_grid(20, 0.01, 1);
+    std::vector<Vec2> uv = map.uv;
+    EXPECT_EQ(snap_to_single(map.faces, uv), 0);
+    EXPECT_EQ(uv, rounded(map.uv));
+    EXPECT_NE(uv, map.uv);
+}
+
+TEST(Snap, SliversThatRoundingWouldFlipAreKept) {
+    // Near ½, neighbouring single precision numbers are 6e-8 apart.
+    for (const double height : {3e-8, 2e-8, 1e-8})
+        for (const double slope : {0.1, -0.77, 3.3}) {
+            const Map map = sliver_strip(60, slope, height, Vec2(0.55, 0.51));
+            ASSERT_EQ(checks::count_flips(map.faces, map.uv), 0);
+            ASSERT_GT(checks::count_flips(map.faces, rounded(map.uv)), 0) << height; // it matters
+            std::vector<Vec2> uv = map.uv;
+            EXPECT_EQ(snap_to_single(map.faces, uv), 0) << height << ' ' << slope;
+            EXPECT_EQ(checks::count_flips(map.faces, uv), 0);
+            EXPECT_TRUE(all_single(uv));
+            for (std::size_t v = 0; v < uv.size(); ++v)
+                EXPECT_LT((uv[v] - map.uv[v]).norm(), 2e-6);
+        }
+}
+
+TEST(Snap, ThinGridsAreKept) {
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        const Map map = thin_grid(24, 1e-8, seed);
+        ASSERT_EQ(checks::count_flips(map.faces, map.uv), 0);
+        ASSERT_GT(checks::count_flips(map.faces, rounded(map.uv)), 0);
+        std::vector<Vec2> uv = map.uv;
+        EXPECT_EQ(snap_to_single(map.faces, uv), 0) << "seed " << seed;
+        EXPECT_EQ(checks::count_flips(map.faces, uv), 0);
+        EXPECT_TRUE(all_single(uv));
+    }
+}
+
+TEST(Snap, ReportsExactlyWhatItCouldNotKeep) {
+    // Layers far closer than the numbers can tell apart: some faces must be lost, and be counted.
+    for (const double height : {1e-11, 1e-9, 1e-8, 2e-8, 5e-8}) {
+        const Map map = thin_grid(12, height, 9);
+        std::vector<Vec2> uv = map.uv;
+        const Index lost = snap_to_single(map.faces, uv);
+        EXPECT_TRUE(all_single(uv));
+        EXPECT_EQ(lost, checks::count_flips(map.faces, uv));
+        EXPECT_LE(lost, checks::count_flips(map.faces, rounded(map.uv)));
+    }
+    const Map impossible = thin_grid(12, 1e-9, 9);
+    std::vector<Vec2> uv = impossible.uv;
+    EXPECT_GT(snap_to_single(impossible.faces, uv), 0);
+}
+
+TEST(Snap, AFanAroundOnePointIsKept) {
+    // Sixty-four slivers around a vertex at single precision's end: moving it alone would not do.
+    Map map;
+    map.uv.emplace_back(0.7123456789, 0.6234567891);
+    constexpr Index count = 64;
+    for (Index i = 0; i < count; ++i) {
+        const double t = 2.0 * 3.14159265358979323846 * i / count;
+        map.uv.push_back(map.uv[0] + 4e-7 * Vec2(std::cos(t), std::sin(t)));
+        map.faces.push_back({0, 1 + i, 1 + (i + 1) % count});
+    }
+    std::vector<Vec2> uv = map.uv;
+    const Index lost = snap_to_single(map.faces, uv);
+    EXPECT_TRUE(all_single(uv));
+    EXPECT_EQ(lost, checks::count_flips(map.faces, uv));
+    EXPECT_LT(lost, checks::count_flips(map.faces, rounded(map.uv)));
+}
+
+TEST(Snap, IsStable) {
+    const Map map = sliver_strip(40, 0.3, 2e-8, Vec2(0.6, 0.7));
+    std::vector<Vec2> once = map.uv;
+    snap_to_single(map.faces, once);
+    std::vector<Vec2> twice = once;
+    EXPECT_EQ(snap_to_single(map.faces, twice), 0);
+    EXPECT_EQ(twice, once);
+}
+
+TEST(Snap, LayoutsOfAnySizeAreHandled) {
+    for (const double scale : {1e-6, 1.0, 1e6}) { // "side by side in model units"
+        Map map = sliver_strip(40, 0.4, 2e-8, Vec2(0.6, 0.55));
+        for (Vec2& p : map.uv)
+            p *= scale;
+        ASSERT_GT(checks::count_flips(map.faces, rounded(map.uv)), 0);
+        std::vector<Vec2> uv = map.uv;
+        EXPECT_EQ(snap_to_single(map.faces, uv), 0);
+        EXPECT_EQ(checks::count_flips(map.faces, uv), 0);
+    }
+}
+
+} // namespace
+} // namespace devseg

@@ -1,0 +1,77 @@
+// Folds, numbers and places of pieces on their sheets.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/errors.h"
+#include "sheet/nesting.h"
+#include "sheet/page_size.h"
+#include "unit/checks.h"
+
+namespace devseg {
+namespace {
+
+SheetPiece rectangle(double width, double height) {
+    SheetPiece piece;
+    piece.cut = {{Vec2(0, 0), Vec2(width, 0), Vec2(width, height), Vec2(0, height)}};
+    return piece;
+}
+
+TEST(Nesting, FillsSheetsWithoutOverlap) {
+    const SheetPiece large = rectangle(90, 55);
+    const SheetPiece small = rectangle(20, 40);
+    const SheetPiece huge = rectangle(300, 20);
+    const std::vector<const SheetPiece*> pieces = {&small, &large, &small, &huge, &large, &large};
+    Progress progress;
+    const Nesting nesting = nest_pieces(pieces, {100.0, 120.0, 2.0, false}, progress);
+    EXPECT_EQ(nesting.sheet[3], -1) << "longer than the sheet";
+    EXPECT_EQ(nesting.sheet_count, 2);
+    std::vector<Eigen::AlignedBox2d> boxes(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (nesting.sheet[i] < 0)
+            continue;
+        SheetPiece placed = *pieces[i];
+        placed.move(nesting.placements[i]);
+        boxes[i] = placed.box();
+        EXPECT_GE(boxes[i].min().minCoeff(), -1e-6);
+        EXPECT_LE(boxes[i].max().x(), 100.0 + 1e-6);
+        EXPECT_LE(boxes[i].max().y(), 120.0 + 1e-6);
+        for (std::size_t j = 0; j < i; ++j)
+            if (nesting.sheet[j] == nesting.sheet[i]) {
+                EXPECT_GE(boxes[i].exteriorDistance(boxes[j]), 2.0 - 1e-6) << i << ' ' << j;
+            }
+    }
+}
+
+// An image of the first piece in cells of the sheet's size would take terabytes.
+TEST(Nesting, LeavesOutPiecesThatAreFarTooWide) {
+    const SheetPiece huge = rectangle(1e6, 1e6);
+    const SheetPiece upright = rectangle(80, 900);
+    Progress progress;
+    const Nesting endless = nest_pieces({&huge, &upright}, {100.0, 0.0, 2.0, false}, progress);
+    EXPECT_EQ(endless.sheet, (std::vector<Index>{-1, 0}));
+    const Nesting page = nest_pieces({&huge, &upright}, {100.0, 120.0, 2.0, false}, progress);
+    EXPECT_EQ(page.sheet, (std::vector<Index>{-1, -1}));
+}
+
+TEST(PageSize, KnowsNamesAndSizes) {
+    ExportOptions options;
+    EXPECT_FALSE(page_format(options));
+    for (const auto& [name, size] :
+         {std::pair("A4", Vec2(210, 297)), std::pair("letter", Vec2(215.9, 279.4)),
+          std::pair("600x400.5", Vec2(600, 400.5))}) {
+        options.page = name;
+        EXPECT_EQ(page_format(options)->size, size);
+    }
+    for (const char* wrong : {"a5", "600", "x", "-10x20", "600x400mm", "nanx100", "1e9x1e9"}) {
+        options.page = wrong;
+        EXPECT_EQ(checks::error_of<InvalidParameter>([&] {
+                      page_format(options);
+                  }).rfind("page: expected ", 0),
+                  0u)
+            << wrong;
+    }
+}
+
+} // namespace
+} // namespace devseg

@@ -1,0 +1,114 @@
+#include "sheet/tabs.h"
+
+#include <polyclipping/clipper.hpp>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/errors.h"
+
+namespace devseg {
+namespace {
+
+// Two squares that are joined along the whole of their outlines: one seam for each side.
+Pattern two_squares(double side, double notch) {
+    Pattern pattern;
+    for (int k = 0; k < 2; ++k) {
+        PatternPiece piece;
+        const Vec2 low(2.0 * side * k, 0.0);
+        piece.outer.points = {low, low + Vec2(side, 0), low + Vec2(side, side),
+                              low + Vec2(0.5 * side, side - notch), low + Vec2(0, side)};
+        for (const Vec2& p : piece.outer.points)
+            piece.box.extend(p);
+        pattern.pieces.push_back(piece);
+    }
+    for (Index i = 0; i < 5; ++i) {
+        Seam seam;
+        seam.number = i + 1;
+        seam.sides[0] = {0, 0, i, 1, false, 0.0, {}};
+        seam.sides[1] = {1, 0, i, 1, true, 0.0, {}};
+        pattern.seams.push_back(seam);
+    }
+    return pattern;
+}
+
+ClipperLib::Path path_of(const std::vector<Vec2>& points) {
+    ClipperLib::Path path;
+    for (const Vec2& p : points)
+        path.emplace_back(std::llround(1e6 * p.x()), std::llround(1e6 * p.y()));
+    return path;
+}
+
+std::vector<Vec2> polygon(const Pattern& pattern, const GlueTab& tab) {
+    const std::vector<Vec2>& points = pattern.pieces[at(tab.piece)].path(tab.path).points;
+    std::vector<Vec2> ring;
+    for (Index i = tab.count; i >= 0; --i)
+        ring.push_back(points[at(tab.first + i) % points.size()]);
+    ring.push_back(tab.corner[0]);
+    ring.push_back(tab.corner[1]);
+    return ring;
+}
+
+double common_area(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    ClipperLib::Clipper clipper;
+    clipper.AddPath(path_of(a), ClipperLib::ptSubject, true);
+    clipper.AddPath(path_of(b), ClipperLib::ptClip, true);
+    ClipperLib::Paths common;
+    clipper.Execute(ClipperLib::ctIntersection, common, ClipperLib::pftNonZero,
+                    ClipperLib::pftNonZero);
+    double area = 0.0;
+    for (const ClipperLib::Path& path : common)
+        area += std::abs(ClipperLib::Area(path)) * 1e-12;
+    return area;
+}
+
+void expect_no_overlap(const Pattern& pattern, const GlueTabs& tabs) {
+    for (std::size_t p = 0; p < pattern.pieces.size(); ++p)
+        for (std::size_t i = 0; i < tabs.tabs[p].size(); ++i) {
+            const std::vector<Vec2> tab = polygon(pattern, tabs.tabs[p][i]);
+            EXPECT_LT(common_area(tab, pattern.pieces[p].outer.points), 1e-5);
+            for (std::size_t j = 0; j < i; ++j)
+                EXPECT_LT(common_area(tab, polygon(pattern, tabs.tabs[p][j])), 1e-5);
+        }
+}
+
+TEST(GlueTabs, OneForEachSeam) {
+    Progress progress;
+    const Pattern pattern = two_squares(50.0, 0.0);
+    const GlueTabs tabs = make_tabs(pattern, 5.0, progress);
+    EXPECT_EQ(tabs.tabs[0].size() + tabs.tabs[1].size(), 5u);
+    EXPECT_EQ(tabs.seams_without, 0);
+    for (const GlueTab& tab : tabs.tabs[0])
+        EXPECT_NEAR((tab.corner[0] - tab.corner[1]).norm(),
+                    tab.first < 2 || tab.first == 4 ? 40.0 : 15.0, 1e-9);
+    expect_no_overlap(pattern, tabs);
+}
+
+// The notch is too narrow for two tabs of full depth side by side.
+TEST(GlueTabs, GiveWayAtConcaveCorners) {
+    Progress progress;
+    for (const double notch : {5.0, 15.0, 30.0, 45.0}) {
+        const Pattern pattern = two_squares(50.0, notch);
+        const GlueTabs tabs = make_tabs(pattern, 8.0, progress);
+        EXPECT_GE(tabs.tabs[0].size() + tabs.tabs[1].size(), 4u);
+        expect_no_overlap(pattern, tabs);
+    }
+}
+
+TEST(GlueTabs, NoRoomIsReported) {
+    Progress progress;
+    const Pattern pattern = two_squares(1.0, 0.0); // sides far shorter than the depth
+    EXPECT_EQ(make_tabs(pattern, 5.0, progress).seams_without, 5);
+}
+
+TEST(GlueTabs, CanBeCancelled) {
+    Progress progress([](double, const char*) { return false; });
+    EXPECT_THROW(
+        {
+            progress.begin_phase("tabs", 1.0);
+            make_tabs(two_squares(50.0, 0.0), 5.0, progress);
+        },
+        Cancelled);
+}
+
+} // namespace
+} // namespace devseg

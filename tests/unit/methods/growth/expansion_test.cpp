@@ -1,0 +1,114 @@
+#include "devseg/methods/growth/expansion.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "devseg/atlas/border_path.h"
+#include "devseg/atlas/fragments.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+
+namespace devseg {
+namespace {
+
+// The sum that expansion moves lower, recomputed; smooth surfaces only (no crease factor).
+double sum_of(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
+              const ExpansionOptions& options, const std::vector<Index>& chart) {
+    double sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const double error = proxies[at(chart[at(f)])].fitting_error(mesh.face_normals[at(f)]);
+        sum += mesh.face_areas[at(f)] *
+               (error + 20.0 * std::max(0.0, error - options.max_fitting_error));
+    }
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const Index twin = mesh.twin[at(h)];
+        if (twin > h && chart[at(h / 3)] != chart[at(twin / 3)])
+            sum += options.length_weight * std::sqrt(mesh.total_area) * crease_factor(mesh, h) *
+                   mesh.edge_length(h);
+    }
+    return sum;
+}
+
+std::vector<Index> stripes(const Mesh& mesh, Index count) {
+    std::vector<Index> chart;
+    for (const Vec3& centre : mesh.face_centers)
+        chart.push_back(std::min(count - 1, static_cast<Index>((centre.z() + 2.0) * count / 4.0)));
+    return chart;
+}
+
+TEST(Expansion, NeverRaisesTheSumAndLowersABadStart) {
+    const Mesh mesh = checks::gated(shapes::sphere(4));
+    std::vector<Index> chart = stripes(mesh, 5);
+    for (std::size_t f = 0; f < chart.size(); f += 7)
+        chart[f] = static_cast<Index>(f % 5);
+    ExpansionOptions options;
+    options.max_rounds = 1; // proxies stay those of the start
+    const std::vector<ConicProxy> proxies = fit_conics(mesh, chart, 5);
+    const double before = sum_of(mesh, proxies, options, chart);
+    Progress progress;
+    relabel_by_expansion(mesh, proxies, options, chart, progress);
+    const double after = sum_of(mesh, proxies, options, chart);
+    EXPECT_LT(after, 0.5 * before);
+    // A second run finds nothing more to gain but rounding.
+    relabel_by_expansion(mesh, proxies, options, chart, progress);
+    EXPECT_LE(sum_of(mesh, proxies, options, chart), after * (1.0 + 1e-12));
+}
+
+TEST(Expansion, TwoLabelsEndAtTheLeastCut) {
+    // Two planes that meet at a right angle, the border started half-way up one of them: with two
+    // labels one move is exact, and the crease is both where faces fit and where borders are cheap.
+    const Mesh mesh = checks::gated(shapes::cube(6));
+    std::vector<Index> chart(mesh.faces.size());
+    std::vector<ConicProxy> proxies(6);
+    std::vector<Index> wanted(chart.size());
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        Index axis = 0;
+        mesh.face_normals[at(f)].cwiseAbs().maxCoeff(&axis);
+        wanted[at(f)] = 2 * axis + (mesh.face_normals[at(f)][axis] > 0.0 ? 1 : 0);
+        proxies[at(wanted[at(f)])].axis = mesh.face_normals[at(f)];
+        chart[at(f)] = f % 5 == 0 ? (wanted[at(f)] + 1) % 6 : wanted[at(f)];
+    }
+    Progress progress;
+    relabel_by_expansion(mesh, proxies, ExpansionOptions{}, chart, progress);
+    EXPECT_EQ(chart, wanted);
+}
+
+TEST(CreaseFactor, IsOneOnPlanesAndATenthOnRightAngles) {
+    const Mesh mesh = checks::gated(shapes::cube(2));
+    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        const bool crease =
+            mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(mesh.twin[at(h)] / 3)]) < 0.5;
+        EXPECT_NEAR(crease_factor(mesh, h), crease ? 0.1 : 1.0, 1e-12);
+    }
+}
+
+TEST(Fragments, SmallPiecesGoToTheNeighbourWithTheLongestBorder) {
+    const Mesh mesh = checks::gated(shapes::grid(20, 20));
+    std::vector<Index> label;
+    for (const Vec3& centre : mesh.face_centers)
+        label.push_back(centre.x() < 0.0 ? 0 : 1);
+    label[5] = 7; // one face, all of whose neighbours have the same label
+    const std::vector<Index> result = absorb_fragments(mesh, label, 0.01);
+    EXPECT_EQ(1 + *std::max_element(result.begin(), result.end()), 2);
+    for (Index h = 15; h < 18; ++h)
+        if (mesh.twin[at(h)] >= 0) {
+            EXPECT_EQ(result[5], result[at(mesh.twin[at(h)] / 3)]);
+        }
+}
+
+TEST(Fragments, PiecesWithoutNeighboursAndLargeOnesStay) {
+    RawMesh raw = shapes::grid(10, 10);
+    const Index base = static_cast<Index>(raw.points.size());
+    for (const Vec3& p : {Vec3(5, 5, 5), Vec3(5.01, 5, 5), Vec3(5, 5.01, 5)})
+        raw.points.push_back(p);
+    raw.faces.push_back({base, base + 1, base + 2});
+    const Mesh mesh = checks::gated(raw);
+    const std::vector<Index> label(mesh.faces.size(), 3);
+    const std::vector<Index> result = absorb_fragments(mesh, label, 0.5);
+    EXPECT_EQ(result.front(), 0);
+    EXPECT_EQ(result.back(), 1);
+}
+
+} // namespace
+} // namespace devseg
