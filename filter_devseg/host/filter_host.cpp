@@ -7,12 +7,12 @@
 #include "host/layout_uv.h"
 #include "host/rich_parameters.h"
 
-namespace devseg {
+namespace devseg::host {
 
 namespace {
 
 // Numbers as hosts print them; lists would fill the log.
-std::string to_text(const ResultValue& value) {
+std::string to_text(const declare::ResultValue& value) {
     if (std::holds_alternative<std::vector<double>>(value))
         return "(one value for each chart)";
     if (const auto* truth = std::get_if<bool>(&value))
@@ -36,7 +36,7 @@ auto remove(Document& document, MeshModel& mesh)
 // A layer that goes away again, with all that it holds, unless it is kept.
 class NewLayer {
 public:
-    NewLayer(MeshDocument& document, const LayerMesh& layer)
+    NewLayer(MeshDocument& document, const declare::LayerMesh& layer)
         : document_(document), before_(document.mm()->id()),
           mesh_(document.addNewMesh("", to_qstring(layer.name))) {
         try {
@@ -67,7 +67,7 @@ private:
 
 } // namespace
 
-HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
+HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& document,
                     const RichParameterList& parameters, vcg::CallBackPos* callback) {
     MeshModel* model = document.mm();
     if (model == nullptr)
@@ -76,11 +76,11 @@ HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
         return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
     });
     return with_host_errors(*model, [&] {
-        HostMesh host = read_host_mesh(*model);
+        declare::HostMesh host = read_host_mesh(*model);
         if (filter.needs_uv)
             host.wedge_uv = read_layout_uv(*model);
-        HostResult result =
-            run_filter(filter, std::move(host), parameter_values(filter, parameters), progress);
+        declare::HostResult result = declare::run_filter(
+            filter, std::move(host), parameter_values(filter, parameters), progress);
         HostRun run;
         std::optional<NewLayer> layer;
         if (result.layer)
@@ -96,19 +96,19 @@ HostRun run_in_host(const FilterDeclaration& filter, MeshDocument& document,
     });
 }
 
-int written_elements(const FilterDeclaration& filter) {
+int written_elements(const declare::FilterDeclaration& filter) {
     int mask = MeshModel::MM_NONE;
-    if (filter.writes & writes_charts)
+    if (filter.writes & declare::writes_charts)
         mask |= MeshModel::MM_FACEFLAG;
-    if (filter.writes & writes_quality)
+    if (filter.writes & declare::writes_quality)
         mask |= MeshModel::MM_FACEQUALITY;
-    if (filter.writes & writes_color)
+    if (filter.writes & declare::writes_color)
         mask |= MeshModel::MM_FACECOLOR;
-    if (filter.writes & writes_uv)
+    if (filter.writes & declare::writes_uv)
         mask |= MeshModel::MM_WEDGTEXCOORD;
-    if (filter.writes & writes_points)
+    if (filter.writes & declare::writes_points)
         mask |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
     return mask;
 }
 
-} // namespace devseg
+} // namespace devseg::host

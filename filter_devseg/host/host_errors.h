@@ -7,7 +7,7 @@
 #include "devseg/base/errors.h"
 #include "host/vcg_bridge.h"
 
-namespace devseg {
+namespace devseg::host {
 
 /// Why nothing was done.
 struct HostError : std::runtime_error {
@@ -31,4 +31,4 @@ auto with_host_errors(MeshModel& model, Work work) -> decltype(work()) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::host

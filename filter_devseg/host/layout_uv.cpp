@@ -5,7 +5,7 @@
 
 #include "host/vcg_bridge.h"
 
-namespace devseg {
+namespace devseg::host {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::vector<FaceUv> read_layout_uv(const MeshModel& model) {
     return {};
 }
 
-} // namespace devseg
+} // namespace devseg::host

@@ -7,7 +7,7 @@
 #include "devseg/mesh/mesh.h"
 #include "host/meshlab_api.h"
 
-namespace devseg {
+namespace devseg::host {
 
 using FaceUv = std::array<Vec2, 3>;
 
@@ -15,4 +15,4 @@ using FaceUv = std::array<Vec2, 3>;
 /// charts of all texture images side by side; none where the mesh has none.
 std::vector<FaceUv> read_layout_uv(const MeshModel& model);
 
-} // namespace devseg
+} // namespace devseg::host

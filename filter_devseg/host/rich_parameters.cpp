@@ -3,40 +3,40 @@
 #include <charconv>
 #include <cmath>
 
-namespace devseg {
+namespace devseg::host {
 
 namespace {
 
 // Tells for which host a plugin file was built; `devseg info` looks for it.
 [[gnu::used]] const char flavour[] = "devseg-flavour=" DEVSEG_FLAVOUR;
 
-void add_parameter(RichParameterList& list, const Parameter& p) {
+void add_parameter(RichParameterList& list, const declare::Parameter& p) {
     const QString name = to_qstring(p.name);
     const QString label = to_qstring(p.label);
     const QString help = to_qstring(p.help);
     switch (p.kind) {
-    case ParameterKind::boolean:
+    case declare::ParameterKind::boolean:
         list.addParam(RichBool(name, std::get<bool>(p.default_value), label, help));
         break;
-    case ParameterKind::integer:
+    case declare::ParameterKind::integer:
         list.addParam(RichInt(name, std::get<int>(p.default_value), label, help));
         break;
-    case ParameterKind::real:
+    case declare::ParameterKind::real:
         list.addParam(
             RichFloat(name, static_cast<Scalarm>(std::get<double>(p.default_value)), label, help));
         break;
-    case ParameterKind::choice: {
+    case declare::ParameterKind::choice: {
         QStringList choices;
         for (const std::string& choice : p.choices)
             choices.push_back(to_qstring(choice));
         list.addParam(RichEnum(name, std::get<int>(p.default_value), choices, label, help));
         break;
     }
-    case ParameterKind::text:
+    case declare::ParameterKind::text:
         list.addParam(
             RichString(name, to_qstring(std::get<std::string>(p.default_value)), label, help));
         break;
-    case ParameterKind::output_file: {
+    case declare::ParameterKind::output_file: {
         const QString example = to_qstring(std::get<std::string>(p.default_value));
         list.addParam(RichSaveFile(name, example, "*.svg *.pdf *.dxf", label, help));
         break;
@@ -44,20 +44,20 @@ void add_parameter(RichParameterList& list, const Parameter& p) {
     }
 }
 
-ParameterValue read_parameter(const RichParameterList& list, const Parameter& p) {
+declare::ParameterValue read_parameter(const RichParameterList& list, const declare::Parameter& p) {
     const QString name = to_qstring(p.name);
     switch (p.kind) {
-    case ParameterKind::boolean:
+    case declare::ParameterKind::boolean:
         return list.getBool(name);
-    case ParameterKind::integer:
+    case declare::ParameterKind::integer:
         return list.getInt(name);
-    case ParameterKind::real:
+    case declare::ParameterKind::real:
         return as_written(list.getFloat(name));
-    case ParameterKind::choice:
+    case declare::ParameterKind::choice:
         return list.getEnum(name);
-    case ParameterKind::text:
+    case declare::ParameterKind::text:
         return list.getString(name).toStdString();
-    case ParameterKind::output_file:
+    case declare::ParameterKind::output_file:
         return list.getSaveFileName(name).toStdString();
     }
     return p.default_value;
@@ -69,16 +69,17 @@ QString to_qstring(const std::string& utf8) {
     return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
 }
 
-RichParameterList rich_parameters(const FilterDeclaration& filter) {
+RichParameterList rich_parameters(const declare::FilterDeclaration& filter) {
     RichParameterList list;
-    for (const Parameter& p : filter.parameters)
+    for (const declare::Parameter& p : filter.parameters)
         add_parameter(list, p);
     return list;
 }
 
-ParameterValues parameter_values(const FilterDeclaration& filter, const RichParameterList& list) {
-    ParameterValues values;
-    for (const Parameter& p : filter.parameters)
+declare::ParameterValues parameter_values(const declare::FilterDeclaration& filter,
+                                          const RichParameterList& list) {
+    declare::ParameterValues values;
+    for (const declare::Parameter& p : filter.parameters)
         values[p.name] = read_parameter(list, p);
     return values;
 }
@@ -94,4 +95,4 @@ double as_written(Scalarm value) {
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::host

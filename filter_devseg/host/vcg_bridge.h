@@ -9,10 +9,10 @@
 #include "devseg/declare/filter.h"
 #include "host/meshlab_api.h"
 
-namespace devseg {
+namespace devseg::host {
 
-inline RawMesh read_raw_mesh(const CMeshO& m) {
-    RawMesh raw;
+inline mesh::RawMesh read_raw_mesh(const CMeshO& m) {
+    mesh::RawMesh raw;
     std::vector<Index> live(m.vert.size(), -1);
     raw.points.reserve(static_cast<std::size_t>(m.vn));
     for (std::size_t v = 0; v < m.vert.size(); ++v)
@@ -67,8 +67,8 @@ inline void write_face_attribute(CMeshO& m, FaceAttribute handle, const std::vec
             handle[f] = static_cast<Scalarm>(values[i++]);
 }
 
-inline HostMesh read_host_mesh(MeshModel& model) {
-    HostMesh host;
+inline declare::HostMesh read_host_mesh(MeshModel& model) {
+    declare::HostMesh host;
     host.geometry = read_raw_mesh(model.cm);
     host.chart_id = read_face_attribute(model.cm, "chart_id");
     host.seam_edges = read_face_attribute(model.cm, "seam_edges");
@@ -103,7 +103,7 @@ inline void write_points(CMeshO& m, const std::vector<Vec3>& points) {
 }
 
 /// Writes what the result holds, after the filter has succeeded; returns the bits of what changed.
-inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
+inline unsigned write_host_result(MeshModel& model, const declare::HostResult& result) {
     unsigned changed = MeshModel::MM_NONE;
     const auto enable = [&](int mask) {
         model.updateDataMask(mask);
@@ -134,7 +134,7 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
         if (!result.face_quality.empty())
             f.Q() = static_cast<Scalarm>(result.face_quality[i]);
         if (!result.face_color.empty()) {
-            const Color& c = result.face_color[i];
+            const declare::Color& c = result.face_color[i];
             f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
         }
         for (int k = 0; k < 3; ++k) {
@@ -157,7 +157,7 @@ inline unsigned write_host_result(MeshModel& model, const HostResult& result) {
 }
 
 /// Fills a new, empty mesh.
-inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
+inline void fill_layer(MeshModel& model, const declare::LayerMesh& layer) {
     CMeshO& m = model.cm;
     model.updateDataMask(MeshModel::MM_FACECOLOR | MeshModel::MM_FACEQUALITY);
     auto vertex = vcg::tri::Allocator<CMeshO>::AddVertices(m, layer.geometry.points.size());
@@ -170,7 +170,7 @@ inline void fill_layer(MeshModel& model, const LayerMesh& layer) {
     for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f, ++face) {
         for (int k = 0; k < 3; ++k)
             face->V(k) = &m.vert[at(layer.geometry.faces[f][static_cast<std::size_t>(k)])];
-        const Color& c = layer.face_color[f];
+        const declare::Color& c = layer.face_color[f];
         face->C() = vcg::Color4b(c[0], c[1], c[2], 255);
         face->Q() = static_cast<Scalarm>(layer.face_quality[f]);
     }
@@ -197,4 +197,4 @@ inline void select_faces(CMeshO& m, const std::vector<Index>& faces) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::host

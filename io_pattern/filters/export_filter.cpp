@@ -6,7 +6,7 @@
 #include "filters/export_pattern.h"
 #include "writers/file.h"
 
-namespace devseg {
+namespace devseg::exporting {
 
 namespace {
 
@@ -15,9 +15,9 @@ constexpr const char* help =
     "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673).<br>"
     "A <b>preset</b> switches on what sewing, papercraft or a laser needs.";
 
-using O = ExportOptions;
+using O = sheet::ExportOptions;
 
-Declare<O> with_scale(Declare<O> filter) {
+declare::Declare<O> with_scale(declare::Declare<O> filter) {
     return filter
         .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
               "Size on paper of one unit of the model, in millimetres: 1 for a model in "
@@ -41,7 +41,7 @@ Declare<O> with_scale(Declare<O> filter) {
               "moves it by less than this, in millimetres. 0 keeps all vertices.");
 }
 
-Declare<O> with_seams(Declare<O> filter) {
+declare::Declare<O> with_seams(declare::Declare<O> filter) {
     return filter
         .real(
             &O::seam_allowance_mm, "seam_allowance_mm", "Seam allowance (mm)", 0.0, 1e4,
@@ -72,7 +72,7 @@ Declare<O> with_seams(Declare<O> filter) {
               "Edges that bend by less are no folds, in degrees.");
 }
 
-Declare<O> with_paper(Declare<O> filter) {
+declare::Declare<O> with_paper(declare::Declare<O> filter) {
     return filter
         .text(&O::page, "page", "Page",
               "Paper to lay the pieces on: none (one sheet as large as it needs to be), a4, "
@@ -99,10 +99,10 @@ Declare<O> with_paper(Declare<O> filter) {
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
-FilterOutput run_export(const FilterInput& input, const ExportOptions& options,
-                        Progress& progress) {
+declare::FilterOutput run_export(const declare::FilterInput& input,
+                                 const sheet::ExportOptions& options, Progress& progress) {
     PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
-    FilterOutput output;
+    declare::FilterOutput output;
     output.notes = std::move(file.notes);
     output.values = {{"pieces_number", file.pieces},
                      {"seams_number", file.seams},
@@ -111,21 +111,21 @@ FilterOutput run_export(const FilterInput& input, const ExportOptions& options,
                      {"sheets_number", file.sheets},
                      {"pages_number", file.pages}};
     output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
-        save_file(path, bytes);
+        writers::save_file(path, bytes);
     };
     return output;
 }
 
 } // namespace
 
-const FilterDeclaration& export_filter() {
-    static const FilterDeclaration filter =
-        with_paper(
-            with_seams(with_scale(
-                Declare<O>("Pattern: Export", "export_pattern", FilterCategory::texture, help)
-                    .file(&O::output_file, "output_file", "File", "pattern.svg",
-                          "File to write; its extension says the format: .svg, .pdf or "
-                          ".dxf."))))
+const declare::FilterDeclaration& export_filter() {
+    static const declare::FilterDeclaration filter =
+        with_paper(with_seams(with_scale(
+                       declare::Declare<O>("Pattern: Export", "export_pattern",
+                                           declare::FilterCategory::texture, help)
+                           .file(&O::output_file, "output_file", "File", "pattern.svg",
+                                 "File to write; its extension says the format: .svg, .pdf or "
+                                 ".dxf."))))
             .needs_uv()
             .joins_borders()
             .result("pieces_number", "pieces in the file")
@@ -140,13 +140,13 @@ const FilterDeclaration& export_filter() {
     return filter;
 }
 
-const std::vector<FilterDeclaration>& plugin_filters() {
-    static const std::vector<FilterDeclaration> table = [] {
-        std::vector<FilterDeclaration> all = filter_table();
+const std::vector<declare::FilterDeclaration>& plugin_filters() {
+    static const std::vector<declare::FilterDeclaration> table = [] {
+        std::vector<declare::FilterDeclaration> all = declare::filter_table();
         all.push_back(export_filter());
         return all;
     }();
     return table;
 }
 
-} // namespace devseg
+} // namespace devseg::exporting

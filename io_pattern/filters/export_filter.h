@@ -3,13 +3,13 @@
 
 #include "devseg/declare/filter.h"
 
-namespace devseg {
+namespace devseg::exporting {
 
 /// Writes output_file; its extension says the format: svg, pdf or dxf. Saving a mesh in one of
 /// these formats takes the same parameters but for the file's name.
-const FilterDeclaration& export_filter();
+const declare::FilterDeclaration& export_filter();
 
 /// All filters of the plugin: those of the core and the export.
-const std::vector<FilterDeclaration>& plugin_filters();
+const std::vector<declare::FilterDeclaration>& plugin_filters();
 
-} // namespace devseg
+} // namespace devseg::exporting

@@ -12,7 +12,7 @@
 #include "writers/pdf_writer.h"
 #include "writers/svg_writer.h"
 
-namespace devseg {
+namespace devseg::exporting {
 
 namespace {
 
@@ -58,50 +58,55 @@ std::string today() {
     return text;
 }
 
-bool is_apparel(const ExportOptions& options) {
-    return options.dxf_kind == DxfKind::apparel ||
-           (options.dxf_kind == DxfKind::automatic && options.preset == PatternPreset::sewing);
+bool is_apparel(const sheet::ExportOptions& options) {
+    return options.dxf_kind == sheet::DxfKind::apparel ||
+           (options.dxf_kind == sheet::DxfKind::automatic &&
+            options.preset == sheet::PatternPreset::sewing);
 }
 
-Document make_document(const Mesh& mesh, const Pattern& pattern, const PatternLayout& layout,
-                       const ExportOptions& options, const Progress& progress) {
-    Document document;
+writers::Document make_document(const Mesh& mesh, const pattern::Pattern& pattern,
+                                const sheet::PatternLayout& layout,
+                                const sheet::ExportOptions& options, const Progress& progress) {
+    writers::Document document;
     document.title = title_of(options.output_file);
-    document.drawing = draw_sheets(layout, options);
-    const std::vector<PrintedPage> printed = printed_pages(layout, document.drawing);
+    document.drawing = sheet::draw_sheets(layout, options);
+    const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)
-        document.pages = cover_pages(mesh, pattern, layout, printed, document.title);
+        document.pages = sheet::cover_pages(mesh, pattern, layout, printed, document.title);
     progress.check();
     if (options.cover && layout.page && printed.size() > 1)
-        document.pages.push_back(overview_page(layout, document.drawing, printed, document.title));
-    for (DocumentPage& page : page_sheets(layout, document.drawing, printed, document.title))
+        document.pages.push_back(
+            sheet::overview_page(layout, document.drawing, printed, document.title));
+    for (writers::DocumentPage& page :
+         sheet::page_sheets(layout, document.drawing, printed, document.title))
         document.pages.push_back(std::move(page));
     return document;
 }
 
 } // namespace
 
-PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv, const ExportOptions& given,
-                              Progress& progress) {
+PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
-    const ExportOptions options = resolved(given);
-    page_format(options); // says what is wrong with it before the work begins
-    const Pattern pattern = make_pattern(mesh, uv, options, progress);
-    PatternLayout layout = lay_out_pattern(pattern, options, progress);
+    const sheet::ExportOptions options = sheet::resolved(given);
+    sheet::page_format(options); // says what is wrong with it before the work begins
+    const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, progress);
+    sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, progress);
     progress.begin_phase("writing", 0.1);
     progress.update(0.0);
     PatternFile file;
     if (format == Format::pdf) {
-        const Document document = make_document(mesh, pattern, layout, options, progress);
+        const writers::Document document = make_document(mesh, pattern, layout, options, progress);
         file.pages = static_cast<Index>(document.pages.size());
-        file.bytes = pdf_bytes(document);
+        file.bytes = writers::pdf_bytes(document);
     } else if (format == Format::dxf && is_apparel(options)) {
-        file.bytes =
-            apparel_dxf_bytes(pattern, layout, options, {title_of(options.output_file), today()});
+        file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options,
+                                              {title_of(options.output_file), today()});
     } else {
-        const Drawing drawing = draw_sheets(layout, options);
-        file.bytes = format == Format::svg ? svg_bytes(drawing) : dxf_bytes(drawing);
+        const writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        file.bytes =
+            format == Format::svg ? writers::svg_bytes(drawing) : writers::dxf_bytes(drawing);
     }
     progress.update(0.5);
     file.pieces = static_cast<Index>(pattern.pieces.size());
@@ -114,4 +119,4 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv, const Export
     return file;
 }
 
-} // namespace devseg
+} // namespace devseg::exporting

@@ -8,7 +8,7 @@
 #include "devseg/base/progress.h"
 #include "sheet/export_options.h"
 
-namespace devseg {
+namespace devseg::exporting {
 
 struct PatternFile {
     std::string bytes;
@@ -23,7 +23,7 @@ struct PatternFile {
 
 /// The file options.output_file in the format of its extension; the caller writes it. Throws
 /// InvalidParameter for options outside of their range, InvalidMesh and Cancelled.
-PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv, const ExportOptions& options,
-                              Progress& progress);
+PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const sheet::ExportOptions& options, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::exporting

@@ -9,7 +9,7 @@
 #include "host/layout_uv.h"
 #include "host/rich_parameters.h"
 
-namespace devseg {
+namespace devseg::host {
 
 namespace {
 
@@ -21,11 +21,11 @@ constexpr std::array<const char*, 7> left_to_the_filter = {
 };
 
 // The file's name is asked for by the host itself.
-FilterDeclaration saving() {
-    FilterDeclaration filter = export_filter();
-    std::vector<Parameter>& parameters = filter.parameters;
-    const auto is_left_out = [](const Parameter& p) {
-        return p.kind == ParameterKind::output_file ||
+declare::FilterDeclaration saving() {
+    declare::FilterDeclaration filter = exporting::export_filter();
+    std::vector<declare::Parameter>& parameters = filter.parameters;
+    const auto is_left_out = [](const declare::Parameter& p) {
+        return p.kind == declare::ParameterKind::output_file ||
                std::find(left_to_the_filter.begin(), left_to_the_filter.end(), p.name) !=
                    left_to_the_filter.end();
     };
@@ -47,12 +47,13 @@ std::vector<std::string> save_pattern(const std::string& file_name, MeshModel& m
         return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
     });
     return with_host_errors(model, [&] {
-        ParameterValues values = parameter_values(saving(), parameters);
+        declare::ParameterValues values = parameter_values(saving(), parameters);
         values["output_file"] = file_name;
-        HostMesh host = read_host_mesh(model);
+        declare::HostMesh host = read_host_mesh(model);
         host.wedge_uv = read_layout_uv(model);
-        return run_filter(export_filter(), std::move(host), values, progress).notes;
+        return declare::run_filter(exporting::export_filter(), std::move(host), values, progress)
+            .notes;
     });
 }
 
-} // namespace devseg
+} // namespace devseg::host

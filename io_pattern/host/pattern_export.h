@@ -7,7 +7,7 @@
 
 #include "host/meshlab_api.h"
 
-namespace devseg {
+namespace devseg::host {
 
 /// What the host asks for when it saves a pattern.
 RichParameterList pattern_parameters();
@@ -19,4 +19,4 @@ std::vector<std::string> save_pattern(const std::string& file_name, MeshModel& m
                                       const RichParameterList& parameters,
                                       vcg::CallBackPos* callback);
 
-} // namespace devseg
+} // namespace devseg::host

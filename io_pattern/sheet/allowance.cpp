@@ -9,7 +9,7 @@
 
 #include <polyclipping/clipper.hpp>
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -41,7 +41,7 @@ struct WidePoint {
     double width;
 };
 
-std::vector<WidePoint> distinct(const PiecePath& path, const AllowanceWidths& widths) {
+std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceWidths& widths) {
     std::vector<WidePoint> ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
         const bool is_hem = i < path.edges.size() && path.edges[i].seam < 0;
@@ -111,7 +111,7 @@ Ring raw_curve(const std::vector<WidePoint>& ring, CornerStyle style) {
 
 } // namespace
 
-std::vector<Ring> add_allowance(const PatternPiece& piece, const AllowanceWidths& widths,
+std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const AllowanceWidths& widths,
                                 CornerStyle corners) {
     const double width = widths.largest();
     const Vec2 centre = piece.box.center();
@@ -149,4 +149,4 @@ std::vector<Ring> add_allowance(const PatternPiece& piece, const AllowanceWidths
     return rings;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -5,7 +5,7 @@
 
 #include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// Convex corners of the cut line: pointed, up to twice the width away from the corner; cut off
 /// straight; or rounded. Concave corners are always trimmed to where the two sides meet.
@@ -26,7 +26,7 @@ struct AllowanceWidths {
 /// clockwise around its holes. Darts narrower than twice the width are covered, and so are holes.
 /// Where the width changes, pointed corners are where both lines meet; on a smooth outline the cut
 /// line steps from one width to the other. Edges that say nothing (PiecePath::edges) are seams.
-std::vector<std::vector<Vec2>> add_allowance(const PatternPiece& piece,
+std::vector<std::vector<Vec2>> add_allowance(const pattern::PatternPiece& piece,
                                              const AllowanceWidths& widths, CornerStyle corners);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -11,7 +11,7 @@
 #include "writers/number_text.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -23,7 +23,7 @@ constexpr int decimals = 4;
 // Block and style names: capital letters, digits, underscores and hyphens.
 std::string code(const std::string& text) {
     std::string name;
-    for (const char c : ascii(text)) {
+    for (const char c : writers::ascii(text)) {
         const auto byte = static_cast<unsigned char>(c);
         name += std::isalnum(byte) != 0 || c == '-' ? static_cast<char>(std::toupper(byte)) : '_';
     }
@@ -31,17 +31,18 @@ std::string code(const std::string& text) {
 }
 
 double corner_cosine(const ExportOptions& options) {
-    return std::cos(options.corner_angle / degrees_per_radian);
+    return std::cos(options.corner_angle / writers::degrees_per_radian);
 }
 
-void write_point(DxfText& file, const char* layer, const Vec2& p) {
+void write_point(writers::DxfText& file, const char* layer, const Vec2& p) {
     file.group(0, "POINT");
     file.group(8, layer);
     file.point(p);
 }
 
 // Corners are turn points, all others lie on curves.
-void write_outline_points(DxfText& file, const std::vector<Vec2>& ring, double smooth_cosine) {
+void write_outline_points(writers::DxfText& file, const std::vector<Vec2>& ring,
+                          double smooth_cosine) {
     const std::size_t count = ring.size();
     for (std::size_t i = 0; i < count; ++i) {
         const Vec2 in = ring[i] - ring[(i + count - 1) % count];
@@ -51,31 +52,31 @@ void write_outline_points(DxfText& file, const std::vector<Vec2>& ring, double s
     }
 }
 
-void write_notch(DxfText& file, const SheetNotch& notch) {
+void write_notch(writers::DxfText& file, const SheetNotch& notch) {
     const Vec2 d = notch.inner - notch.outer;
     write_point(file, "4", notch.outer);
     file.number(30, d.norm()); // depth
     file.number(39, 0.0);      // width of a slit
-    file.number(50, std::atan2(d.y(), d.x()) * degrees_per_radian);
+    file.number(50, std::atan2(d.y(), d.x()) * writers::degrees_per_radian);
 }
 
-void write_texts(DxfText& file, const char* layer, Vec2 place,
+void write_texts(writers::DxfText& file, const char* layer, Vec2 place,
                  const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
-        file.text(layer, {place, text_size, line, 0.0, TextAnchor::left});
+        file.text(layer, {place, text_size, line, 0.0, writers::TextAnchor::left});
         place.y() -= line_pitch;
     }
 }
 
 // Pieces of one shape are counted on the first of them, as they are and mirrored; the others keep
 // their outlines, notches and seams, and count nothing.
-std::string quantity(const PatternPiece& piece) {
+std::string quantity(const pattern::PatternPiece& piece) {
     if (piece.model < 0)
         return "1,0";
     return std::to_string(piece.quantity) + ',' + std::to_string(piece.mirrored_quantity);
 }
 
-std::string annotation(const PatternPiece& piece, const Pattern& pattern) {
+std::string annotation(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.model >= 0 && piece.quantity == 0)
         return (piece.mirrored ? "MIRROR OF " : "SAME AS ") + pattern.pieces[at(piece.model)].name +
                ", COUNTED THERE";
@@ -85,15 +86,15 @@ std::string annotation(const PatternPiece& piece, const Pattern& pattern) {
     return text;
 }
 
-void write_lines(DxfText& file, const char* layer, const std::vector<std::vector<Vec2>>& lines,
-                 bool closed) {
+void write_lines(writers::DxfText& file, const char* layer,
+                 const std::vector<std::vector<Vec2>>& lines, bool closed) {
     for (const std::vector<Vec2>& line : lines)
         file.polyline(layer, {line, closed});
 }
 
-void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
+void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const SheetPiece& piece,
                  const ExportOptions& options) {
-    const PatternPiece& source = pattern.pieces[at(piece.piece)];
+    const pattern::PatternPiece& source = pattern.pieces[at(piece.piece)];
     file.group(0, "BLOCK");
     file.group(8, "1");
     file.group(2, code(piece.name));
@@ -111,7 +112,7 @@ void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
     if (piece.grain_line[0] != piece.grain_line[1])
         file.line("7", piece.grain_line[0], piece.grain_line[1]);
     std::vector<std::string> seams;
-    for (const Seam& seam : pattern.seams)
+    for (const pattern::Seam& seam : pattern.seams)
         for (const int side : {0, 1})
             if (seam.sides[at(side)].piece == piece.piece)
                 seams.push_back("SEAM: " + seam.label + " TO " +
@@ -128,12 +129,12 @@ void write_block(DxfText& file, const Pattern& pattern, const SheetPiece& piece,
 
 } // namespace
 
-std::string apparel_dxf_bytes(const Pattern& pattern, const PatternLayout& layout,
+std::string apparel_dxf_bytes(const pattern::Pattern& pattern, const PatternLayout& layout,
                               const ExportOptions& options, const ApparelHeader& header) {
-    std::vector<Placement> shifts(layout.sheets.size());
+    std::vector<pack::Placement> shifts(layout.sheets.size());
     for (std::size_t s = 1; s < shifts.size(); ++s)
         shifts[s].offset.x() = shifts[s - 1].offset.x() + layout.sheets[s - 1].size.x() + sheet_gap;
-    DxfText file(decimals);
+    writers::DxfText file(decimals);
     file.begin_section("HEADER");
     file.end_section();
     file.begin_section("BLOCKS");
@@ -157,4 +158,4 @@ std::string apparel_dxf_bytes(const Pattern& pattern, const PatternLayout& layou
     return file.file();
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

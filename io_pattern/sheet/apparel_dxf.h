@@ -5,7 +5,7 @@
 
 #include "sheet/layout.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// What the file says about itself, 7-bit.
 struct ApparelHeader {
@@ -17,7 +17,7 @@ struct ApparelHeader {
 /// numbered layers of the standard, millimetres. Which seam joins which piece, for which the
 /// standard has no place, is text on layer 15. Layers: 1 boundary and piece texts, 2 turn points,
 /// 3 curve points, 4 notches, 7 grain line, 8 folds, 11 cut-outs and slits, 14 sew line, 15 seams.
-std::string apparel_dxf_bytes(const Pattern& pattern, const PatternLayout& layout,
+std::string apparel_dxf_bytes(const pattern::Pattern& pattern, const PatternLayout& layout,
                               const ExportOptions& options, const ApparelHeader& header);
 
-} // namespace devseg
+} // namespace devseg::sheet

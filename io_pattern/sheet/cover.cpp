@@ -7,7 +7,7 @@
 #include "writers/number_text.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -38,7 +38,7 @@ std::string page_list(Index piece, const std::vector<PrintedPage>& pages) {
     return text.empty() ? "1" : text;
 }
 
-std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
+std::string cut_text(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.model >= 0 && (piece.mirrored || piece.quantity == 0))
         return (piece.mirrored ? "mirrored " : "same as ") + pattern.pieces[at(piece.model)].name;
     std::string text = std::to_string(std::max(Index{1}, piece.quantity));
@@ -48,9 +48,9 @@ std::string cut_text(const PatternPiece& piece, const Pattern& pattern) {
 }
 
 // The numbers of the seams to each neighbour: "P02: 1, 9; P03: 5".
-std::string seam_list(const Pattern& pattern, Index piece) {
+std::string seam_list(const pattern::Pattern& pattern, Index piece) {
     std::vector<std::pair<std::string, std::string>> numbers_to;
-    for (const Seam& seam : pattern.seams) {
+    for (const pattern::Seam& seam : pattern.seams) {
         const Index a = seam.sides[0].piece;
         const Index b = seam.sides[1].piece;
         if (a != piece && b != piece)
@@ -72,30 +72,32 @@ std::string seam_list(const Pattern& pattern, Index piece) {
     return text;
 }
 
-std::vector<Row> table_rows(const Pattern& pattern, const PatternLayout& layout,
+std::vector<Row> table_rows(const pattern::Pattern& pattern, const PatternLayout& layout,
                             const std::vector<PrintedPage>& pages) {
     std::vector<Row> rows;
     for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
         const SheetPiece& drawn = layout.pieces[i];
-        const PatternPiece& piece = pattern.pieces[at(drawn.piece)];
+        const pattern::PatternPiece& piece = pattern.pieces[at(drawn.piece)];
         const Vec2 size = drawn.box().sizes();
-        rows.push_back({{piece.name, number_text(size.x(), 0) + " x " + number_text(size.y(), 0),
-                         page_list(static_cast<Index>(i), pages), cut_text(piece, pattern)},
-                        seam_list(pattern, drawn.piece)});
+        rows.push_back(
+            {{piece.name,
+              writers::number_text(size.x(), 0) + " x " + writers::number_text(size.y(), 0),
+              page_list(static_cast<Index>(i), pages), cut_text(piece, pattern)},
+             seam_list(pattern, drawn.piece)});
     }
     return rows;
 }
 
 // What the pieces themselves do not say, for lack of room.
-std::vector<std::string> missing_texts(const Pattern& pattern, const LeftOut& left_out) {
+std::vector<std::string> missing_texts(const pattern::Pattern& pattern, const LeftOut& left_out) {
     std::vector<std::string> lines;
     std::string seams;
     for (const Index s : left_out.seams) {
-        const Seam& seam = pattern.seams[at(s)];
+        const pattern::Seam& seam = pattern.seams[at(s)];
         seams += (seams.empty() ? "" : "; ") + seam.label + " (" +
                  pattern.pieces[at(seam.sides[0].piece)].name + " - " +
                  pattern.pieces[at(seam.sides[1].piece)].name + ", " +
-                 number_text(seam.sides[0].length, 1) + " mm)";
+                 writers::number_text(seam.sides[0].length, 1) + " mm)";
     }
     if (!seams.empty())
         lines.push_back("No room for their numbers on the pieces: seams " + seams);
@@ -113,7 +115,7 @@ std::vector<std::string> wrapped(const std::string& text, double width) {
         const std::size_t blank = text.find(' ', from);
         const std::size_t end = blank == std::string::npos ? text.size() : blank + 1;
         const std::string word = text.substr(from, end - from);
-        if (!lines.back().empty() && text_width(lines.back() + word, text_size) > width)
+        if (!lines.back().empty() && writers::text_width(lines.back() + word, text_size) > width)
             lines.emplace_back();
         lines.back() += word;
         from = end;
@@ -130,8 +132,8 @@ public:
     double height() const { return size_.y() - 2.0 * border_; }
     double left() const { return border_; }
     double cursor() const { return y_; }
-    DocumentPage& page() { return pages_.back(); }
-    DrawingLayer& marks() { return pages_.back().marks.front(); }
+    writers::DocumentPage& page() { return pages_.back(); }
+    writers::DrawingLayer& marks() { return pages_.back().marks.front(); }
 
     /// Moves down, to a new page where this one has less room.
     void advance(double height) {
@@ -140,9 +142,10 @@ public:
         y_ -= height;
     }
     void write(double x, double size, const std::string& text) {
-        marks().texts.push_back({Vec2(border_ + x, y_), size, text, 0.0, TextAnchor::left});
+        marks().texts.push_back(
+            {Vec2(border_ + x, y_), size, text, 0.0, writers::TextAnchor::left});
     }
-    std::vector<DocumentPage> take() { return std::move(pages_); }
+    std::vector<writers::DocumentPage> take() { return std::move(pages_); }
 
 private:
     void begin_page() {
@@ -156,10 +159,10 @@ private:
     Vec2 size_;
     double border_;
     double y_ = 0.0;
-    std::vector<DocumentPage> pages_;
+    std::vector<writers::DocumentPage> pages_;
 };
 
-void add_pictures(const Mesh& mesh, const Pattern& pattern, Book& book) {
+void add_pictures(const Mesh& mesh, const pattern::Pattern& pattern, Book& book) {
     const double side = std::min(0.5 * book.width(), picture_share * book.height());
     book.advance(side + 0.5 * line_pitch);
     double x = book.left();
@@ -169,7 +172,7 @@ void add_pictures(const Mesh& mesh, const Pattern& pattern, Book& book) {
         view.image.size = Vec2::Constant(side);
         for (const PieceLabel& label : view.labels) {
             const std::string& name = pattern.pieces[at(label.piece)].name;
-            const double room = side * label.radius / text_width(name, 0.6);
+            const double room = side * label.radius / writers::text_width(name, 0.6);
             const double size = std::min(largest_label, room);
             if (size >= least_label)
                 book.marks().texts.push_back({view.image.low + side * label.position, size, name});
@@ -208,10 +211,10 @@ void add_table(const std::vector<Row>& rows, Book& book) {
 
 } // namespace
 
-std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
-                                      const PatternLayout& layout,
-                                      const std::vector<PrintedPage>& pages,
-                                      const std::string& title) {
+std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::Pattern& pattern,
+                                               const PatternLayout& layout,
+                                               const std::vector<PrintedPage>& pages,
+                                               const std::string& title) {
     Book book(layout.page ? layout.page->size : a4,
               layout.page ? std::max(layout.page->margin, 0.5 * margin) : margin);
     book.advance(title_size);
@@ -219,8 +222,9 @@ std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
     book.advance(1.5 * line_pitch);
     book.write(0.0, text_size,
                std::to_string(pattern.pieces.size()) + " pieces, " +
-                   std::to_string(pattern.seams.size()) + " seams. 1 unit of the model = " +
-                   number_text(pattern.mm_per_unit, 4) + " mm. Print at 100 %, without scaling.");
+                   std::to_string(pattern.seams.size()) +
+                   " seams. 1 unit of the model = " + writers::number_text(pattern.mm_per_unit, 4) +
+                   " mm. Print at 100 %, without scaling.");
     add_pictures(mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
     for (const std::string& text : missing_texts(pattern, layout.left_out)) {
@@ -233,4 +237,4 @@ std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
     return book.take();
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -8,12 +8,12 @@
 #include "devseg/mesh/mesh.h"
 #include "sheet/pages.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// One page, and more where the list of pieces is long. Pages of the pattern's own size, or A4.
-std::vector<DocumentPage> cover_pages(const Mesh& mesh, const Pattern& pattern,
-                                      const PatternLayout& layout,
-                                      const std::vector<PrintedPage>& pages,
-                                      const std::string& title);
+std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::Pattern& pattern,
+                                               const PatternLayout& layout,
+                                               const std::vector<PrintedPage>& pages,
+                                               const std::string& title);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -5,7 +5,7 @@
 #include "devseg/base/errors.h"
 #include "writers/number_text.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -15,8 +15,9 @@ constexpr double usual_allowance = 7.0; // mm
 void check(const char* name, double value, double least, const char* expected) {
     if (value >= least && std::isfinite(value))
         return;
-    throw InvalidParameter(std::string(name) + ": expected " + expected + ", found " +
-                           (std::isfinite(value) ? number_text(value, 6) : "no finite number"));
+    throw InvalidParameter(
+        std::string(name) + ": expected " + expected + ", found " +
+        (std::isfinite(value) ? writers::number_text(value, 6) : "no finite number"));
 }
 
 } // namespace
@@ -35,7 +36,7 @@ ExportOptions resolved(const ExportOptions& given) {
         if (options.seam_allowance_mm == 0.0)
             options.seam_allowance_mm = usual_allowance;
         if (options.notch_spacing_mm == 0.0)
-            options.notch_spacing_mm = PatternOptions().notch_spacing_mm;
+            options.notch_spacing_mm = pattern::PatternOptions().notch_spacing_mm;
         options.grain_line = options.edge_numbers = true;
         break;
     case PatternPreset::papercraft:
@@ -51,4 +52,4 @@ ExportOptions resolved(const ExportOptions& given) {
     return options;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -6,13 +6,13 @@
 #include "devseg/pattern/pieces.h"
 #include "sheet/allowance.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
 
-struct ExportOptions : PatternOptions {
+struct ExportOptions : pattern::PatternOptions {
     ExportOptions() { notch_spacing_mm = 0.0; }
 
     std::string output_file;
@@ -41,4 +41,4 @@ struct ExportOptions : PatternOptions {
 /// their range.
 ExportOptions resolved(const ExportOptions& options);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -8,7 +8,7 @@
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -62,7 +62,7 @@ void place(std::vector<SheetPiece>& pieces, const std::vector<std::size_t>& chos
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         if (nesting.sheet[i] < 0)
             continue;
-        Placement placement = nesting.placements[i];
+        pack::Placement placement = nesting.placements[i];
         placement.offset += Vec2::Constant(margin);
         pieces[chosen[i]].move(placement);
         pieces[chosen[i]].sheet = first_sheet + nesting.sheet[i];
@@ -97,12 +97,12 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
 
 [[noreturn]] void refuse_size(const SheetPiece& piece, const PageFormat& page) {
     const Vec2 size = piece.box().sizes();
-    throw InvalidParameter("page: expected pieces that fit on " +
-                           number_text(page.printable().x(), 1) + " x " +
-                           number_text(page.printable().y(), 1) + " mm, found " + piece.name +
-                           " of " + number_text(size.x(), 1) + " x " + number_text(size.y(), 1) +
-                           " mm; take a larger page, switch tiling on, or split large pieces with "
-                           "max_piece_mm");
+    throw InvalidParameter(
+        "page: expected pieces that fit on " + writers::number_text(page.printable().x(), 1) +
+        " x " + writers::number_text(page.printable().y(), 1) + " mm, found " + piece.name +
+        " of " + writers::number_text(size.x(), 1) + " x " + writers::number_text(size.y(), 1) +
+        " mm; take a larger page, switch tiling on, or split large pieces with "
+        "max_piece_mm");
 }
 
 Index pages_along(double length, double step) {
@@ -118,8 +118,8 @@ void nest_tiles(PatternLayout& layout, const std::vector<std::size_t>& large, bo
         widest = std::max(widest, layout.pieces[i].box().sizes().norm() + piece_gap);
     if (widest > most_pages_across * page.step().minCoeff())
         throw InvalidParameter("mm_per_unit: expected pieces of at most " +
-                               number_text(most_pages_across, 0) + " pages, found one of " +
-                               number_text(widest / 1000.0, 1) +
+                               writers::number_text(most_pages_across, 0) +
+                               " pages, found one of " + writers::number_text(widest / 1000.0, 1) +
                                " m; give a smaller mm_per_unit or height_mm, or a larger page");
     const Index most = pages_along(widest, page.step().x());
     std::vector<SheetPiece> best;
@@ -184,7 +184,7 @@ void note_tabs(const GlueTabs& tabs, PatternLayout& layout) {
                                "side");
 }
 
-void note_left_out(const Pattern& pattern, PatternLayout& layout) {
+void note_left_out(const pattern::Pattern& pattern, PatternLayout& layout) {
     const LeftOut& left_out = layout.left_out;
     if (!left_out.seams.empty())
         layout.notes.push_back(
@@ -198,7 +198,7 @@ void note_left_out(const Pattern& pattern, PatternLayout& layout) {
 }
 
 // All pieces in their places, without texts.
-PatternLayout place_pieces(const Pattern& pattern, const ExportOptions& options,
+PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions& options,
                            Progress& progress) {
     PatternLayout layout;
     layout.page = page_format(options);
@@ -224,7 +224,7 @@ PatternLayout place_pieces(const Pattern& pattern, const ExportOptions& options,
     if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
         nest_freely(layout, options.grain_line, progress);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
-    const Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
+    const pack::Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
     for (SheetPiece& piece : layout.pieces)
         piece.move(shift);
     // Whole millimetres keep y exact when writers turn the sheet over.
@@ -235,7 +235,7 @@ PatternLayout place_pieces(const Pattern& pattern, const ExportOptions& options,
 
 } // namespace
 
-PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& options,
+PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress) {
     PatternLayout layout = place_pieces(pattern, options, progress);
     layout.left_out = add_texts(pattern, options, layout.pieces);
@@ -243,4 +243,4 @@ PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& optio
     return layout;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

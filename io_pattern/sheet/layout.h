@@ -9,7 +9,7 @@
 #include "sheet/sheet_piece.h"
 #include "sheet/texts.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// One sheet, in its own coordinates. With pages, one page or several that are glued together.
 struct PatternSheet {
@@ -30,7 +30,7 @@ struct PatternLayout {
 /// kept, unless allowances, tabs or shared edges make pieces touch: then, and on pages, they are
 /// nested anew. `options` must be resolved. Throws InvalidParameter where a piece is larger than a
 /// page that it may not leave, Cancelled.
-PatternLayout lay_out_pattern(const Pattern& pattern, const ExportOptions& options,
+PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::sheet

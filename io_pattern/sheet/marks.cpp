@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -33,8 +33,8 @@ double reach(const SheetPiece& piece, const Vec2& p, const Vec2& direction, doub
 
 // In the allowance, from the cut line towards the sew line; without one, and in the folded
 // allowance of a narrow dart, from the sew line inwards.
-void add_notch(const PiecePath& path, const SeamSide& side, double distance, double allowance,
-               SheetPiece& result) {
+void add_notch(const pattern::PiecePath& path, const pattern::SeamSide& side, double distance,
+               double allowance, SheetPiece& result) {
     const OutlinePlace place = place_on(path, side, distance);
     const Vec2 outward(place.direction.y(), -place.direction.x());
     if (allowance > 0.0) {
@@ -50,7 +50,8 @@ void add_notch(const PiecePath& path, const SeamSide& side, double distance, dou
 
 } // namespace
 
-OutlinePlace place_on(const PiecePath& path, const SeamSide& side, double distance) {
+OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& side,
+                      double distance) {
     const std::size_t count = path.points.size();
     double rest = side.reversed ? side.length - distance : distance;
     OutlinePlace place;
@@ -67,17 +68,18 @@ OutlinePlace place_on(const PiecePath& path, const SeamSide& side, double distan
     return place;
 }
 
-void add_notches(const Pattern& pattern, const ExportOptions& options, SheetPiece& result) {
-    const PatternPiece& piece = pattern.pieces[at(result.piece)];
-    for (const Seam& seam : pattern.seams)
-        for (const SeamSide& side : seam.sides)
+void add_notches(const pattern::Pattern& pattern, const ExportOptions& options,
+                 SheetPiece& result) {
+    const pattern::PatternPiece& piece = pattern.pieces[at(result.piece)];
+    for (const pattern::Seam& seam : pattern.seams)
+        for (const pattern::SeamSide& side : seam.sides)
             if (side.piece == result.piece)
                 for (const double distance : side.notches)
                     add_notch(piece.path(side.path), side, distance, options.seam_allowance_mm,
                               result);
 }
 
-void add_grain(const PatternPiece& piece, SheetPiece& result) {
+void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
     const Vec2 from = piece.grain[0];
     const Vec2 to = piece.grain[1];
     const double length = (to - from).norm();
@@ -95,4 +97,4 @@ void add_grain(const PatternPiece& piece, SheetPiece& result) {
         {barb(from, -direction, arrow_angle), from, barb(from, -direction, -arrow_angle)}};
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

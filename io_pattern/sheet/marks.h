@@ -3,7 +3,7 @@
 
 #include "sheet/sheet_piece.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// A place on an outline.
 struct OutlinePlace {
@@ -12,12 +12,13 @@ struct OutlinePlace {
 };
 
 /// The place at this distance from the seam's start on one side of it.
-OutlinePlace place_on(const PiecePath& path, const SeamSide& side, double distance);
+OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& side,
+                      double distance);
 
 /// Adds the notches of the piece, where the pattern has it; the cut and sew lines must be there.
-void add_notches(const Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
+void add_notches(const pattern::Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
 
 /// Adds the arrow along the threads, where it is long enough to be of use.
-void add_grain(const PatternPiece& piece, SheetPiece& result);
+void add_grain(const pattern::PatternPiece& piece, SheetPiece& result);
 
-} // namespace devseg
+} // namespace devseg::sheet

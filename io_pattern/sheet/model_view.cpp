@@ -6,7 +6,7 @@
 
 #include "devseg/declare/chart_colors.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -97,12 +97,12 @@ DepthBuffer project(const Mesh& mesh, const Eigen::Matrix3d& rotation, int side)
     return buffer;
 }
 
-std::vector<Color> piece_colors(const Mesh& mesh, const Pattern& pattern) {
-    ChartMap charts;
+std::vector<declare::Color> piece_colors(const Mesh& mesh, const pattern::Pattern& pattern) {
+    atlas::ChartMap charts;
     charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
     for (const Index piece : pattern.face_piece)
         charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
-    return chart_colors(mesh, charts);
+    return declare::chart_colors(mesh, charts);
 }
 
 // For each piece the pixel that is farthest from others, in city blocks.
@@ -139,11 +139,12 @@ std::vector<PieceLabel> find_labels(const std::vector<Index>& piece_of_pixel, in
 
 } // namespace
 
-ModelView draw_model(const Mesh& mesh, const Pattern& pattern, double azimuth, int pixels) {
+ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double azimuth,
+                     int pixels) {
     const int side = pixels * supersampling;
     const Eigen::Matrix3d rotation = view_rotation(azimuth);
     const DepthBuffer buffer = project(mesh, rotation, side);
-    const std::vector<Color> colors = piece_colors(mesh, pattern);
+    const std::vector<declare::Color> colors = piece_colors(mesh, pattern);
     const auto piece_at = [&](int x, int y) {
         const Index f = buffer.face(x, y);
         return f < 0 ? Index{-2} : pattern.face_piece[at(f)];
@@ -159,7 +160,7 @@ ModelView draw_model(const Mesh& mesh, const Pattern& pattern, double azimuth, i
             const bool border = piece != piece_at(x + 1, y) || piece != piece_at(x, y + 1) ||
                                 piece != piece_at(x - 1, y) || piece != piece_at(x, y - 1);
             double shade = 1.0;
-            Color color{255, 255, 255};
+            declare::Color color{255, 255, 255};
             if (piece > -2) {
                 const Vec3 normal = rotation * mesh.face_normals[at(buffer.face(x, y))];
                 shade = ambient + (1.0 - ambient) * std::abs(normal.dot(light));
@@ -178,4 +179,4 @@ ModelView draw_model(const Mesh& mesh, const Pattern& pattern, double azimuth, i
     return view;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

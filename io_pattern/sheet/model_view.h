@@ -7,7 +7,7 @@
 #include "devseg/pattern/pattern.h"
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 struct PieceLabel {
     Index piece = -1;
@@ -16,12 +16,12 @@ struct PieceLabel {
 };
 
 struct ModelView {
-    DrawingImage image;             // square; place and size are the caller's
+    writers::DrawingImage image;    // square; place and size are the caller's
     std::vector<PieceLabel> labels; // where the pieces that can be seen are best seen
 };
 
 /// Parallel projection from `azimuth` (radians about y, 0 = from the front, along −z) and a little
 /// above; a colour for each piece, dark lines along the seams.
-ModelView draw_model(const Mesh& mesh, const Pattern& pattern, double azimuth, int pixels);
+ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double azimuth, int pixels);
 
-} // namespace devseg
+} // namespace devseg::sheet

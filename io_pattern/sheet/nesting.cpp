@@ -8,17 +8,16 @@
 #include "devseg/pack/outline_raster.h"
 #include "devseg/pack/place_search.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
-
 
 constexpr double cells_across = 320.0; // of a sheet's width
 // Turns that are tried for the least box around a piece, within a quarter.
 constexpr int box_turns = 30;
 
-Outline outline_of(const SheetPiece& piece) {
-    Outline outline;
+pack::Outline outline_of(const SheetPiece& piece) {
+    pack::Outline outline;
     for (const std::vector<Vec2>& ring : piece.cut)
         for (std::size_t i = 0; i < ring.size(); ++i)
             outline.edges.push_back({ring[i], ring[(i + 1) % ring.size()]});
@@ -47,7 +46,7 @@ double least_box_angle(const std::vector<Vec2>& points) {
     return best;
 }
 
-Index width(const CellRun& run) {
+Index width(const pack::CellRun& run) {
     return run.last - run.first;
 }
 
@@ -60,12 +59,12 @@ public:
     }
 
     /// The lowest place, then the leftmost, whose top is below `limit`; false where there is none.
-    bool find(const ChartCells& cells, Index limit, Spot& spot) {
+    bool find(const pack::ChartCells& cells, Index limit, pack::Spot& spot) {
         if (cells.width > columns_)
             return false;
-        const CellRun longest = *std::max_element(
+        const pack::CellRun longest = *std::max_element(
             cells.runs.begin(), cells.runs.end(),
-            [](const CellRun& a, const CellRun& b) { return width(a) < width(b); });
+            [](const pack::CellRun& a, const pack::CellRun& b) { return width(a) < width(b); });
         const Index last = grows_ ? rows_ : rows_ - cells.height;
         for (Index y = 0; y <= last && y + cells.height < limit; ++y) {
             add_rows(y + cells.height);
@@ -84,8 +83,8 @@ public:
         return false;
     }
 
-    void occupy(const ChartCells& cells, const Spot& spot) {
-        for (const CellRun& run : cells.runs) {
+    void occupy(const pack::ChartCells& cells, const pack::Spot& spot) {
+        for (const pack::CellRun& run : cells.runs) {
             Index* row = free_.data() + offset(spot.y + run.row);
             std::fill(row + spot.x + run.first, row + spot.x + run.last, 0);
             for (Index x = spot.x + run.first - 1; x >= 0 && row[x] != 0; --x)
@@ -96,15 +95,15 @@ public:
 
 private:
     // Whether each row has somewhere as many free cells as the run that comes there.
-    bool has_room(const ChartCells& cells, Index y) const {
-        return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const CellRun& run) {
+    bool has_room(const pack::ChartCells& cells, Index y) const {
+        return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const pack::CellRun& run) {
             return widest_[at(y + run.row)] >= width(run);
         });
     }
 
     // The next column to try; x itself where all runs are free.
-    Index blocked_until(const ChartCells& cells, Index x, Index y) const {
-        for (const CellRun& run : cells.runs) {
+    Index blocked_until(const pack::ChartCells& cells, Index x, Index y) const {
+        for (const pack::CellRun& run : cells.runs) {
             const Index room = free_[at(static_cast<Index>(offset(y + run.row)) + x + run.first)];
             if (room < width(run))
                 return x + room + 1;
@@ -129,10 +128,10 @@ private:
 };
 
 // The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
-std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& options,
-                                 double cell) {
+std::vector<pack::ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& options,
+                                       double cell) {
     const bool grows = options.height <= 0.0;
-    const Outline outline = outline_of(piece);
+    const pack::Outline outline = outline_of(piece);
     double angle = least_box_angle(piece.cut.front());
     int turns = 4;
     const Vec2 grain = piece.grain_line[1] - piece.grain_line[0];
@@ -140,13 +139,13 @@ std::vector<ChartCells> poses_of(const SheetPiece& piece, const NestingOptions& 
         angle = 0.5 * pi - std::atan2(grain.y(), grain.x());
         turns = 2;
     }
-    std::vector<ChartCells> poses;
+    std::vector<pack::ChartCells> poses;
     for (int i = 0; i < turns; ++i) {
         const double turn = angle + 2.0 * pi * i / turns;
         const Vec2 size = turned_size(piece.cut.front(), turn);
         if (size.x() > options.width + cell || (!grows && size.y() > options.height + cell))
             continue;
-        poses.push_back(rasterize(outline, turn, cell, 0.5 * options.gap));
+        poses.push_back(pack::rasterize(outline, turn, cell, 0.5 * options.gap));
     }
     return poses;
 }
@@ -177,14 +176,14 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     std::size_t done = 0;
     for (const std::size_t i : order) {
         progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
-        const std::vector<ChartCells> poses = poses_of(*pieces[i], options, cell);
+        const std::vector<pack::ChartCells> poses = poses_of(*pieces[i], options, cell);
         for (std::size_t b = 0; b <= boards.size() && nesting.sheet[i] < 0; ++b) {
             Board fresh(cells(options.width), grows ? 0 : cells(options.height), grows);
             Board& board = b < boards.size() ? boards[b] : fresh;
-            Spot best;
+            pack::Spot best;
             Index top = std::numeric_limits<Index>::max();
             for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-                Spot spot{pose, 0, 0};
+                pack::Spot spot{pose, 0, 0};
                 if (board.find(poses[pose], top, spot)) {
                     best = spot;
                     top = spot.y + poses[pose].height;
@@ -192,7 +191,7 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
             }
             if (top == std::numeric_limits<Index>::max())
                 continue;
-            const ChartCells& image = poses[best.pose];
+            const pack::ChartCells& image = poses[best.pose];
             board.occupy(image, best);
             nesting.sheet[i] = static_cast<Index>(b);
             nesting.placements[i] = {image.cosine, image.sine,
@@ -207,4 +206,4 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     return nesting;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

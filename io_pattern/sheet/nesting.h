@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "devseg/pack/pack.h"
 #include "devseg/base/progress.h"
+#include "devseg/pack/pack.h"
 #include "sheet/sheet_piece.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 struct NestingOptions {
     double width = 0.0;      // mm
@@ -17,8 +17,9 @@ struct NestingOptions {
 };
 
 struct Nesting {
-    std::vector<Placement> placements; // one for each piece; the sheet's lower left is the origin
-    std::vector<Index> sheet;          // −1: larger than a sheet
+    std::vector<pack::Placement>
+        placements;           // one for each piece; the sheet's lower left is the origin
+    std::vector<Index> sheet; // −1: larger than a sheet
     Index sheet_count = 0;
 };
 
@@ -27,4 +28,4 @@ struct Nesting {
 Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingOptions& options,
                     Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -6,7 +6,7 @@
 #include "devseg/base/errors.h"
 #include "writers/number_text.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -55,12 +55,13 @@ std::optional<PageFormat> page_format(const ExportOptions& options) {
         return std::nullopt;
     const PageFormat format{page_size(options.page), options.page_margin_mm};
     if (format.printable().minCoeff() < least_room)
-        throw InvalidParameter(
-            "page_margin_mm: expected margins that leave " + number_text(least_room, 0) +
-            " mm of a page of " + number_text(format.size.x(), 1) + " x " +
-            number_text(format.size.y(), 1) + " mm, found " +
-            number_text(options.page_margin_mm, 3) + " mm; take a larger page or smaller margins");
+        throw InvalidParameter("page_margin_mm: expected margins that leave " +
+                               writers::number_text(least_room, 0) + " mm of a page of " +
+                               writers::number_text(format.size.x(), 1) + " x " +
+                               writers::number_text(format.size.y(), 1) + " mm, found " +
+                               writers::number_text(options.page_margin_mm, 3) +
+                               " mm; take a larger page or smaller margins");
     return format;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

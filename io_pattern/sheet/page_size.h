@@ -7,7 +7,7 @@
 #include "devseg/mesh/mesh.h"
 #include "sheet/export_options.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 constexpr double tile_overlap = 10.0; // mm that two pages of one sheet share, to be glued
 
@@ -24,4 +24,4 @@ struct PageFormat {
 /// for pages that their margins leave no room on.
 std::optional<PageFormat> page_format(const ExportOptions& options);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -6,7 +6,7 @@
 #include "sheet/segment_grid.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -19,15 +19,15 @@ constexpr double check_squares[] = {50.0, 50.8};
 constexpr double title_size = 6.0;
 constexpr double text_size = 3.5;
 
-DrawingPolyline segment(const Vec2& a, const Vec2& b) {
+writers::DrawingPolyline segment(const Vec2& a, const Vec2& b) {
     return {{a, b}, false};
 }
 
-DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
+writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
     return {{low, low + Vec2(size.x(), 0.0), low + size, low + Vec2(0.0, size.y())}, true};
 }
 
-bool touches_window(const std::vector<Vec2>& ring, const PageWindow& window) {
+bool touches_window(const std::vector<Vec2>& ring, const writers::PageWindow& window) {
     const Eigen::AlignedBox2d box(window.low, window.low + window.size);
     const std::vector<Vec2> corners = rectangle(window.low, window.size).points;
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -67,7 +67,7 @@ std::vector<Vec2> cross_places(const PatternSheet& sheet, const PageFormat& page
 
 // In the lower margin: a bar to check the scale with, and what page this is.
 void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::size_t number,
-                 std::size_t count, const std::string& title, DrawingLayer& layer) {
+                 std::size_t count, const std::string& title, writers::DrawingLayer& layer) {
     const PageFormat& page = *layout.page;
     const double size = std::min(largest_caption, caption_share * page.margin);
     if (size < least_caption)
@@ -88,17 +88,19 @@ void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::s
     // Long titles are cut off in front of the bar.
     const double room = page.printable().x() - bar - 2.0 * size;
     std::string name = title;
-    while (!name.empty() && text_width(name + ", " + caption, size) > room)
+    while (!name.empty() && writers::text_width(name + ", " + caption, size) > room)
         name.pop_back();
     if (!name.empty())
         caption = name + ", " + caption;
-    if (text_width(caption, size) <= room)
-        layer.texts.push_back({Vec2(page.margin, y), size, caption, 0.0, TextAnchor::left});
+    if (writers::text_width(caption, size) <= room)
+        layer.texts.push_back(
+            {Vec2(page.margin, y), size, caption, 0.0, writers::TextAnchor::left});
 }
 
 } // namespace
 
-std::vector<PrintedPage> printed_pages(const PatternLayout& layout, const Drawing& drawing) {
+std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
+                                       const writers::Drawing& drawing) {
     if (!layout.page)
         return {
             {{Vec2::Zero(), Vec2(drawing.width, drawing.height), Vec2::Zero(), 1.0}, 0, 0, 0, {}}};
@@ -127,12 +129,13 @@ std::vector<PrintedPage> printed_pages(const PatternLayout& layout, const Drawin
     return pages;
 }
 
-std::vector<DocumentPage> page_sheets(const PatternLayout& layout, const Drawing& drawing,
-                                      const std::vector<PrintedPage>& pages,
-                                      const std::string& title) {
-    std::vector<DocumentPage> result;
+std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
+                                               const writers::Drawing& drawing,
+                                               const std::vector<PrintedPage>& pages,
+                                               const std::string& title) {
+    std::vector<writers::DocumentPage> result;
     for (std::size_t i = 0; i < pages.size(); ++i) {
-        DocumentPage page;
+        writers::DocumentPage page;
         page.windows = {pages[i].window};
         if (!layout.page) {
             page.width = drawing.width;
@@ -142,7 +145,7 @@ std::vector<DocumentPage> page_sheets(const PatternLayout& layout, const Drawing
         }
         page.width = layout.page->size.x();
         page.height = layout.page->size.y();
-        DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
+        writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
         marks.paths.push_back(
             {"", {rectangle(pages[i].window.position, layout.page->printable())}});
         for (const Vec2& place :
@@ -159,13 +162,14 @@ std::vector<DocumentPage> page_sheets(const PatternLayout& layout, const Drawing
     return result;
 }
 
-DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
-                           const std::vector<PrintedPage>& pages, const std::string& title) {
+writers::DocumentPage overview_page(const PatternLayout& layout, const writers::Drawing& drawing,
+                                    const std::vector<PrintedPage>& pages,
+                                    const std::string& title) {
     const PageFormat& format = *layout.page;
-    DocumentPage page;
+    writers::DocumentPage page;
     page.width = format.size.x();
     page.height = format.size.y();
-    DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
+    writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
     const Vec2 low = Vec2::Constant(format.margin);
     Vec2 room = format.printable();
     const double squares = check_squares[0] + check_squares[1] + format.margin;
@@ -184,7 +188,7 @@ DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
     room.y() -= 2.0 * title_size;
     const double top = format.size.y() - format.margin;
     marks.texts.push_back({Vec2(low.x(), top - 0.5 * title_size), title_size,
-                           title + ": overview, not to scale", 0.0, TextAnchor::left});
+                           title + ": overview, not to scale", 0.0, writers::TextAnchor::left});
     // Sheets in rows and columns, all at one scale.
     const std::size_t count = layout.sheets.size();
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -195,7 +199,7 @@ DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
         scale = std::min(scale, 0.95 * cell.cwiseQuotient(sheet.size).minCoeff());
     std::vector<Vec2> places;
     for (std::size_t s = 0; s < count; ++s) {
-        const DrawingSheet& sheet = drawing.sheets[s];
+        const writers::DrawingSheet& sheet = drawing.sheets[s];
         const Vec2 place(low.x() + cell.x() * static_cast<double>(s % columns),
                          top - 2.0 * title_size - cell.y() * static_cast<double>(s / columns) -
                              scale * sheet.size.y());
@@ -209,10 +213,10 @@ DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
         marks.paths.push_back({"", {rectangle(corner, size)}});
         const double font = std::min(title_size, 0.3 * size.minCoeff());
         marks.texts.push_back({corner + Vec2(0.6 * font, size.y() - 0.7 * font), font,
-                               std::to_string(i + 1), 0.0, TextAnchor::left});
+                               std::to_string(i + 1), 0.0, writers::TextAnchor::left});
     }
     page.marks = {std::move(marks)};
     return page;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

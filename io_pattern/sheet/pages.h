@@ -6,11 +6,11 @@
 #include "sheet/layout.h"
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// A page that shows a part of the drawing at true scale.
 struct PrintedPage {
-    PageWindow window;
+    writers::PageWindow window;
     Index sheet = 0;
     Index row = 0; // from the top
     Index column = 0;
@@ -18,16 +18,19 @@ struct PrintedPage {
 };
 
 /// The pages that hold anything to cut; one with the whole drawing where no page size is given.
-std::vector<PrintedPage> printed_pages(const PatternLayout& layout, const Drawing& drawing);
+std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
+                                       const writers::Drawing& drawing);
 
 /// All pages at true scale: each with the border of its part (the trim line), crosses that come to
 /// lie on each other on neighbouring pages, a 50 mm bar and a caption.
-std::vector<DocumentPage> page_sheets(const PatternLayout& layout, const Drawing& drawing,
-                                      const std::vector<PrintedPage>& pages,
-                                      const std::string& title);
+std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
+                                               const writers::Drawing& drawing,
+                                               const std::vector<PrintedPage>& pages,
+                                               const std::string& title);
 
 /// How the pages lie on the sheets, with check squares at true scale.
-DocumentPage overview_page(const PatternLayout& layout, const Drawing& drawing,
-                           const std::vector<PrintedPage>& pages, const std::string& title);
+writers::DocumentPage overview_page(const PatternLayout& layout, const writers::Drawing& drawing,
+                                    const std::vector<PrintedPage>& pages,
+                                    const std::string& title);
 
-} // namespace devseg
+} // namespace devseg::sheet

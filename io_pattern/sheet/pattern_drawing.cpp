@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -32,14 +32,14 @@ constexpr double negligible_piece = 1e-6;
 // More digits than a double holds next to the margin say nothing.
 constexpr int most_decimals = 15;
 
-DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
+writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
     return {{low, low + Vec2(size.x(), 0.0), low + size, low + Vec2(0.0, size.y())}, true};
 }
 
 // Area of a path whose points are rounded to the grid; as they are for a grid of 0.
-double area_of(const DrawingPath& path, double grid) {
+double area_of(const writers::DrawingPath& path, double grid) {
     double twice = 0.0;
-    for (const DrawingPolyline& part : path.parts) {
+    for (const writers::DrawingPolyline& part : path.parts) {
         const auto rounded = [&](std::size_t i) {
             const Vec2& p = part.points[i];
             return grid > 0.0
@@ -56,14 +56,14 @@ double area_of(const DrawingPath& path, double grid) {
     return 0.5 * twice;
 }
 
-int decimals_for(const DrawingLayer& cut) {
+int decimals_for(const writers::DrawingLayer& cut) {
     double total = 0.0;
     Eigen::AlignedBox2d box;
     std::vector<double> areas;
-    for (const DrawingPath& path : cut.paths) {
+    for (const writers::DrawingPath& path : cut.paths) {
         areas.push_back(path.parts.front().closed ? std::abs(area_of(path, 0.0)) : 0.0);
         total += areas.back();
-        for (const DrawingPolyline& part : path.parts)
+        for (const writers::DrawingPolyline& part : path.parts)
             for (const Vec2& p : part.points)
                 box.extend(p);
     }
@@ -117,8 +117,8 @@ Plan plan_drawing(const PatternLayout& layout) {
 
 // One path, whose parts are the lines.
 void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const std::string& id,
-               DrawingLayer& layer) {
-    DrawingPath path{id, {}};
+               writers::DrawingLayer& layer) {
+    writers::DrawingPath path{id, {}};
     for (const std::vector<Vec2>& line : lines)
         path.parts.push_back({line, closed});
     if (!path.parts.empty())
@@ -127,28 +127,28 @@ void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const s
 
 // The same for closed lines that may be curves.
 void add_rings(const std::vector<std::vector<Vec2>>& rings,
-               const std::vector<std::vector<OutlineCurve>>& curves, const std::string& id,
-               DrawingLayer& layer) {
-    DrawingPath path{id, {}};
+               const std::vector<std::vector<pattern::OutlineCurve>>& curves, const std::string& id,
+               writers::DrawingLayer& layer) {
+    writers::DrawingPath path{id, {}};
     for (std::size_t i = 0; i < rings.size(); ++i) {
         path.parts.push_back({rings[i], true});
         if (i < curves.size())
-            for (const OutlineCurve& curve : curves[i])
+            for (const pattern::OutlineCurve& curve : curves[i])
                 path.parts.back().curves.push_back({curve.control, curve.is_line});
     }
     if (!path.parts.empty())
         layer.paths.push_back(std::move(path));
 }
 
-void add_notches(const SheetPiece& piece, DrawingLayer& layer) {
+void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
     std::vector<std::vector<Vec2>> lines;
     for (const SheetNotch& notch : piece.notches)
         lines.push_back({notch.outer, notch.inner});
     add_lines(lines, false, piece.name + "-notch", layer);
 }
 
-DrawingLayer scale_layer(const PatternLayout& layout, const Plan& plan) {
-    DrawingLayer layer{"scale", "Scale check", "#000000", {}, {}, {}};
+writers::DrawingLayer scale_layer(const PatternLayout& layout, const Plan& plan) {
+    writers::DrawingLayer layer{"scale", "Scale check", "#000000", {}, {}, {}};
     layer.paths.push_back({"frame", {rectangle(Vec2::Zero(), plan.size)}});
     if (layout.page)
         for (std::size_t i = 0; i < layout.sheets.size(); ++i)
@@ -165,18 +165,18 @@ DrawingLayer scale_layer(const PatternLayout& layout, const Plan& plan) {
 
 } // namespace
 
-Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
+writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
     const Plan plan = plan_drawing(layout);
     const bool laser = options.preset == PatternPreset::laser;
-    DrawingLayer cut{"cut", "Cut", "#ff0000", {}, {}, {}};
-    DrawingLayer mountain{"mountain", "Fold mountain", "#0000ff", {}, {}, {}};
-    DrawingLayer valley{"valley", "Fold valley", "#00aa00", {3.0, 1.5}, {}, {}};
-    DrawingLayer sew{"sew", "Sew line", "#00a000", {3.0, 1.5}, {}, {}};
-    DrawingLayer notch{"notch", "Notches", "#ff00ff", {}, {}, {}};
-    DrawingLayer grain{"grain", "Grain line", "#000000", {}, {}, {}};
-    DrawingLayer numbers{"numbers", "Seam numbers", "#000000", {}, {}, {}};
-    DrawingLayer text{"text", "Text", "#000000", {}, {}, {}};
-    DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
+    writers::DrawingLayer cut{"cut", "Cut", "#ff0000", {}, {}, {}};
+    writers::DrawingLayer mountain{"mountain", "Fold mountain", "#0000ff", {}, {}, {}};
+    writers::DrawingLayer valley{"valley", "Fold valley", "#00aa00", {3.0, 1.5}, {}, {}};
+    writers::DrawingLayer sew{"sew", "Sew line", "#00a000", {3.0, 1.5}, {}, {}};
+    writers::DrawingLayer notch{"notch", "Notches", "#ff00ff", {}, {}, {}};
+    writers::DrawingLayer grain{"grain", "Grain line", "#000000", {}, {}, {}};
+    writers::DrawingLayer numbers{"numbers", "Seam numbers", "#000000", {}, {}, {}};
+    writers::DrawingLayer text{"text", "Text", "#000000", {}, {}, {}};
+    writers::DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
     for (SheetPiece piece : layout.pieces) {
         piece.move({1.0, 0.0, plan.sheets[at(piece.sheet)]});
         add_rings(piece.cut, piece.cut_curves, piece.name + "-cut", cut);
@@ -191,7 +191,7 @@ Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
                                            std::pair(&piece.numbers, laser ? &engrave : &numbers)})
             layer->texts.insert(layer->texts.end(), texts->begin(), texts->end());
     }
-    Drawing drawing;
+    writers::Drawing drawing;
     drawing.width = plan.size.x();
     drawing.height = plan.size.y();
     drawing.decimals = decimals_for(cut);
@@ -203,4 +203,4 @@ Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
     return drawing;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

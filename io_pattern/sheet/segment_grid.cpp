@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -103,4 +103,4 @@ bool SegmentGrid::ring_touches(const std::vector<Vec2>& ring, Index owner) const
     return false;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

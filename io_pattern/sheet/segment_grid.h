@@ -8,7 +8,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// Whether two segments have a common point; ends count.
 bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
@@ -47,4 +47,4 @@ private:
     std::vector<std::vector<Index>> cells_;
 };
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -8,7 +8,7 @@
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
 
@@ -27,7 +27,7 @@ struct Outline {
     std::vector<std::uint8_t> skipped;       // #points
     std::vector<std::vector<Vec2>> inserted; // #points, behind the point
 
-    explicit Outline(const PiecePath& path)
+    explicit Outline(const pattern::PiecePath& path)
         : points(path.points), skipped(points.size(), 0), inserted(points.size()) {}
 
     std::size_t at_index(Index i) const { return at(i) % points.size(); }
@@ -41,8 +41,8 @@ struct Outline {
         return result;
     }
     // The same with the curves of the path, as far as nothing of them was replaced.
-    std::vector<OutlineCurve> curves(const PiecePath& path) const {
-        std::vector<OutlineCurve> result;
+    std::vector<pattern::OutlineCurve> curves(const pattern::PiecePath& path) const {
+        std::vector<pattern::OutlineCurve> result;
         std::vector<Vec2> start;
         const auto line_to = [&](const Vec2& p) {
             if (start.empty()) {
@@ -54,7 +54,7 @@ struct Outline {
                 start[1] = p;
             }
         };
-        for (const OutlineCurve& curve : path.curves) {
+        for (const pattern::OutlineCurve& curve : path.curves) {
             bool whole = skipped[at_index(curve.first)] == 0 &&
                          skipped[at_index(curve.first + curve.count)] == 0;
             for (Index i = curve.first; i < curve.first + curve.count; ++i)
@@ -80,20 +80,20 @@ struct Outline {
 };
 
 // Index in the outline of point i of a side, counted from the seam's start.
-Index side_point(const SeamSide& side, Index i) {
+Index side_point(const pattern::SeamSide& side, Index i) {
     return side.first + (side.reversed ? side.count - i : i);
 }
 
 // A dart whose sides lie on each other up to its tip, or from some place on, is cut once.
-void merge_slits(const Pattern& pattern, Index piece, std::vector<Outline>& outlines,
+void merge_slits(const pattern::Pattern& pattern, Index piece, std::vector<Outline>& outlines,
                  std::vector<std::vector<Vec2>>& slits) {
-    for (const Seam& seam : pattern.seams) {
-        const SeamSide& a = seam.sides[0];
-        const SeamSide& b = seam.sides[1];
+    for (const pattern::Seam& seam : pattern.seams) {
+        const pattern::SeamSide& a = seam.sides[0];
+        const pattern::SeamSide& b = seam.sides[1];
         if (!seam.is_dart || a.piece != piece || a.path != b.path || a.count != b.count)
             continue;
         Outline& outline = outlines[at(a.path)];
-        const auto point = [&](const SeamSide& side, Index i) {
+        const auto point = [&](const pattern::SeamSide& side, Index i) {
             return outline.points[outline.at_index(side_point(side, i))];
         };
         Index mouth = a.count;
@@ -127,27 +127,28 @@ void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
     }
 }
 
-void add_folds(const PatternPiece& piece, SheetPiece& result) {
+void add_folds(const pattern::PatternPiece& piece, SheetPiece& result) {
     std::vector<std::vector<Vec2>> outlines;
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.push_back(piece.path(i).points);
-    for (const PieceFold& fold : piece.folds)
+    for (const pattern::PieceFold& fold : piece.folds)
         if (is_inside(outlines, 0.5 * (fold.from + fold.to))) // others: where outlines are simpler
             (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
 }
 
 // Lines that follow the curves.
-std::vector<std::vector<Vec2>> rings_of(const std::vector<std::vector<OutlineCurve>>& curves) {
+std::vector<std::vector<Vec2>>
+rings_of(const std::vector<std::vector<pattern::OutlineCurve>>& curves) {
     std::vector<std::vector<Vec2>> rings;
-    for (const std::vector<OutlineCurve>& ring : curves)
-        rings.push_back(flatten_curves(ring, sagitta));
+    for (const std::vector<pattern::OutlineCurve>& ring : curves)
+        rings.push_back(pattern::flatten_curves(ring, sagitta));
     return rings;
 }
 
 // Cut and sew lines as curves.
-void add_curves(const PatternPiece& piece, const std::vector<Outline>& outlines,
+void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& outlines,
                 const ExportOptions& options, SheetPiece& result) {
-    std::vector<std::vector<OutlineCurve>> own;
+    std::vector<std::vector<pattern::OutlineCurve>> own;
     for (std::size_t i = 0; i < outlines.size(); ++i)
         own.push_back(outlines[i].curves(piece.path(static_cast<Index>(i))));
     if (!result.has_allowance()) {
@@ -158,7 +159,7 @@ void add_curves(const PatternPiece& piece, const std::vector<Outline>& outlines,
     result.sew = rings_of(own);
     result.sew_curves = std::move(own);
     for (const std::vector<Vec2>& ring : result.cut)
-        result.cut_curves.push_back(fit_ring(ring, corner_turn, options.curve_mm));
+        result.cut_curves.push_back(pattern::fit_ring(ring, corner_turn, options.curve_mm));
     result.cut = rings_of(result.cut_curves);
 }
 
@@ -170,8 +171,8 @@ void change_points(SheetPiece& piece, Change change) {
             for (Vec2& p : line)
                 p = change(p);
     for (auto* rings : {&piece.cut_curves, &piece.sew_curves})
-        for (std::vector<OutlineCurve>& ring : *rings)
-            for (OutlineCurve& curve : ring)
+        for (std::vector<pattern::OutlineCurve>& ring : *rings)
+            for (pattern::OutlineCurve& curve : ring)
                 for (Vec2& p : curve.control)
                     p = change(p);
     for (SheetNotch& notch : piece.notches) {
@@ -181,7 +182,7 @@ void change_points(SheetPiece& piece, Change change) {
     for (Vec2& p : piece.grain_line)
         p = change(p);
     for (auto* texts : {&piece.names, &piece.numbers})
-        for (DrawingText& text : *texts)
+        for (writers::DrawingText& text : *texts)
             text.position = change(text.position);
 }
 
@@ -195,9 +196,9 @@ Eigen::AlignedBox2d SheetPiece::box() const {
     return box;
 }
 
-void SheetPiece::move(const Placement& placement) {
+void SheetPiece::move(const pack::Placement& placement) {
     change_points(*this, placement);
-    Placement& all = frame.placement;
+    pack::Placement& all = frame.placement;
     all.offset = placement(all.offset);
     const double cosine = placement.cosine * all.cosine - placement.sine * all.sine;
     all.sine = placement.sine * all.cosine + placement.cosine * all.sine;
@@ -210,17 +211,17 @@ void SheetPiece::mirror() {
         for (std::vector<Vec2>& ring : *rings)
             std::reverse(ring.begin(), ring.end());
     for (auto* rings : {&cut_curves, &sew_curves})
-        for (std::vector<OutlineCurve>& ring : *rings) {
+        for (std::vector<pattern::OutlineCurve>& ring : *rings) {
             std::reverse(ring.begin(), ring.end());
-            for (OutlineCurve& curve : ring)
+            for (pattern::OutlineCurve& curve : ring)
                 std::reverse(curve.control.begin(), curve.control.end());
         }
     frame.mirrored = true;
 }
 
-SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<GlueTab>& tabs,
-                         const ExportOptions& options) {
-    const PatternPiece& piece = pattern.pieces[at(index)];
+SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
+                         const std::vector<GlueTab>& tabs, const ExportOptions& options) {
+    const pattern::PatternPiece& piece = pattern.pieces[at(index)];
     SheetPiece result;
     result.piece = index;
     result.name = piece.name;
@@ -238,7 +239,7 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
         if (result.cut.empty())
             throw InvalidParameter("seam_allowance_mm: expected pieces large enough for an "
                                    "allowance, found one of " +
-                                   number_text(piece.box.sizes().maxCoeff(), 6) +
+                                   writers::number_text(piece.box.sizes().maxCoeff(), 6) +
                                    " mm; check the scale (mm_per_unit, height_mm)");
     }
     if (options.curve_mm > 0.0)
@@ -251,4 +252,4 @@ SheetPiece compose_piece(const Pattern& pattern, Index index, const std::vector<
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -11,7 +11,7 @@
 #include "sheet/tabs.h"
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// A place on the sew line where the two sides of a seam are to meet.
 struct SheetNotch {
@@ -22,7 +22,7 @@ struct SheetNotch {
 /// From the pattern's pieces to where they are drawn.
 struct SheetFrame {
     bool mirrored = false; // at the axis x = 0, first of all
-    Placement placement;
+    pack::Placement placement;
 
     Vec2 operator()(const Vec2& p) const { return placement(mirrored ? Vec2(-p.x(), p.y()) : p); }
     Vec2 direction(const Vec2& v) const { return (*this)(v) - (*this)(Vec2::Zero()); }
@@ -34,16 +34,16 @@ struct SheetPiece {
     std::vector<std::vector<Vec2>> cut; // closed; the outer one first
     std::vector<std::vector<Vec2>> sew; // closed; empty where the cut lines are the sew lines
     // #cut and #sew with Bézier curves, which the closed lines follow within micrometres; or empty.
-    std::vector<std::vector<OutlineCurve>> cut_curves;
-    std::vector<std::vector<OutlineCurve>> sew_curves;
+    std::vector<std::vector<pattern::OutlineCurve>> cut_curves;
+    std::vector<std::vector<pattern::OutlineCurve>> sew_curves;
     std::vector<std::vector<Vec2>> slits;     // open lines whose two sides lie on each other
     std::vector<std::vector<Vec2>> mountains; // open lines
     std::vector<std::vector<Vec2>> valleys;
     std::vector<SheetNotch> notches;
     std::vector<std::vector<Vec2>> grain; // the arrow's lines
-    std::vector<DrawingText> names;
-    std::vector<DrawingText> numbers;       // of seams
-    std::vector<std::vector<Vec2>> leaders; // lines from seams to numbers that lie apart
+    std::vector<writers::DrawingText> names;
+    std::vector<writers::DrawingText> numbers; // of seams
+    std::vector<std::vector<Vec2>> leaders;    // lines from seams to numbers that lie apart
     std::array<Vec2, 2> grain_line{Vec2::Zero(), Vec2::Zero()};
     Index sheet = 0; // on which it lies
     SheetFrame frame;
@@ -51,13 +51,13 @@ struct SheetPiece {
     bool has_allowance() const { return !sew.empty(); }
     Eigen::AlignedBox2d box() const;
     /// Moves everything. Texts do not turn: they are added in the piece's place (marks.h).
-    void move(const Placement& placement);
+    void move(const pack::Placement& placement);
     /// Turns everything over at the axis x = 0, before any move.
     void mirror();
 };
 
 /// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.
-SheetPiece compose_piece(const Pattern& pattern, Index piece, const std::vector<GlueTab>& tabs,
-                         const ExportOptions& options);
+SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece,
+                         const std::vector<GlueTab>& tabs, const ExportOptions& options);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -5,10 +5,9 @@
 
 #include "sheet/segment_grid.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
-
 
 // A stretch of a seam may leave its chord by this much: paper bends that far along a tab.
 constexpr double straightness = 0.4; // mm
@@ -29,7 +28,7 @@ struct Stretch {
 // One side of a seam with edges counted along the seam.
 class Side {
 public:
-    Side(const Pattern& pattern, const SeamSide& side)
+    Side(const pattern::Pattern& pattern, const pattern::SeamSide& side)
         : path_(pattern.pieces[at(side.piece)].path(side.path)), side_(side) {}
 
     Index edge_count() const { return side_.count; }
@@ -47,8 +46,8 @@ public:
 private:
     Index size() const { return static_cast<Index>(path_.points.size()); }
 
-    const PiecePath& path_;
-    const SeamSide& side_;
+    const pattern::PiecePath& path_;
+    const pattern::SeamSide& side_;
 };
 
 double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
@@ -90,7 +89,7 @@ double clockwise(const Vec2& u, const Vec2& v) {
 
 class PieceRoom {
 public:
-    PieceRoom(const PatternPiece& piece, double depth)
+    PieceRoom(const pattern::PatternPiece& piece, double depth)
         : piece_(piece), grid_(grown(piece.box, depth), std::max(depth, 1e-3 * size(piece.box))) {
         for (Index i = 0; i < piece.path_count(); ++i)
             rings_.push_back(piece.path(i).points);
@@ -148,16 +147,16 @@ private:
     }
     static double size(const Eigen::AlignedBox2d& box) { return box.sizes().maxCoeff(); }
 
-    const PatternPiece& piece_;
+    const pattern::PatternPiece& piece_;
     std::vector<std::vector<Vec2>> rings_;
     SegmentGrid grid_;
 };
 
 } // namespace
 
-GlueTabs make_tabs(const Pattern& pattern, double depth, Progress& progress) {
+GlueTabs make_tabs(const pattern::Pattern& pattern, double depth, Progress& progress) {
     std::vector<PieceRoom> rooms;
-    for (const PatternPiece& piece : pattern.pieces)
+    for (const pattern::PatternPiece& piece : pattern.pieces)
         rooms.emplace_back(piece, depth);
     GlueTabs result;
     result.tabs.resize(pattern.pieces.size());
@@ -175,9 +174,9 @@ GlueTabs make_tabs(const Pattern& pattern, double depth, Progress& progress) {
     };
     for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
         progress.update(static_cast<double>(s) / static_cast<double>(pattern.seams.size()));
-        const Seam& seam = pattern.seams[s];
+        const pattern::Seam& seam = pattern.seams[s];
         std::vector<Side> sides;
-        for (const SeamSide& side : seam.sides)
+        for (const pattern::SeamSide& side : seam.sides)
             if (side.count == seam.sides[0].count) // both sides have the same vertices
                 sides.emplace_back(pattern, side);
         bool any = false;
@@ -188,4 +187,4 @@ GlueTabs make_tabs(const Pattern& pattern, double depth, Progress& progress) {
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "devseg/pattern/pattern.h"
 #include "devseg/base/progress.h"
+#include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// A flap along the edges first … first + count − 1 (modulo their number) of an outline, almost a
 /// straight line: from the start of the first edge over both corners to the end of the last.
@@ -27,6 +27,6 @@ struct GlueTabs {
 /// gets one tab: `depth` mm deep with sides of 45 degrees, less where the outline leaves less
 /// room, on the side of the seam where it fits best. No tab overlaps a piece or another tab of the
 /// same piece. Stretches with less room than a fifth of the depth on both sides get none.
-GlueTabs make_tabs(const Pattern& pattern, double depth, Progress& progress);
+GlueTabs make_tabs(const pattern::Pattern& pattern, double depth, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -7,10 +7,9 @@
 #include "sheet/segment_grid.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 namespace {
-
 
 // Font sizes in mm: the largest that fits. Less than the last cannot be read on paper.
 constexpr double name_sizes[] = {8.0, 6.5, 5.0, 4.0, 3.2, 2.5};
@@ -39,10 +38,11 @@ constexpr double leader_start = 0.2; // mm from the seam, so that it touches not
 using Box = std::array<Vec2, 4>;
 
 // Around the text, with some room.
-Box text_box(const DrawingText& text) {
+Box text_box(const writers::DrawingText& text) {
     const Vec2 along(std::cos(text.angle), std::sin(text.angle));
     const Vec2 up(-along.y(), along.x());
-    const Vec2 half = (0.5 * text_width(text.text, text.size) + clearance * text.size) * along;
+    const Vec2 half =
+        (0.5 * writers::text_width(text.text, text.size) + clearance * text.size) * along;
     const Vec2 rise = (0.5 * capital_share + clearance) * text.size * up;
     return {text.position - half - rise, text.position + half - rise, text.position + half + rise,
             text.position - half + rise};
@@ -70,7 +70,7 @@ public:
             lines_.add(notch.outer, notch.inner, 0);
     }
 
-    void take(const DrawingText& text) {
+    void take(const writers::DrawingText& text) {
         const Box box = text_box(text);
         solid_.add_ring(ring_of(box), 0);
         solid_.add(box[0], box[2], 0); // what lies inside touches a diagonal
@@ -79,11 +79,11 @@ public:
     void take(const std::vector<Vec2>& leader) { add_line(leader, solid_); }
 
     /// `over_lines`: lines inside the piece may be crossed.
-    bool is_free(const DrawingText& text, bool over_lines) const {
+    bool is_free(const writers::DrawingText& text, bool over_lines) const {
         return is_inside(inside_, text.position) && touches_nothing(text, over_lines);
     }
     /// On the allowance or a tab as well.
-    bool is_free_outside(const DrawingText& text, bool over_lines) const {
+    bool is_free_outside(const writers::DrawingText& text, bool over_lines) const {
         return is_inside(piece_.cut, text.position) && touches_nothing(text, over_lines);
     }
     /// For a line that leads to a text.
@@ -98,7 +98,7 @@ private:
         return grid.ring_touches(ring_of(box), 1) || grid.touches(box[0], box[2], 1) ||
                grid.touches(box[1], box[3], 1);
     }
-    bool touches_nothing(const DrawingText& text, bool over_lines) const {
+    bool touches_nothing(const writers::DrawingText& text, bool over_lines) const {
         const Box box = text_box(text);
         return !touches(box, solid_) && (over_lines || !touches(box, lines_));
     }
@@ -109,7 +109,7 @@ private:
     SegmentGrid lines_;
 };
 
-std::string quantity_text(const PatternPiece& piece, const Pattern& pattern) {
+std::string quantity_text(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.mirrored)
         return "mirrored " + pattern.pieces[at(piece.model)].name;
     if (piece.quantity == 0)
@@ -134,7 +134,7 @@ bool write_name(const std::vector<Vec2>& places, const Room& room, bool over_lin
                 SheetPiece& result) {
     for (const double size : name_sizes)
         for (const Vec2& place : places) {
-            const DrawingText text{place, size, result.name};
+            const writers::DrawingText text{place, size, result.name};
             if (!room.is_free(text, over_lines))
                 continue;
             result.names.push_back(text);
@@ -144,16 +144,17 @@ bool write_name(const std::vector<Vec2>& places, const Room& room, bool over_lin
 }
 
 // The name and, where there is room, a second line that names the piece of the same shape.
-bool add_name(const PatternPiece& piece, const Pattern& pattern, SheetPiece& result, Room& room) {
+bool add_name(const pattern::PatternPiece& piece, const pattern::Pattern& pattern,
+              SheetPiece& result, Room& room) {
     const std::vector<Vec2> places =
         places_for_name(result.frame(piece.label_position), result.box());
     if (!write_name(places, room, false, result) && !write_name(places, room, true, result))
         return false;
-    const DrawingText name = result.names.back();
+    const writers::DrawingText name = result.names.back();
     room.take(name);
     const std::string detail = quantity_text(piece, pattern);
-    const DrawingText line{name.position - Vec2(0.0, line_pitch * 0.75 * name.size),
-                           std::max(detail_share * name.size, name_sizes[5]), detail};
+    const writers::DrawingText line{name.position - Vec2(0.0, line_pitch * 0.75 * name.size),
+                                    std::max(detail_share * name.size, name_sizes[5]), detail};
     if (!detail.empty() && room.is_free(line, false)) {
         room.take(line);
         result.names.push_back(line);
@@ -168,8 +169,8 @@ double upright(double angle) {
 // The number of a seam on one side of it.
 class NumberWriter {
 public:
-    NumberWriter(const PiecePath& path, const SeamSide& side, const std::string& label,
-                 const SheetPiece& piece, const Room& room)
+    NumberWriter(const pattern::PiecePath& path, const pattern::SeamSide& side,
+                 const std::string& label, const SheetPiece& piece, const Room& room)
         : path_(path), side_(side), piece_(piece), room_(room) {
         text_.text = label;
     }
@@ -180,7 +181,7 @@ public:
                find_beside(1.0, true) || find_beside(-1.0, true) || find_apart(true);
     }
 
-    const DrawingText& text() const { return text_; }
+    const writers::DrawingText& text() const { return text_; }
     const std::vector<Vec2>& leader() const { return leader_; }
 
 private:
@@ -217,7 +218,8 @@ private:
     bool find_apart(bool over_lines) {
         text_.angle = 0.0;
         text_.size = number_sizes[2];
-        const double half = 0.5 * text_width(text_.text, text_.size) + clearance * text_.size;
+        const double half =
+            0.5 * writers::text_width(text_.text, text_.size) + clearance * text_.size;
         const double rise = (0.5 * capital_share + clearance) * text_.size;
         for (double length = shortest_leader; length <= longest_leader; length *= leader_step)
             for (const double share : leader_places)
@@ -239,34 +241,34 @@ private:
         return false;
     }
 
-    const PiecePath& path_;
-    const SeamSide& side_;
+    const pattern::PiecePath& path_;
+    const pattern::SeamSide& side_;
     const SheetPiece& piece_;
     const Room& room_;
-    DrawingText text_;
+    writers::DrawingText text_;
     std::vector<Vec2> leader_;
 };
 
 struct WrittenNumber {
     std::size_t piece = 0; // in the layout
-    DrawingText text;
+    writers::DrawingText text;
     std::vector<Vec2> leader;
 };
 
 } // namespace
 
-LeftOut add_texts(const Pattern& pattern, const ExportOptions& options,
+LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
                   std::vector<SheetPiece>& pieces) {
     LeftOut left_out;
     std::vector<std::vector<WrittenNumber>> written(pattern.seams.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
-        const PatternPiece& source = pattern.pieces[at(piece.piece)];
+        const pattern::PatternPiece& source = pattern.pieces[at(piece.piece)];
         Room room(piece);
         if (options.labels && !add_name(source, pattern, piece, room))
             left_out.pieces.push_back(piece.piece);
         for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)
-            for (const SeamSide& side : pattern.seams[s].sides) {
+            for (const pattern::SeamSide& side : pattern.seams[s].sides) {
                 if (side.piece != piece.piece)
                     continue;
                 NumberWriter number(source.path(side.path), side, pattern.seams[s].label, piece,
@@ -292,4 +294,4 @@ LeftOut add_texts(const Pattern& pattern, const ExportOptions& options,
     return left_out;
 }
 
-} // namespace devseg
+} // namespace devseg::sheet

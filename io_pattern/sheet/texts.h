@@ -6,7 +6,7 @@
 
 #include "sheet/sheet_piece.h"
 
-namespace devseg {
+namespace devseg::sheet {
 
 /// What could not be written in a size that can be read.
 struct LeftOut {
@@ -19,7 +19,7 @@ struct LeftOut {
 /// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
 /// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
 /// number on both sides or on none.
-LeftOut add_texts(const Pattern& pattern, const ExportOptions& options,
+LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
                   std::vector<SheetPiece>& pieces);
 
-} // namespace devseg
+} // namespace devseg::sheet

@@ -12,7 +12,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 /// A cubic Bézier curve, or a straight line that is written as one.
 struct DrawingCurve {
@@ -97,4 +97,4 @@ struct Document {
     std::vector<DocumentPage> pages;
 };
 
-} // namespace devseg
+} // namespace devseg::writers

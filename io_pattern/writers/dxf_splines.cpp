@@ -7,7 +7,7 @@
 #include "writers/dxf_text.h"
 #include "writers/number_text.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -275,4 +275,4 @@ std::string dxf_bytes_with_splines(const Drawing& drawing,
     return Writer(drawing.decimals).write(drawing, layers);
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -8,7 +8,7 @@
 #include "writers/number_text.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -128,4 +128,4 @@ void DxfText::text_content(const DrawingText& text) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::writers

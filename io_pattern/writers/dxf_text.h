@@ -5,7 +5,7 @@
 
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 /// The number of the one of the seven colours that all programs show alike that is nearest to
 /// "#rrggbb".
@@ -47,4 +47,4 @@ private:
     std::string bytes_;
 };
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -6,7 +6,7 @@
 #include "writers/dxf_splines.h"
 #include "writers/dxf_text.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::string dxf_bytes(const Drawing& drawing) {
     return file.file();
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -5,7 +5,7 @@
 
 #include "devseg/base/errors.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -25,4 +25,4 @@ void save_file(const std::string& path, const std::string& bytes) {
         refuse(path, file.errorString());
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace devseg {
+namespace devseg::writers {
 
 /// Writes under a temporary name and renames: `path` (UTF-8) holds exactly `bytes` afterwards, or
 /// is as it was. Throws FileError.
 void save_file(const std::string& path, const std::string& bytes);
 
-} // namespace devseg
+} // namespace devseg::writers

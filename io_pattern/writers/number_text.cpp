@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace devseg {
+namespace devseg::writers {
 
 std::string number_text(double value, int decimals) {
     char digits[400]; // the largest double has 309 digits
@@ -17,4 +17,4 @@ std::string number_text(double value, int decimals) {
     return text == "-0" ? "0" : text;
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -6,7 +6,7 @@
 
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 /// At most `decimals` digits behind the point, no trailing zeros, no sign of −0. Finite numbers.
 std::string number_text(double value, int decimals);
@@ -26,4 +26,4 @@ std::vector<std::string> point_texts(const DrawingPolyline& line, Text text) {
     return texts;
 }
 
-} // namespace devseg
+} // namespace devseg::writers

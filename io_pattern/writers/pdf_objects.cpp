@@ -7,7 +7,7 @@
 #include <QByteArray>
 #include <QString>
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::string PdfObjects::text(const std::string& utf8) {
     return hex + '>';
 }
 
-} // namespace devseg
+} // namespace devseg::writers

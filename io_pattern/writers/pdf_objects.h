@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace devseg {
+namespace devseg::writers {
 
 class PdfObjects {
 public:
@@ -29,4 +29,4 @@ private:
     std::vector<std::string> bodies_; // of object i + 1
 };
 
-} // namespace devseg
+} // namespace devseg::writers

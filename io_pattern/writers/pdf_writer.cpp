@@ -11,7 +11,7 @@
 #include "writers/pdf_objects.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -193,4 +193,4 @@ std::string pdf_bytes(const Document& document) {
     return Writer(document).write();
 }
 
-} // namespace devseg
+} // namespace devseg::writers

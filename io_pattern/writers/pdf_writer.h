@@ -5,7 +5,7 @@
 
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 /// The file's bytes. One millimetre is 72 / 25.4 points, and readers are told not to scale when
 /// they print. The drawing is stored once and shown through the windows of the pages; layers of
@@ -13,4 +13,4 @@ namespace devseg {
 /// finite, and there must be a page.
 std::string pdf_bytes(const Document& document);
 
-} // namespace devseg
+} // namespace devseg::writers

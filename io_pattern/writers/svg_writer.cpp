@@ -10,7 +10,7 @@
 #include "writers/number_text.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -169,4 +169,4 @@ std::string svg_bytes(const Drawing& drawing) {
     return Writer(drawing).write().toStdString();
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace devseg {
+namespace devseg::writers {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::string ascii(const std::string& utf8) {
     return narrowed(utf8, 0x7e);
 }
 
-} // namespace devseg
+} // namespace devseg::writers

@@ -6,7 +6,7 @@
 
 #include "writers/drawing.h"
 
-namespace devseg {
+namespace devseg::writers {
 
 constexpr double degrees_per_radian = 180.0 / pi;
 
@@ -25,4 +25,4 @@ std::string latin1(const std::string& utf8);
 /// Only characters that 7-bit files can hold; others become '?', control characters blanks.
 std::string ascii(const std::string& utf8);
 
-} // namespace devseg
+} // namespace devseg::writers

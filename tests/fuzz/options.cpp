@@ -12,8 +12,8 @@ namespace devseg::fuzz {
 namespace {
 
 // A bent strip, laid flat, with a seam across.
-HostMesh strip() {
-    HostMesh host;
+declare::HostMesh strip() {
+    declare::HostMesh host;
     constexpr int columns = 6;
     for (int i = 0; i <= columns; ++i)
         for (int j = 0; j < 2; ++j)
@@ -33,21 +33,22 @@ HostMesh strip() {
     return host;
 }
 
-ParameterValue read_value(const Parameter& parameter, Bytes& bytes, const std::string& file) {
+declare::ParameterValue read_value(const declare::Parameter& parameter, Bytes& bytes,
+                                   const std::string& file) {
     switch (parameter.kind) {
-    case ParameterKind::boolean:
+    case declare::ParameterKind::boolean:
         return bytes.flag();
-    case ParameterKind::choice:
+    case declare::ParameterKind::choice:
         return bytes.below(12) - 2;
-    case ParameterKind::integer:
+    case declare::ParameterKind::integer:
         if (parameter.name == "max_iterations")
             return bytes.below(12) - 1;
         return bytes.flag() ? bytes.below(24) - 3 : static_cast<int>(bytes.byte()) << 23;
-    case ParameterKind::real:
+    case declare::ParameterKind::real:
         return bytes.number();
-    case ParameterKind::text:
+    case declare::ParameterKind::text:
         return bytes.text(12);
-    case ParameterKind::output_file:
+    case declare::ParameterKind::output_file:
         break;
     }
     constexpr const char* extensions[] = {".svg", ".pdf", ".dxf", ".SVG", "", ".txt", "/", ".svg/"};
@@ -59,23 +60,24 @@ std::size_t files_in(const std::filesystem::path& folder) {
 }
 
 void run_with_options(Bytes& bytes) {
-    static const HostMesh host = strip();
+    static const declare::HostMesh host = strip();
     static const std::filesystem::path folder = [] {
         const char* chosen = std::getenv("TMPDIR");
         auto path = std::filesystem::path(chosen == nullptr ? "/tmp" : chosen) / "devseg_fuzz";
         std::filesystem::create_directories(path);
         return path;
     }();
-    const auto& filters = plugin_filters();
-    const FilterDeclaration& filter = filters[at(bytes.below(static_cast<int>(filters.size())))];
-    ParameterValues values;
-    for (const Parameter& parameter : filter.parameters)
-        if (parameter.kind == ParameterKind::output_file || bytes.below(3) == 0)
+    const auto& filters = exporting::plugin_filters();
+    const declare::FilterDeclaration& filter =
+        filters[at(bytes.below(static_cast<int>(filters.size())))];
+    declare::ParameterValues values;
+    for (const declare::Parameter& parameter : filter.parameters)
+        if (parameter.kind == declare::ParameterKind::output_file || bytes.below(3) == 0)
             values[parameter.name] = read_value(parameter, bytes, (folder / "p").string());
     Progress progress;
     const std::size_t before = files_in(folder);
     try {
-        const HostResult result = run_filter(filter, host, values, progress);
+        const declare::HostResult result = declare::run_filter(filter, host, values, progress);
         for (const auto& corners : result.wedge_uv)
             for (const Vec2& p : corners)
                 if (!p.allFinite())

@@ -21,8 +21,8 @@ constexpr int most_vertices = 40;
 constexpr int most_faces = 80;
 constexpr double longest_run = 20.0; // seconds of a processor: machines that fuzz are busy
 
-RawMesh read_mesh(Bytes& bytes) {
-    RawMesh mesh;
+mesh::RawMesh read_mesh(Bytes& bytes) {
+    mesh::RawMesh mesh;
     const int vertices = 1 + bytes.below(most_vertices);
     for (int v = 0; v < vertices; ++v) {
         const double x = bytes.number();
@@ -48,7 +48,7 @@ Progress with_time_limit(const std::string& what) {
     });
 }
 
-ChartMap charts_of(const GatedMesh& gate, const HostResult& segmented) {
+atlas::ChartMap charts_of(const mesh::GatedMesh& gate, const declare::HostResult& segmented) {
     const Mesh& mesh = gate.mesh;
     std::vector<Index> labels;
     std::vector<std::uint8_t> seam;
@@ -58,7 +58,7 @@ ChartMap charts_of(const GatedMesh& gate, const HostResult& segmented) {
         for (Index e = 0; e < 3; ++e)
             seam.push_back(segmented.seam_edges[source] >> gate.source_edge(f, e) & 1);
     }
-    return make_chart_map(mesh, labels, seam, true);
+    return atlas::make_chart_map(mesh, labels, seam, true);
 }
 
 constexpr double least_visible = 1e-6; // internal units: models are about 1 long
@@ -70,21 +70,23 @@ struct Layout {
 };
 
 // What 'Charts: Flatten' does, but for its packing, which takes most of the time: charts in a row.
-Layout lay_in_a_row(const Mesh& mesh, const ChartMap& charts, FlattenMethod method) {
+Layout lay_in_a_row(const Mesh& mesh, const atlas::ChartMap& charts,
+                    flatten::FlattenMethod method) {
     Progress progress = with_time_limit("flattening");
-    const DiskCuts disks = cut_charts_to_disks(mesh, charts, progress);
-    FlattenResult flattened = flatten_charts(mesh, disks.charts, method, progress);
+    const atlas::DiskCuts disks = atlas::cut_charts_to_disks(mesh, charts, progress);
+    flatten::FlattenResult flattened =
+        flatten::flatten_charts(mesh, disks.charts, method, progress);
     Layout layout;
     layout.uv.assign(mesh.twin.size(), Vec2::Zero());
     double left = 0.0;
-    for (FlatChart& chart : flattened.flat) {
+    for (flatten::FlatChart& chart : flattened.flat) {
         Eigen::AlignedBox2d box;
         for (const Vec2& p : chart.uv)
             box.extend(p);
         for (Vec2& p : chart.uv)
             p += Vec2(left, 0.0) - box.min();
         left += 1.01 * box.sizes().x() + 0.01;
-        layout.too_thin += snap_to_single(chart.surface.corners, chart.uv);
+        layout.too_thin += flatten::snap_to_single(chart.surface.corners, chart.uv);
         for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
             layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
     }
@@ -93,37 +95,40 @@ Layout lay_in_a_row(const Mesh& mesh, const ChartMap& charts, FlattenMethod meth
 }
 
 void run_pipeline(Bytes& bytes) {
-    static const std::vector<const FilterDeclaration*> methods = [] {
-        std::vector<const FilterDeclaration*> found;
-        for (const FilterDeclaration& filter : filter_table())
+    static const std::vector<const declare::FilterDeclaration*> methods = [] {
+        std::vector<const declare::FilterDeclaration*> found;
+        for (const declare::FilterDeclaration& filter : declare::filter_table())
             if (filter.menu_name.compare(0, 13, "Segmentation:") == 0)
                 found.push_back(&filter);
         return found;
     }();
-    const FilterDeclaration& method = *methods[at(bytes.below(static_cast<int>(methods.size())))];
-    const ParameterValues charts{{"charts_number", 1 + bytes.below(6)}, {"max_iterations", 5}};
-    const auto way = static_cast<FlattenMethod>(bytes.below(5));
-    HostMesh host;
+    const declare::FilterDeclaration& method =
+        *methods[at(bytes.below(static_cast<int>(methods.size())))];
+    const declare::ParameterValues charts{{"charts_number", 1 + bytes.below(6)},
+                                          {"max_iterations", 5}};
+    const auto way = static_cast<flatten::FlattenMethod>(bytes.below(5));
+    declare::HostMesh host;
     host.geometry = read_mesh(bytes);
-    HostResult segmented;
+    declare::HostResult segmented;
     Progress progress = with_time_limit(method.menu_name);
     try {
-        segmented = run_filter(method, host, charts, progress);
+        segmented = declare::run_filter(method, host, charts, progress);
     } catch (const InvalidMesh&) {
         return;
     } catch (const InvalidParameter&) {
         return;
     }
     // What could be segmented can be flattened.
-    const GatedMesh gate = gate_mesh(host.geometry);
+    const mesh::GatedMesh gate = mesh::gate_mesh(host.geometry);
     const Layout layout = lay_in_a_row(gate.mesh, charts_of(gate, segmented), way);
     if (layout.too_thin > 0) // of which users are told: readers cannot see such charts
         return;
     // Nor where the sides of a cut are nearer to each other than 32 bits can tell on models that
     // are thousands of times as long as wide.
-    if (slit_gap * std::sqrt(gate.mesh.total_area) < least_visible)
+    if (flatten::slit_gap * std::sqrt(gate.mesh.total_area) < least_visible)
         return;
-    const ParametrizationMeasures measured = measure_parametrization(gate.mesh, layout.uv);
+    const metrics::ParametrizationMeasures measured =
+        metrics::measure_parametrization(gate.mesh, layout.uv);
     if (measured.flipped_faces_number != 0)
         fail("flipped faces");
     if (measured.overlapping_faces_number != 0)

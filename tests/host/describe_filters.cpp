@@ -22,7 +22,7 @@ std::string json(const std::string& text) {
     return quoted + '"';
 }
 
-std::string json(const ParameterValue& value) {
+std::string json(const declare::ParameterValue& value) {
     if (const auto* truth = std::get_if<bool>(&value))
         return *truth ? "true" : "false";
     if (const auto* count = std::get_if<int>(&value))
@@ -35,33 +35,33 @@ std::string json(const ParameterValue& value) {
     return digits.str();
 }
 
-std::string kind_name(ParameterKind kind) {
+std::string kind_name(declare::ParameterKind kind) {
     switch (kind) {
-    case ParameterKind::boolean:
+    case declare::ParameterKind::boolean:
         return "boolean";
-    case ParameterKind::integer:
+    case declare::ParameterKind::integer:
         return "integer";
-    case ParameterKind::real:
+    case declare::ParameterKind::real:
         return "real";
-    case ParameterKind::choice:
+    case declare::ParameterKind::choice:
         return "choice";
-    case ParameterKind::text:
+    case declare::ParameterKind::text:
         return "text";
-    case ParameterKind::output_file:
+    case declare::ParameterKind::output_file:
         return "output file";
     }
     return "";
 }
 
-std::string category_name(FilterCategory category) {
+std::string category_name(declare::FilterCategory category) {
     switch (category) {
-    case FilterCategory::remeshing:
+    case declare::FilterCategory::remeshing:
         return "Remeshing, Simplification and Reconstruction";
-    case FilterCategory::texture:
+    case declare::FilterCategory::texture:
         return "Texture";
-    case FilterCategory::color:
+    case declare::FilterCategory::color:
         return "Color Creation and Processing";
-    case FilterCategory::measure:
+    case declare::FilterCategory::measure:
         return "Quality Measure and Computations";
     }
     return "";
@@ -75,8 +75,8 @@ std::string list(const Items& items, Print print) {
     return "[" + joined + "]";
 }
 
-std::string describe(const Parameter& p) {
-    const auto number = [](double value) { return json(ParameterValue(value)); };
+std::string describe(const declare::Parameter& p) {
+    const auto number = [](double value) { return json(declare::ParameterValue(value)); };
     return "{\"name\": " + json(p.name) + ", \"label\": " + json(p.label) +
            ", \"kind\": " + json(kind_name(p.kind)) + ", \"default\": " + json(p.default_value) +
            ", \"minimum\": " + number(p.minimum) + ", \"maximum\": " + number(p.maximum) +
@@ -84,16 +84,17 @@ std::string describe(const Parameter& p) {
            ", \"help\": " + json(p.help) + "}";
 }
 
-std::string describe(const FilterDeclaration& filter) {
+std::string describe(const declare::FilterDeclaration& filter) {
     return "{\"menu_name\": " + json(filter.menu_name) +
            ", \"python_name\": " + json(filter.python_name) + ", \"help\": " + json(filter.help) +
            ", \"menu\": " + json(category_name(filter.category)) +
            ", \"writes\": " + std::to_string(filter.writes) +
            ", \"needs_uv\": " + (filter.needs_uv ? "true" : "false") + ", \"parameters\": " +
-           list(filter.parameters, [](const Parameter& p) { return "\n  " + describe(p); }) +
+           list(filter.parameters,
+                [](const declare::Parameter& p) { return "\n  " + describe(p); }) +
            ", \"results\": " +
            list(filter.results,
-                [](const ResultField& r) {
+                [](const declare::ResultField& r) {
                     return "\n  {\"name\": " + json(r.name) + ", \"meaning\": " + json(r.meaning) +
                            "}";
                 }) +
@@ -104,8 +105,8 @@ std::string describe(const FilterDeclaration& filter) {
 } // namespace devseg
 
 int main() {
-    std::cout << devseg::list(devseg::plugin_filters(),
-                              [](const devseg::FilterDeclaration& filter) {
+    std::cout << devseg::list(devseg::exporting::plugin_filters(),
+                              [](const devseg::declare::FilterDeclaration& filter) {
                                   return "\n " + devseg::describe(filter);
                               })
               << "\n";

@@ -32,9 +32,9 @@ double from_environment(const char* name, double otherwise) {
 }
 
 // A torus with bumps: handles, charts of all sizes, darts.
-RawMesh bumpy_torus(Index faces) {
+mesh::RawMesh bumpy_torus(Index faces) {
     const auto tube = static_cast<Index>(std::sqrt(faces / 4.0));
-    RawMesh raw = shapes::torus(2 * tube, tube);
+    mesh::RawMesh raw = shapes::torus(2 * tube, tube);
     for (Vec3& p : raw.points)
         p += 0.08 * Vec3(std::sin(7.0 * p.y()), std::sin(6.0 * p.z()), std::sin(5.0 * p.x()));
     return raw;
@@ -51,8 +51,9 @@ double processor_time() {
 }
 
 // Clicks "cancel" after `delay` seconds of processor time.
-Stop cancel_after(double delay, const FilterDeclaration& filter, const HostMesh& host,
-                  const ParameterValues& values, std::string& phase) {
+Stop cancel_after(double delay, const declare::FilterDeclaration& filter,
+                  const declare::HostMesh& host, const declare::ParameterValues& values,
+                  std::string& phase) {
     std::atomic<bool> stop{false};
     std::atomic<bool> ended{false};
     const double start = processor_time();
@@ -71,7 +72,7 @@ Stop cancel_after(double delay, const FilterDeclaration& filter, const HostMesh&
     });
     Stop result;
     try {
-        run_filter(filter, host, values, progress);
+        declare::run_filter(filter, host, values, progress);
     } catch (const Cancelled&) {
         EXPECT_TRUE(stop);
     } catch (const NumericalFailure&) { // what it asks for may be out of reach: an end as well
@@ -87,19 +88,19 @@ Stop cancel_after(double delay, const FilterDeclaration& filter, const HostMesh&
 }
 
 struct Work {
-    const FilterDeclaration* filter;
-    ParameterValues values;
+    const declare::FilterDeclaration* filter;
+    declare::ParameterValues values;
 };
 
 std::vector<Work> all_work(const std::string& file) {
     std::vector<Work> all;
-    for (const FilterDeclaration* filter : filters_named("")) {
-        ParameterValues values;
-        for (const Parameter& parameter : filter->parameters)
-            if (parameter.kind == ParameterKind::output_file)
+    for (const declare::FilterDeclaration* filter : filters_named("")) {
+        declare::ParameterValues values;
+        for (const declare::Parameter& parameter : filter->parameters)
+            if (parameter.kind == declare::ParameterKind::output_file)
                 values[parameter.name] = file;
         all.push_back({filter, values});
-        for (const Parameter& parameter : filter->parameters)
+        for (const declare::Parameter& parameter : filter->parameters)
             if (parameter.name == "method")
                 for (int i = 1; i < static_cast<int>(parameter.choices.size()); ++i) {
                     values["method"] = i;
@@ -114,10 +115,10 @@ TEST(Cancel, EveryFilterStopsSoonAndLeavesNoFile) {
     const auto faces = static_cast<Index>(from_environment("DEVSEG_CANCEL_FACES", 8000.0));
     const double first_click = from_environment("DEVSEG_CANCEL_FIRST", 0.001);
     const double latest_click = from_environment("DEVSEG_CANCEL_SECONDS", 1e6);
-    HostMesh segmented = checks::host_of(bumpy_torus(faces));
+    declare::HostMesh segmented = checks::host_of(bumpy_torus(faces));
     checks::take_charts(segmented, checks::run("Segmentation: D-Charts", segmented));
-    HostMesh flat = segmented;
-    const HostResult layout = checks::run("Charts: Flatten", flat);
+    declare::HostMesh flat = segmented;
+    const declare::HostResult layout = checks::run("Charts: Flatten", flat);
     checks::take_charts(flat, layout);
     flat.wedge_uv = layout.wedge_uv;
     shapes::Random random(7);
@@ -133,9 +134,9 @@ TEST(Cancel, EveryFilterStopsSoonAndLeavesNoFile) {
         for (const bool charted : {true, false}) {
             if ((needs_layout || segments) && !charted)
                 continue;
-            const HostMesh& host = needs_layout ? flat
-                                   : charted    ? segmented
-                                                : checks::host_of(segmented.geometry);
+            const declare::HostMesh& host = needs_layout ? flat
+                                            : charted    ? segmented
+                                                         : checks::host_of(segmented.geometry);
             double delay = first_click;
             for (int i = 0; i < 200 && delay < latest_click; ++i) {
                 std::string phase;

@@ -36,7 +36,7 @@ bool is_default(Random& random) {
     return random.below(5) < 2;
 }
 
-int random_integer(const Parameter& parameter, Index faces, Random& random) {
+int random_integer(const declare::Parameter& parameter, Index faces, Random& random) {
     const double most = parameter.name == "max_iterations" ? 12.0 : std::max(2.0 * faces, 8.0);
     if (parameter.name == "random_seed")
         return random.below(1 << 30);
@@ -47,7 +47,7 @@ int random_integer(const Parameter& parameter, Index faces, Random& random) {
     return static_cast<int>(std::floor(low + share * (high - low)));
 }
 
-double random_real(const Parameter& parameter, Random& random) {
+double random_real(const declare::Parameter& parameter, Random& random) {
     switch (random.below(8)) {
     case 0:
         return parameter.minimum;
@@ -71,14 +71,14 @@ std::string random_text(Random& random) {
 
 // Labels, seams and coordinates of the host's faces, as filters see them behind the gate.
 struct Gated {
-    GatedMesh gate;
-    ChartMap charts;
+    mesh::GatedMesh gate;
+    atlas::ChartMap charts;
     std::vector<std::array<Vec2, 3>> uv; // #F, corners in the order of the gated face
 };
 
-Gated behind_gate(const RawMesh& raw, const HostResult& result) {
-    Gated gated{gate_mesh(raw), {}, {}};
-    const GatedMesh& gate = gated.gate;
+Gated behind_gate(const mesh::RawMesh& raw, const declare::HostResult& result) {
+    Gated gated{mesh::gate_mesh(raw), {}, {}};
+    const mesh::GatedMesh& gate = gated.gate;
     for (Index f = 0; f < gate.mesh.face_count(); ++f) {
         const std::size_t source = at(gate.source_face[at(f)]);
         const Index chart = result.chart_id[source];
@@ -148,25 +148,25 @@ void for_random_cases(int usual, const std::function<void(Random& random)>& chec
     }
 }
 
-std::vector<const FilterDeclaration*> filters_named(const std::string& start) {
-    std::vector<const FilterDeclaration*> found;
-    for (const FilterDeclaration& filter : plugin_filters())
+std::vector<const declare::FilterDeclaration*> filters_named(const std::string& start) {
+    std::vector<const declare::FilterDeclaration*> found;
+    for (const declare::FilterDeclaration& filter : exporting::plugin_filters())
         if (filter.menu_name.compare(0, start.size(), start) == 0)
             found.push_back(&filter);
     return found;
 }
 
-const FilterDeclaration& any_of(const std::vector<const FilterDeclaration*>& filters,
-                                Random& random) {
+const declare::FilterDeclaration&
+any_of(const std::vector<const declare::FilterDeclaration*>& filters, Random& random) {
     return *filters[at(random.below(static_cast<Index>(filters.size())))];
 }
 
-ParameterValues random_values(const FilterDeclaration& filter, Index faces,
-                              const std::string& file_stem, Random& random) {
-    ParameterValues values;
+declare::ParameterValues random_values(const declare::FilterDeclaration& filter, Index faces,
+                                       const std::string& file_stem, Random& random) {
+    declare::ParameterValues values;
     constexpr const char* extensions[] = {".svg", ".pdf", ".dxf"};
-    for (const Parameter& parameter : filter.parameters) {
-        if (parameter.kind == ParameterKind::output_file) {
+    for (const declare::Parameter& parameter : filter.parameters) {
+        if (parameter.kind == declare::ParameterKind::output_file) {
             values[parameter.name] = file_stem + extensions[random.below(3)];
             continue;
         }
@@ -178,16 +178,16 @@ ParameterValues random_values(const FilterDeclaration& filter, Index faces,
             continue;
         }
         switch (parameter.kind) {
-        case ParameterKind::boolean:
+        case declare::ParameterKind::boolean:
             values[parameter.name] = random.below(2) == 1;
             break;
-        case ParameterKind::choice:
+        case declare::ParameterKind::choice:
             values[parameter.name] = random.below(static_cast<Index>(parameter.choices.size()));
             break;
-        case ParameterKind::integer:
+        case declare::ParameterKind::integer:
             values[parameter.name] = random_integer(parameter, faces, random);
             break;
-        case ParameterKind::real:
+        case declare::ParameterKind::real:
             values[parameter.name] = random_real(parameter, random);
             break;
         default:
@@ -198,7 +198,8 @@ ParameterValues random_values(const FilterDeclaration& filter, Index faces,
     return values;
 }
 
-std::string described(const FilterDeclaration& filter, const ParameterValues& values) {
+std::string described(const declare::FilterDeclaration& filter,
+                      const declare::ParameterValues& values) {
     std::ostringstream text;
     text << filter.menu_name;
     for (const auto& [name, value] : values) {
@@ -208,8 +209,10 @@ std::string described(const FilterDeclaration& filter, const ParameterValues& va
     return text.str();
 }
 
-std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMesh& host,
-                                  const ParameterValues& values, bool may_refuse) {
+std::optional<declare::HostResult> attempt(const declare::FilterDeclaration& filter,
+                                           const declare::HostMesh& host,
+                                           const declare::ParameterValues& values,
+                                           bool may_refuse) {
     SCOPED_TRACE(described(filter, values));
     // Sanitizers take longer.
     const std::chrono::seconds longest(from_environment("DEVSEG_PROPERTY_SECONDS", longest_run));
@@ -221,7 +224,7 @@ std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMes
                (waited < busy * longest && std::clock() - used < longest.count() * CLOCKS_PER_SEC);
     });
     try {
-        return run_filter(filter, host, values, progress);
+        return declare::run_filter(filter, host, values, progress);
     } catch (const InvalidMesh& error) {
         EXPECT_TRUE(may_refuse) << "refused: " << error.what();
     } catch (const InvalidParameter& error) {
@@ -235,7 +238,7 @@ std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMes
     return std::nullopt;
 }
 
-void expect_disks(const RawMesh& raw, const HostResult& result) {
+void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result) {
     ASSERT_EQ(result.chart_id.size(), raw.faces.size());
     ASSERT_EQ(result.seam_edges.size(), raw.faces.size());
     expect_agreement(raw, result);
@@ -249,7 +252,7 @@ void expect_disks(const RawMesh& raw, const HostResult& result) {
     }
 }
 
-void expect_valid_layout(const RawMesh& raw, const HostResult& result, bool packed) {
+void expect_valid_layout(const mesh::RawMesh& raw, const declare::HostResult& result, bool packed) {
     ASSERT_EQ(result.wedge_uv.size(), raw.faces.size());
     Eigen::AlignedBox2d box;
     for (const auto& corners : result.wedge_uv)
@@ -265,16 +268,16 @@ void expect_valid_layout(const RawMesh& raw, const HostResult& result, bool pack
     const double extent = std::max(
         {box.sizes().maxCoeff(), box.max().cwiseAbs().maxCoeff(), box.min().cwiseAbs().maxCoeff()});
     EXPECT_EQ(overlapping_pairs(gated.uv, extent), 0);
-    HostMesh laid = host_of(raw);
+    declare::HostMesh laid = host_of(raw);
     laid.wedge_uv = result.wedge_uv;
-    const HostResult measured = run("Charts: Measure Flattening", laid);
+    const declare::HostResult measured = run("Charts: Measure Flattening", laid);
     EXPECT_EQ(value(measured, "flipped_faces_number"), 0);
     EXPECT_EQ(value(measured, "overlapping_faces_number"), 0);
     EXPECT_EQ(value(measured, "charts_number"), gated.charts.count);
     EXPECT_EQ(value(measured, "disk_charts_number"), gated.charts.count);
 }
 
-void expect_complete(const RawMesh& raw, const HostResult& result) {
+void expect_complete(const mesh::RawMesh& raw, const declare::HostResult& result) {
     const auto complete = [&](const char* what, const auto& values) {
         EXPECT_TRUE(values.empty() || values.size() == raw.faces.size()) << what;
     };

@@ -17,28 +17,30 @@ namespace devseg::checks {
 void for_random_cases(int usual, const std::function<void(shapes::Random& random)>& check);
 
 /// The filters whose names in the menu start so; all of the plugins for an empty text.
-std::vector<const FilterDeclaration*> filters_named(const std::string& start);
-const FilterDeclaration& any_of(const std::vector<const FilterDeclaration*>& filters,
-                                shapes::Random& random);
+std::vector<const declare::FilterDeclaration*> filters_named(const std::string& start);
+const declare::FilterDeclaration&
+any_of(const std::vector<const declare::FilterDeclaration*>& filters, shapes::Random& random);
 
 /// A value for each parameter: its default, an end of its range, or anything between. Files go to
 /// `file_stem` with one of the extensions of patterns. What would only take long is left out.
-ParameterValues random_values(const FilterDeclaration& filter, Index faces,
-                              const std::string& file_stem, shapes::Random& random);
-std::string described(const FilterDeclaration& filter, const ParameterValues& values);
+declare::ParameterValues random_values(const declare::FilterDeclaration& filter, Index faces,
+                                       const std::string& file_stem, shapes::Random& random);
+std::string described(const declare::FilterDeclaration& filter,
+                      const declare::ParameterValues& values);
 
 /// Runs the filter. Errors that tell the user about mesh or parameters give nothing, if they are
 /// `may_refuse`; all others, and more than a minute (DEVSEG_PROPERTY_SECONDS), are failures of the
 /// test.
-std::optional<HostResult> attempt(const FilterDeclaration& filter, const HostMesh& host,
-                                  const ParameterValues& values, bool may_refuse);
+std::optional<declare::HostResult> attempt(const declare::FilterDeclaration& filter,
+                                           const declare::HostMesh& host,
+                                           const declare::ParameterValues& values, bool may_refuse);
 
 /// Charts 0 … n − 1, each connected and a disk; both sides of a seam know of it.
-void expect_disks(const RawMesh& raw, const HostResult& result);
+void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result);
 /// Finite, no face flipped or on another one; in the unit square if `packed`; and the suite's own
 /// measures agree.
-void expect_valid_layout(const RawMesh& raw, const HostResult& result, bool packed);
+void expect_valid_layout(const mesh::RawMesh& raw, const declare::HostResult& result, bool packed);
 /// Everything for all faces or absent; what is written on the mesh is finite, no result is NaN.
-void expect_complete(const RawMesh& raw, const HostResult& result);
+void expect_complete(const mesh::RawMesh& raw, const declare::HostResult& result);
 
 } // namespace devseg::checks

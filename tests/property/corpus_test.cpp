@@ -22,14 +22,14 @@ using checks::attempt;
 using checks::filters_named;
 
 // Numbers as the dump writes them, nan and inf among them, which streams do not read.
-RawMesh read_off(const std::filesystem::path& path) {
+mesh::RawMesh read_off(const std::filesystem::path& path) {
     std::ifstream in(path);
     const auto word = [&] {
         std::string text;
         in >> text;
         return text;
     };
-    RawMesh mesh;
+    mesh::RawMesh mesh;
     EXPECT_EQ(word(), "OFF") << path;
     mesh.points.resize(at(std::stoi(word())));
     mesh.faces.resize(at(std::stoi(word())));
@@ -46,23 +46,23 @@ RawMesh read_off(const std::filesystem::path& path) {
     return mesh;
 }
 
-ParameterValues usual_values(const FilterDeclaration& filter, Index faces,
-                             const std::string& file) {
-    ParameterValues values;
-    for (const Parameter& parameter : filter.parameters) {
+declare::ParameterValues usual_values(const declare::FilterDeclaration& filter, Index faces,
+                                      const std::string& file) {
+    declare::ParameterValues values;
+    for (const declare::Parameter& parameter : filter.parameters) {
         if (parameter.name == "charts_number") // filters refuse more than there are faces
             values[parameter.name] = std::clamp(faces, 1, std::get<int>(parameter.default_value));
-        if (parameter.kind == ParameterKind::output_file)
+        if (parameter.kind == declare::ParameterKind::output_file)
             values[parameter.name] = file;
     }
     return values;
 }
 
 // One way through the suite: charts, their layout, and everything that reads both.
-void run_all_filters(const RawMesh& raw, const FilterDeclaration& segmentation,
+void run_all_filters(const mesh::RawMesh& raw, const declare::FilterDeclaration& segmentation,
                      const std::string& file) {
-    HostMesh host = checks::host_of(raw);
-    const auto run = [&](const FilterDeclaration& filter) {
+    declare::HostMesh host = checks::host_of(raw);
+    const auto run = [&](const declare::FilterDeclaration& filter) {
         const auto start = std::chrono::steady_clock::now();
         const auto result = attempt(
             filter, host, usual_values(filter, static_cast<Index>(raw.faces.size()), file), true);
@@ -78,7 +78,7 @@ void run_all_filters(const RawMesh& raw, const FilterDeclaration& segmentation,
         checks::expect_disks(raw, *charts);
         checks::take_charts(host, *charts);
     }
-    for (const FilterDeclaration* filter : filters_named("")) {
+    for (const declare::FilterDeclaration* filter : filters_named("")) {
         if (filter->menu_name.find("Segmentation:") == 0)
             continue;
         const auto result = run(*filter);
@@ -106,7 +106,7 @@ TEST(Corpus, AllFiltersAnswerOrRefuse) {
     const auto methods = filters_named("Segmentation:");
     for (std::size_t i = 0; i < files.size(); ++i) {
         SCOPED_TRACE(files[i].string());
-        const RawMesh raw = read_off(files[i]);
+        const mesh::RawMesh raw = read_off(files[i]);
         std::cout << files[i].filename().string() << std::endl; // the last one is the culprit
         // Every method on small meshes, which hold most of what can be wrong; one on others.
         for (std::size_t k = 0; k < methods.size(); ++k)

@@ -77,14 +77,14 @@ TEST(Memory, RunsOutWhileThreadsAreStarted) {
 
 TEST(Memory, RunsOutAnywhereInAFilter) {
     const TemporaryFolder folder;
-    HostMesh host = checks::host_of(shapes::sphere(2));
+    declare::HostMesh host = checks::host_of(shapes::sphere(2));
     checks::take_charts(host, checks::run("Segmentation: D-Charts", host, {{"charts_number", 4}}));
     host.wedge_uv = checks::run("Charts: Flatten", host).wedge_uv;
     checks::for_random_cases(20, [&](shapes::Random& random) {
-        const FilterDeclaration& filter = checks::any_of(filters_named(""), random);
-        ParameterValues values;
-        for (const Parameter& parameter : filter.parameters) {
-            if (parameter.kind == ParameterKind::output_file)
+        const declare::FilterDeclaration& filter = checks::any_of(filters_named(""), random);
+        declare::ParameterValues values;
+        for (const declare::Parameter& parameter : filter.parameters) {
+            if (parameter.kind == declare::ParameterKind::output_file)
                 values[parameter.name] = folder.file("pattern.pdf");
             if (parameter.name == "charts_number")
                 values[parameter.name] = 5;
@@ -99,7 +99,8 @@ TEST(Memory, RunsOutAnywhereInAFilter) {
         for (int i = 0; i < 4; ++i) {
             const long k = static_cast<long>(random.uniform(0.0, 1.0) * static_cast<double>(all));
             Progress progress;
-            const bool failed = fails_at(k, [&] { run_filter(filter, host, values, progress); });
+            const bool failed =
+                fails_at(k, [&] { declare::run_filter(filter, host, values, progress); });
             EXPECT_TRUE(!failed || folder.count() == 0) << "a file was left, allocation " << k;
             std::filesystem::remove(folder.file("pattern.pdf"));
         }

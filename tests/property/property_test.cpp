@@ -28,24 +28,24 @@ using shapes::Defects;
 using shapes::Random;
 using shapes::RandomMesh;
 
-const FilterDeclaration& filter_named(const std::string& name) {
+const declare::FilterDeclaration& filter_named(const std::string& name) {
     return *filters_named(name).at(0);
 }
 
-ParameterValues flattening(Random& random) {
+declare::ParameterValues flattening(Random& random) {
     // Packing several charts takes a fixed effort, most of the time of a case: few cases only.
     return {{"method", random.below(5)}, {"pack", random.below(12) == 0}};
 }
 
-Index proper_faces(const RawMesh& raw) {
-    return gate_mesh(raw).mesh.face_count();
+Index proper_faces(const mesh::RawMesh& raw) {
+    return mesh::gate_mesh(raw).mesh.face_count();
 }
 
 // Segments, checks the charts, flattens them, checks the layout, and takes both into `host`.
-void expect_good_atlas(HostMesh& host, Random& random, bool may_refuse) {
-    const RawMesh& raw = host.geometry;
-    const FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
-    const ParameterValues values = random_values(method, proper_faces(raw), "", random);
+void expect_good_atlas(declare::HostMesh& host, Random& random, bool may_refuse) {
+    const mesh::RawMesh& raw = host.geometry;
+    const declare::FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
+    const declare::ParameterValues values = random_values(method, proper_faces(raw), "", random);
     SCOPED_TRACE(checks::described(method, values));
     const auto charts = attempt(method, host, values, true);
     if (!charts)
@@ -55,7 +55,7 @@ void expect_good_atlas(HostMesh& host, Random& random, bool may_refuse) {
     if (testing::Test::HasFatalFailure())
         return;
     checks::take_charts(host, *charts);
-    const ParameterValues choice = flattening(random);
+    const declare::ParameterValues choice = flattening(random);
     const auto flat = attempt(filter_named("Charts: Flatten"), host, choice, may_refuse);
     if (!flat)
         return;
@@ -68,9 +68,9 @@ void expect_good_atlas(HostMesh& host, Random& random, bool may_refuse) {
     host.wedge_uv = flat->wedge_uv;
 }
 
-bool has_area(const RawMesh& raw) {
+bool has_area(const mesh::RawMesh& raw) {
     try {
-        gate_mesh(raw);
+        mesh::gate_mesh(raw);
         return true;
     } catch (const InvalidMesh&) {
         return false;
@@ -81,7 +81,7 @@ TEST(Property, AtlasesOfProperMeshesAreValid) {
     for_random_cases(30, [](Random& random) {
         const RandomMesh mesh = shapes::random_mesh(random, Defects::none);
         SCOPED_TRACE(mesh.recipe);
-        HostMesh host = host_of(mesh.raw);
+        declare::HostMesh host = host_of(mesh.raw);
         expect_good_atlas(host, random, false);
     });
 }
@@ -90,7 +90,7 @@ TEST(Property, AtlasesOfBrokenMeshesAreValid) {
     for_random_cases(30, [](Random& random) {
         const RandomMesh mesh = shapes::random_mesh(random, Defects::any);
         SCOPED_TRACE(mesh.recipe);
-        HostMesh host = host_of(mesh.raw);
+        declare::HostMesh host = host_of(mesh.raw);
         if (has_area(mesh.raw))
             expect_good_atlas(host, random, false);
     });
@@ -104,7 +104,7 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
         if (!has_area(mesh.raw))
             return;
         SCOPED_TRACE(mesh.recipe);
-        HostMesh host = host_of(mesh.raw);
+        declare::HostMesh host = host_of(mesh.raw);
         const Index labels = 1 + random.below(4);
         const Index cuts = random.below(3) == 0 ? 0 : 1 + random.below(30);
         for (std::size_t f = 0; f < mesh.raw.faces.size(); ++f) {
@@ -112,7 +112,7 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
             host.chart_id.push_back(same ? host.chart_id.back() : random.below(labels));
             host.seam_edges.push_back(cuts > 0 && random.below(cuts) == 0 ? random.below(8) : 0);
         }
-        const ParameterValues choice = flattening(random);
+        const declare::ParameterValues choice = flattening(random);
         const auto flat = attempt(filter_named("Charts: Flatten"), host, choice, false);
         if (!flat)
             return;
@@ -125,7 +125,7 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
 }
 
 // What hosts may have on a mesh: anything.
-void add_random_attributes(HostMesh& host, Random& random) {
+void add_random_attributes(declare::HostMesh& host, Random& random) {
     const double odd[] = {std::numeric_limits<double>::quiet_NaN(),
                           std::numeric_limits<double>::infinity(),
                           -1.0,
@@ -160,13 +160,13 @@ TEST(Property, EveryFilterAnswersOrRefuses) {
     for_random_cases(150, [&](Random& random) {
         const RandomMesh mesh = shapes::random_mesh(random, Defects::any);
         SCOPED_TRACE(mesh.recipe);
-        HostMesh host = host_of(mesh.raw);
+        declare::HostMesh host = host_of(mesh.raw);
         if (random.below(20) == 0)
             host.geometry.points[at(mesh.raw.faces[0][0])].x() =
                 std::numeric_limits<double>::quiet_NaN();
         add_random_attributes(host, random);
-        const FilterDeclaration& filter = any_of(filters_named(""), random);
-        const ParameterValues values = random_values(
+        const declare::FilterDeclaration& filter = any_of(filters_named(""), random);
+        const declare::ParameterValues values = random_values(
             filter, static_cast<Index>(mesh.raw.faces.size()), folder.file("pattern"), random);
         const std::ptrdiff_t before = folder.count();
         const auto result = attempt(filter, host, values, true);
@@ -182,12 +182,12 @@ TEST(Property, PatternsOfGoodAtlasesAreMade) {
     for_random_cases(20, [&](Random& random) {
         const RandomMesh mesh = shapes::random_mesh(random, Defects::none);
         SCOPED_TRACE(mesh.recipe);
-        HostMesh host = host_of(mesh.raw);
+        declare::HostMesh host = host_of(mesh.raw);
         expect_good_atlas(host, random, false);
         if (host.wedge_uv.empty())
             return;
-        for (const FilterDeclaration* filter : filters_named("Pattern:")) {
-            const ParameterValues values =
+        for (const declare::FilterDeclaration* filter : filters_named("Pattern:")) {
+            const declare::ParameterValues values =
                 random_values(*filter, proper_faces(mesh.raw), folder.file("pattern"), random);
             SCOPED_TRACE(checks::described(*filter, values));
             const auto result = attempt(*filter, host, values, true);
@@ -197,7 +197,7 @@ TEST(Property, PatternsOfGoodAtlasesAreMade) {
     });
 }
 
-void expect_same(const HostResult& a, const HostResult& b) {
+void expect_same(const declare::HostResult& a, const declare::HostResult& b) {
     EXPECT_EQ(a.chart_id, b.chart_id);
     EXPECT_EQ(a.seam_edges, b.seam_edges);
     EXPECT_EQ(a.face_quality, b.face_quality);
@@ -212,14 +212,15 @@ TEST(Property, TheNumberOfThreadsChangesNothing) {
         if (!has_area(mesh.raw))
             return;
         SCOPED_TRACE(mesh.recipe);
-        const FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
-        const ParameterValues values = random_values(method, proper_faces(mesh.raw), "", random);
-        const ParameterValues choice = flattening(random);
-        std::optional<HostResult> first_charts;
-        std::optional<HostResult> first_flat;
+        const declare::FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
+        const declare::ParameterValues values =
+            random_values(method, proper_faces(mesh.raw), "", random);
+        const declare::ParameterValues choice = flattening(random);
+        std::optional<declare::HostResult> first_charts;
+        std::optional<declare::HostResult> first_flat;
         for (const int threads : {1, 2, 5}) {
             set_thread_limit(threads);
-            HostMesh host = host_of(mesh.raw);
+            declare::HostMesh host = host_of(mesh.raw);
             const auto charts = attempt(method, host, values, true);
             if (!charts)
                 break;
@@ -260,21 +261,21 @@ struct Changes {
     int count_changed = 0;
 };
 
-using Edit = RawMesh (*)(const RawMesh&, const std::vector<Index>& order, Random&);
+using Edit = mesh::RawMesh (*)(const mesh::RawMesh&, const std::vector<Index>& order, Random&);
 
 void count_changes(Random& random, Edit edit, Changes& changes,
-                   std::vector<const FilterDeclaration*> methods) {
+                   std::vector<const declare::FilterDeclaration*> methods) {
     RandomMesh mesh = shapes::random_mesh(random, Defects::none);
     // Noise breaks the ties of symmetric shapes.
     mesh.raw = shapes::with_noise(mesh.raw, 0.01, static_cast<std::uint32_t>(random.below(1000)));
     SCOPED_TRACE(mesh.recipe);
     const std::vector<Index> order = shapes::random_order(
         mesh.raw.faces.size(), static_cast<std::uint32_t>(random.below(1 << 30)));
-    const FilterDeclaration& method = any_of(methods, random);
-    ParameterValues values = random_values(method, proper_faces(mesh.raw), "", random);
+    const declare::FilterDeclaration& method = any_of(methods, random);
+    declare::ParameterValues values = random_values(method, proper_faces(mesh.raw), "", random);
     values.erase("random_seed"); // it chooses faces by their number
     const auto charts = attempt(method, host_of(mesh.raw), values, true);
-    const RawMesh edited = edit(mesh.raw, order, random);
+    const mesh::RawMesh edited = edit(mesh.raw, order, random);
     const auto other = attempt(method, host_of(edited), values, true);
     ASSERT_EQ(charts.has_value(), other.has_value());
     if (!charts)
@@ -303,13 +304,13 @@ void expect_few(const Changes& changes, double largest_share) {
     EXPECT_LE(changes.changed, 2 + largest_share * changes.cases);
 }
 
-void count_changes_by_motion(const std::vector<const FilterDeclaration*>& methods,
+void count_changes_by_motion(const std::vector<const declare::FilterDeclaration*>& methods,
                              double largest_share) {
     Changes changes;
     for_random_cases(30, [&](Random& random) {
         count_changes(
             random,
-            [](const RawMesh& mesh, const std::vector<Index>&, Random& motion) {
+            [](const mesh::RawMesh& mesh, const std::vector<Index>&, Random& motion) {
                 return shapes::moved_rigidly(mesh, motion.uniform(0.3, 3.0), motion);
             },
             changes, methods);
@@ -318,8 +319,8 @@ void count_changes_by_motion(const std::vector<const FilterDeclaration*>& method
 }
 
 TEST(Property, RigidMotionKeepsTheCharts) {
-    std::vector<const FilterDeclaration*> methods = filters_named("Segmentation:");
-    const FilterDeclaration* plush = &filter_named("Segmentation: Plush Toy Seams");
+    std::vector<const declare::FilterDeclaration*> methods = filters_named("Segmentation:");
+    const declare::FilterDeclaration* plush = &filter_named("Segmentation: Plush Toy Seams");
     methods.erase(std::remove(methods.begin(), methods.end(), plush), methods.end());
     count_changes_by_motion(methods, 0.1);
 }
@@ -329,13 +330,13 @@ TEST(Property, RigidMotionKeepsPlushSeams) {
     count_changes_by_motion({&filter_named("Segmentation: Plush Toy Seams")}, 0.02);
 }
 
-void count_changes_by_order(const std::vector<const FilterDeclaration*>& methods,
+void count_changes_by_order(const std::vector<const declare::FilterDeclaration*>& methods,
                             double largest_share) {
     Changes changes;
     for_random_cases(30, [&](Random& random) {
         count_changes(
             random,
-            [](const RawMesh& mesh, const std::vector<Index>& order, Random&) {
+            [](const mesh::RawMesh& mesh, const std::vector<Index>& order, Random&) {
                 return shapes::with_face_order(mesh, order);
             },
             changes, methods);
@@ -362,8 +363,9 @@ TEST(Property, SizeChangesNothing) {
     for_random_cases(20, [](Random& random) {
         const RandomMesh mesh = shapes::random_mesh(random, Defects::none);
         SCOPED_TRACE(mesh.recipe);
-        const FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
-        const ParameterValues values = random_values(method, proper_faces(mesh.raw), "", random);
+        const declare::FilterDeclaration& method = any_of(filters_named("Segmentation:"), random);
+        const declare::ParameterValues values =
+            random_values(method, proper_faces(mesh.raw), "", random);
         const auto charts = attempt(method, host_of(mesh.raw), values, true);
         const double size = std::ldexp(1.0, random.below(80) - 40);
         const auto other =

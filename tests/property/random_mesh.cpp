@@ -41,7 +41,7 @@ Mask framed_mask(Random& random) {
     return mask;
 }
 
-RawMesh turned_profile(Random& random) {
+mesh::RawMesh turned_profile(Random& random) {
     std::vector<Vec2> profile;
     const Index rings = between(random, 2, 9);
     for (Index i = 0; i <= rings; ++i)
@@ -53,7 +53,7 @@ RawMesh turned_profile(Random& random) {
     return revolve(profile, between(random, 3, 20));
 }
 
-RawMesh base_mesh(Random& random, std::string& recipe) {
+mesh::RawMesh base_mesh(Random& random, std::string& recipe) {
     const Index around = between(random, 3, 24);
     const Index along = between(random, 1, 10);
     switch (random.below(16)) {
@@ -110,7 +110,7 @@ RawMesh base_mesh(Random& random, std::string& recipe) {
     }
 }
 
-Vec3 face_point(const RawMesh& mesh, const Triangle& t, Random& random) {
+Vec3 face_point(const mesh::RawMesh& mesh, const Triangle& t, Random& random) {
     const double a = random.uniform(0.2, 0.5);
     const double b = random.uniform(0.2, 0.4);
     return a * mesh.points[at(t[0])] + b * mesh.points[at(t[1])] +
@@ -118,7 +118,7 @@ Vec3 face_point(const RawMesh& mesh, const Triangle& t, Random& random) {
 }
 
 // Faces get a vertex inside: valences and sizes vary.
-void split_faces(RawMesh& mesh, Random& random, double share) {
+void split_faces(mesh::RawMesh& mesh, Random& random, double share) {
     for (std::size_t f = 0, n = mesh.faces.size(); f < n; ++f) {
         if (!chance(random, share))
             continue;
@@ -132,7 +132,7 @@ void split_faces(RawMesh& mesh, Random& random, double share) {
 }
 
 // All faces in four.
-void subdivide(RawMesh& mesh) {
+void subdivide(mesh::RawMesh& mesh) {
     std::map<std::pair<Index, Index>, Index> middles;
     const auto middle = [&](Index a, Index b) {
         const auto [place, fresh] = middles.try_emplace(std::minmax(a, b), 0);
@@ -154,10 +154,10 @@ void subdivide(RawMesh& mesh) {
 }
 
 // Faces around random vertices are taken away: holes, also such that touch.
-void remove_stars(RawMesh& mesh, Random& random, Index count) {
+void remove_stars(mesh::RawMesh& mesh, Random& random, Index count) {
     for (Index i = 0; i < count && mesh.faces.size() > 8; ++i) {
         const Index v = random.below(static_cast<Index>(mesh.points.size()));
-        RawMesh rest = mesh;
+        mesh::RawMesh rest = mesh;
         rest.faces.clear();
         for (const Triangle& t : mesh.faces)
             if (t[0] != v && t[1] != v && t[2] != v)
@@ -167,14 +167,14 @@ void remove_stars(RawMesh& mesh, Random& random, Index count) {
     }
 }
 
-double mean_edge(const RawMesh& mesh) {
+double mean_edge(const mesh::RawMesh& mesh) {
     double sum = 0.0;
     for (const Triangle& t : mesh.faces)
         sum += (mesh.points[at(t[1])] - mesh.points[at(t[0])]).norm();
     return sum / static_cast<double>(mesh.faces.size());
 }
 
-void bend(RawMesh& mesh, Random& random) {
+void bend(mesh::RawMesh& mesh, Random& random) {
     const double strength = random.uniform(0.1, 1.5);
     const double wave = random.uniform(0.3, 2.0);
     for (Vec3& p : mesh.points)
@@ -183,7 +183,7 @@ void bend(RawMesh& mesh, Random& random) {
 }
 
 // One defect, at a random place.
-std::string add_defect(RawMesh& mesh, Random& random) {
+std::string add_defect(mesh::RawMesh& mesh, Random& random) {
     const auto face = [&] { return random.below(static_cast<Index>(mesh.faces.size())); };
     const auto vertex = [&] { return mesh.faces[at(face())][at(random.below(3))]; };
     const Triangle t = mesh.faces[at(face())];
@@ -277,9 +277,9 @@ RandomMesh random_mesh(Random& random, Defects defects) {
     return mesh;
 }
 
-RawMesh moved_rigidly(const RawMesh& mesh, double scale, Random& random) {
+mesh::RawMesh moved_rigidly(const mesh::RawMesh& mesh, double scale, Random& random) {
     const Eigen::AngleAxisd turn(random.uniform(0.0, 2.0 * pi), random.direction());
-    RawMesh result = mesh;
+    mesh::RawMesh result = mesh;
     const Vec3 offset = 3.0 * scale * random.direction();
     for (Vec3& p : result.points)
         p = scale * (turn * p) + offset;

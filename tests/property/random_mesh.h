@@ -11,7 +11,7 @@
 namespace devseg::shapes {
 
 struct RandomMesh {
-    RawMesh raw;
+    mesh::RawMesh raw;
     std::string recipe; // what was done, for the message of a failing case
 };
 
@@ -24,6 +24,6 @@ enum class Defects {
 RandomMesh random_mesh(Random& random, Defects defects);
 
 /// Turned about a random axis, scaled and moved.
-RawMesh moved_rigidly(const RawMesh& mesh, double scale, Random& random);
+mesh::RawMesh moved_rigidly(const mesh::RawMesh& mesh, double scale, Random& random);
 
 } // namespace devseg::shapes

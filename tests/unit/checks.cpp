@@ -39,33 +39,33 @@ double cross(const Vec2& a, const Vec2& b) {
 
 } // namespace
 
-Mesh gated(const RawMesh& raw) {
-    return gate_mesh(raw).mesh;
+Mesh gated(const mesh::RawMesh& raw) {
+    return mesh::gate_mesh(raw).mesh;
 }
 
-ChartMap components(const Mesh& mesh) {
-    return make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, false);
+atlas::ChartMap components(const Mesh& mesh) {
+    return atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, false);
 }
 
-ChartMap components_cut_to_disks(const Mesh& mesh) {
+atlas::ChartMap components_cut_to_disks(const Mesh& mesh) {
     Progress progress;
-    return cut_charts_to_disks(mesh, components(mesh), progress).charts;
+    return atlas::cut_charts_to_disks(mesh, components(mesh), progress).charts;
 }
 
-Disk::Disk(const RawMesh& raw) : Disk(raw, [](const Vec3&) { return false; }) {}
+Disk::Disk(const mesh::RawMesh& raw) : Disk(raw, [](const Vec3&) { return false; }) {}
 
-Disk::Disk(const RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut)
+Disk::Disk(const mesh::RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut)
     : mesh(gated(raw)) {
     std::vector<std::uint8_t> seam;
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         seam.push_back(
             cut(0.5 * (mesh.points[at(mesh.origin(h))] + mesh.points[at(mesh.target(h))])) ? 1 : 0);
-    const ChartMap whole =
-        make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
+    const atlas::ChartMap whole =
+        atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     Progress progress;
-    charts = cut_charts_to_disks(mesh, whole, progress).charts;
-    surface = extract_charts(mesh, charts).at(0);
-    problem = make_flattening_problem(mesh, surface);
+    charts = atlas::cut_charts_to_disks(mesh, whole, progress).charts;
+    surface = atlas::extract_charts(mesh, charts).at(0);
+    problem = flatten::make_flattening_problem(mesh, surface);
 }
 
 testing::AssertionResult is_valid(const Mesh& mesh) {
@@ -95,7 +95,7 @@ testing::AssertionResult is_valid(const Mesh& mesh) {
     return testing::AssertionSuccess();
 }
 
-testing::AssertionResult is_valid(const Mesh& mesh, const ChartMap& charts) {
+testing::AssertionResult is_valid(const Mesh& mesh, const atlas::ChartMap& charts) {
     if (charts.chart.size() != mesh.faces.size() || charts.seam.size() != mesh.twin.size())
         return testing::AssertionFailure() << "sizes do not match the mesh";
     UnionFind parts(mesh.faces.size());
@@ -124,7 +124,7 @@ testing::AssertionResult is_valid(const Mesh& mesh, const ChartMap& charts) {
     return testing::AssertionSuccess();
 }
 
-Topology topology(const Mesh& mesh, const ChartMap& charts, Index chart) {
+Topology topology(const Mesh& mesh, const atlas::ChartMap& charts, Index chart) {
     const auto glued = [&](Index h) { return mesh.twin[at(h)] >= 0 && charts.seam[at(h)] == 0; };
     UnionFind corners(mesh.twin.size());
     UnionFind borders(mesh.twin.size()); // boundary half-edges that meet at a vertex
@@ -157,8 +157,8 @@ Topology topology(const Mesh& mesh, const ChartMap& charts, Index chart) {
             static_cast<Index>(loops.size())};
 }
 
-std::array<double, 2> stretches(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                std::size_t f) {
+std::array<double, 2> stretches(const flatten::FlatteningProblem& problem,
+                                const std::vector<Vec2>& uv, std::size_t f) {
     // First fundamental forms of both triangles in the basis of the edges 0→1 and 0→2; σ² are
     // the generalised eigenvalues.
     const Triangle& t = problem.faces[f];
@@ -176,7 +176,7 @@ std::array<double, 2> stretches(const FlatteningProblem& problem, const std::vec
     return {std::sqrt(large), std::sqrt(determinant / large)};
 }
 
-double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+double l2_stretch(const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double sum = 0.0;
     double area = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {

@@ -8,28 +8,28 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/atlas/charts.h"
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/rest_shape.h"
-#include "devseg/atlas/charts.h"
 #include "devseg/mesh/input_gate.h"
 
 namespace devseg::checks {
 
-Mesh gated(const RawMesh& raw);
+Mesh gated(const mesh::RawMesh& raw);
 /// Each connected component is a chart.
-ChartMap components(const Mesh& mesh);
-ChartMap components_cut_to_disks(const Mesh& mesh);
+atlas::ChartMap components(const Mesh& mesh);
+atlas::ChartMap components_cut_to_disks(const Mesh& mesh);
 
 /// A mesh that is one chart, opened to a disk where it is none.
 struct Disk {
-    explicit Disk(const RawMesh& raw);
+    explicit Disk(const mesh::RawMesh& raw);
     /// The edges whose middle (internal units) fulfils `cut` are cut first.
-    Disk(const RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut);
+    Disk(const mesh::RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut);
 
     Mesh mesh;
-    ChartMap charts;
-    ChartSurface surface;
-    FlatteningProblem problem;
+    atlas::ChartMap charts;
+    atlas::ChartSurface surface;
+    flatten::FlatteningProblem problem;
 };
 
 /// Invariants of mesh.h: twins are mutual and run in opposite directions, the faces around each
@@ -37,7 +37,7 @@ struct Disk {
 testing::AssertionResult is_valid(const Mesh& mesh);
 /// Labels 0 … count − 1, all used, each chart connected across edges that are no seams; seams
 /// agree on both sides and lie between any two charts.
-testing::AssertionResult is_valid(const Mesh& mesh, const ChartMap& charts);
+testing::AssertionResult is_valid(const Mesh& mesh, const atlas::ChartMap& charts);
 
 /// V − E + F and the number of boundary loops of one chart, counted from positions of corners
 /// joined by union-find, without ChartSurface.
@@ -45,13 +45,13 @@ struct Topology {
     Index euler = 0;
     Index loops = 0;
 };
-Topology topology(const Mesh& mesh, const ChartMap& charts, Index chart);
+Topology topology(const Mesh& mesh, const atlas::ChartMap& charts, Index chart);
 
 /// Singular values of the map on face f, larger first, from lengths alone.
-std::array<double, 2> stretches(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                std::size_t f);
+std::array<double, 2> stretches(const flatten::FlatteningProblem& problem,
+                                const std::vector<Vec2>& uv, std::size_t f);
 /// √(Σ A (σ₁² + σ₂²)/2 / Σ A) of the inverse map (from the plane to the surface).
-double l2_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+double l2_stretch(const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv);
 /// Faces whose signed area is not positive, in extended precision.
 Index count_flips(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv);
 

@@ -7,15 +7,16 @@
 
 namespace devseg::checks {
 
-HostResult run(const std::string& menu_name, const HostMesh& host, const ParameterValues& values) {
+declare::HostResult run(const std::string& menu_name, const declare::HostMesh& host,
+                        const declare::ParameterValues& values) {
     Progress progress;
-    for (const FilterDeclaration& filter : filter_table())
+    for (const declare::FilterDeclaration& filter : declare::filter_table())
         if (filter.menu_name == menu_name)
-            return run_filter(filter, host, values, progress);
+            return declare::run_filter(filter, host, values, progress);
     throw std::logic_error("no such filter");
 }
 
-double number(const ParameterValue& value) {
+double number(const declare::ParameterValue& value) {
     if (const auto* b = std::get_if<bool>(&value))
         return *b ? 1.0 : 0.0;
     if (const auto* i = std::get_if<int>(&value))
@@ -25,7 +26,7 @@ double number(const ParameterValue& value) {
     return 0.0; // texts
 }
 
-double value(const HostResult& result, const std::string& name) {
+double value(const declare::HostResult& result, const std::string& name) {
     for (const auto& [key, v] : result.values)
         if (key == name)
             return std::holds_alternative<int>(v) ? std::get<int>(v) : std::get<double>(v);
@@ -33,18 +34,18 @@ double value(const HostResult& result, const std::string& name) {
     return 0.0;
 }
 
-HostMesh host_of(const RawMesh& raw) {
-    HostMesh host;
+declare::HostMesh host_of(const mesh::RawMesh& raw) {
+    declare::HostMesh host;
     host.geometry = raw;
     return host;
 }
 
-void take_charts(HostMesh& host, const HostResult& result) {
+void take_charts(declare::HostMesh& host, const declare::HostResult& result) {
     host.chart_id.assign(result.chart_id.begin(), result.chart_id.end());
     host.seam_edges.assign(result.seam_edges.begin(), result.seam_edges.end());
 }
 
-Edges edges_of(const RawMesh& raw) {
+Edges edges_of(const mesh::RawMesh& raw) {
     Edges edges;
     for (std::size_t f = 0; f < raw.faces.size(); ++f)
         for (std::size_t e = 0; e < 3; ++e)
@@ -56,7 +57,7 @@ Edges edges_of(const RawMesh& raw) {
 namespace {
 
 // The same faces with the first of the vertices at each place.
-RawMesh joined(RawMesh raw) {
+mesh::RawMesh joined(mesh::RawMesh raw) {
     std::map<std::array<double, 3>, Index> first;
     for (Triangle& t : raw.faces)
         for (Index& v : t) {
@@ -68,7 +69,7 @@ RawMesh joined(RawMesh raw) {
 
 } // namespace
 
-void expect_agreement(const RawMesh& raw, const HostResult& result) {
+void expect_agreement(const mesh::RawMesh& raw, const declare::HostResult& result) {
     ASSERT_EQ(result.chart_id.size(), raw.faces.size());
     ASSERT_EQ(result.seam_edges.size(), raw.faces.size());
     const Edges places = edges_of(joined(raw));
@@ -99,7 +100,7 @@ double signed_area(const std::array<Vec2, 3>& triangle) {
     return 0.5 * (p.x() * q.y() - p.y() * q.x());
 }
 
-double area_on_surface(const RawMesh& raw, std::size_t face) {
+double area_on_surface(const mesh::RawMesh& raw, std::size_t face) {
     const Triangle& t = raw.faces[face];
     return 0.5 * (raw.points[at(t[1])] - raw.points[at(t[0])])
                      .cross(raw.points[at(t[2])] - raw.points[at(t[0])])

@@ -11,22 +11,22 @@
 
 namespace devseg::checks {
 
-HostResult run(const std::string& menu_name, const HostMesh& host,
-               const ParameterValues& values = {});
-double value(const HostResult& result, const std::string& name);
-double number(const ParameterValue& value);
+declare::HostResult run(const std::string& menu_name, const declare::HostMesh& host,
+                        const declare::ParameterValues& values = {});
+double value(const declare::HostResult& result, const std::string& name);
+double number(const declare::ParameterValue& value);
 
-HostMesh host_of(const RawMesh& raw);
-void take_charts(HostMesh& host, const HostResult& result);
+declare::HostMesh host_of(const mesh::RawMesh& raw);
+void take_charts(declare::HostMesh& host, const declare::HostResult& result);
 
 /// All (face, edge) at each edge, by the host's vertices.
 using Edges = std::map<std::set<Index>, std::vector<std::pair<std::size_t, int>>>;
-Edges edges_of(const RawMesh& raw);
+Edges edges_of(const mesh::RawMesh& raw);
 
 /// On every inner edge both faces agree about the seam, which lies between any two charts.
-void expect_agreement(const RawMesh& raw, const HostResult& result);
+void expect_agreement(const mesh::RawMesh& raw, const declare::HostResult& result);
 
 double signed_area(const std::array<Vec2, 3>& triangle);
-double area_on_surface(const RawMesh& raw, std::size_t face);
+double area_on_surface(const mesh::RawMesh& raw, std::size_t face);
 
 } // namespace devseg::checks

@@ -12,8 +12,8 @@ Vec3 Random::direction() {
     }
 }
 
-RawMesh join(const RawMesh& a, const RawMesh& b) {
-    RawMesh mesh = a;
+mesh::RawMesh join(const mesh::RawMesh& a, const mesh::RawMesh& b) {
+    mesh::RawMesh mesh = a;
     const Index offset = static_cast<Index>(a.points.size());
     mesh.points.insert(mesh.points.end(), b.points.begin(), b.points.end());
     for (const Triangle& t : b.faces)
@@ -21,19 +21,19 @@ RawMesh join(const RawMesh& a, const RawMesh& b) {
     return mesh;
 }
 
-RawMesh moved(RawMesh mesh, double scale, const Vec3& offset) {
+mesh::RawMesh moved(mesh::RawMesh mesh, double scale, const Vec3& offset) {
     for (Vec3& p : mesh.points)
         p = scale * p + offset;
     return mesh;
 }
 
-RawMesh turned_over(RawMesh mesh) {
+mesh::RawMesh turned_over(mesh::RawMesh mesh) {
     for (Triangle& t : mesh.faces)
         std::swap(t[1], t[2]);
     return mesh;
 }
 
-RawMesh with_random_orientations(RawMesh mesh, std::uint32_t seed) {
+mesh::RawMesh with_random_orientations(mesh::RawMesh mesh, std::uint32_t seed) {
     Random random(seed);
     for (Triangle& t : mesh.faces)
         if (random.below(2) == 1)
@@ -41,7 +41,7 @@ RawMesh with_random_orientations(RawMesh mesh, std::uint32_t seed) {
     return mesh;
 }
 
-RawMesh with_noise(RawMesh mesh, double amplitude, std::uint32_t seed) {
+mesh::RawMesh with_noise(mesh::RawMesh mesh, double amplitude, std::uint32_t seed) {
     Random random(seed);
     for (Vec3& p : mesh.points)
         for (int axis = 0; axis < 3; ++axis)
@@ -49,8 +49,8 @@ RawMesh with_noise(RawMesh mesh, double amplitude, std::uint32_t seed) {
     return mesh;
 }
 
-RawMesh with_face_order(const RawMesh& mesh, const std::vector<Index>& order) {
-    RawMesh result;
+mesh::RawMesh with_face_order(const mesh::RawMesh& mesh, const std::vector<Index>& order) {
+    mesh::RawMesh result;
     result.points = mesh.points;
     for (const Index f : order)
         result.faces.push_back(mesh.faces[at(f)]);

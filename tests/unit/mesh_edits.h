@@ -31,15 +31,15 @@ private:
     std::mt19937 generator_;
 };
 
-RawMesh join(const RawMesh& a, const RawMesh& b);
-RawMesh moved(RawMesh mesh, double scale, const Vec3& offset);
-RawMesh turned_over(RawMesh mesh);
+mesh::RawMesh join(const mesh::RawMesh& a, const mesh::RawMesh& b);
+mesh::RawMesh moved(mesh::RawMesh mesh, double scale, const Vec3& offset);
+mesh::RawMesh turned_over(mesh::RawMesh mesh);
 /// Every face is turned over with probability ½.
-RawMesh with_random_orientations(RawMesh mesh, std::uint32_t seed);
+mesh::RawMesh with_random_orientations(mesh::RawMesh mesh, std::uint32_t seed);
 /// Moves every vertex by up to `amplitude` along each axis.
-RawMesh with_noise(RawMesh mesh, double amplitude, std::uint32_t seed);
+mesh::RawMesh with_noise(mesh::RawMesh mesh, double amplitude, std::uint32_t seed);
 /// The same surface with its faces in another order: face i is face order[i] of `mesh`.
-RawMesh with_face_order(const RawMesh& mesh, const std::vector<Index>& order);
+mesh::RawMesh with_face_order(const mesh::RawMesh& mesh, const std::vector<Index>& order);
 std::vector<Index> random_order(std::size_t count, std::uint32_t seed);
 
 } // namespace devseg::shapes

@@ -7,7 +7,7 @@
 
 namespace devseg::samples {
 
-void Cloth::add(const RawMesh& part, const Place& place) {
+void Cloth::add(const mesh::RawMesh& part, const Place& place) {
     const Index offset = static_cast<Index>(host_.geometry.points.size());
     host_.geometry.points.insert(host_.geometry.points.end(), part.points.begin(),
                                  part.points.end());
@@ -23,11 +23,11 @@ void Cloth::add(const RawMesh& part, const Place& place) {
 }
 
 Mesh Cloth::mesh() const {
-    return gate_mesh(host_.geometry).mesh;
+    return mesh::gate_mesh(host_.geometry).mesh;
 }
 
 CornerUv Cloth::uv() const {
-    const GatedMesh gated = gate_mesh(host_.geometry);
+    const mesh::GatedMesh gated = mesh::gate_mesh(host_.geometry);
     CornerUv uv;
     for (Index f = 0; f < gated.mesh.face_count(); ++f)
         for (Index k = 0; k < 3; ++k)
@@ -36,9 +36,9 @@ CornerUv Cloth::uv() const {
     return uv;
 }
 
-Pattern Cloth::pattern(const PatternOptions& options) const {
+pattern::Pattern Cloth::pattern(const pattern::PatternOptions& options) const {
     Progress progress;
-    return make_pattern(mesh(), uv(), options, progress);
+    return pattern::make_pattern(mesh(), uv(), options, progress);
 }
 
 Vec2 flat(const Vec3& p) {

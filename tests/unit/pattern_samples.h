@@ -14,15 +14,15 @@ public:
     using Place = std::function<Vec2(const Vec3& corner, const Vec3& middle_of_face)>;
 
     /// Adds a mesh whose texture coordinates are `place` of each corner.
-    void add(const RawMesh& part, const Place& place);
+    void add(const mesh::RawMesh& part, const Place& place);
 
-    const HostMesh& host() const { return host_; }
+    const declare::HostMesh& host() const { return host_; }
     Mesh mesh() const;
     CornerUv uv() const; // of mesh()
-    Pattern pattern(const PatternOptions& options = {}) const;
+    pattern::Pattern pattern(const pattern::PatternOptions& options = {}) const;
 
 private:
-    HostMesh host_;
+    declare::HostMesh host_;
 };
 
 /// Flat on the table: x and y of a point.

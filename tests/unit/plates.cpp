@@ -7,7 +7,7 @@ namespace devseg::shapes {
 
 namespace {
 
-void add_square(RawMesh& mesh, Index a, Index b, Index c, Index d) {
+void add_square(mesh::RawMesh& mesh, Index a, Index b, Index c, Index d) {
     mesh.faces.push_back({a, b, c});
     mesh.faces.push_back({a, c, d});
 }
@@ -15,7 +15,7 @@ void add_square(RawMesh& mesh, Index a, Index b, Index c, Index d) {
 // Points by their position on a lattice, each made once.
 class Lattice {
 public:
-    explicit Lattice(RawMesh& mesh) : mesh_(mesh) {}
+    explicit Lattice(mesh::RawMesh& mesh) : mesh_(mesh) {}
     Index operator()(Index x, Index y, Index z) {
         const auto [place, added] =
             index_.try_emplace({x, y, z}, static_cast<Index>(mesh_.points.size()));
@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    RawMesh& mesh_;
+    mesh::RawMesh& mesh_;
     std::map<std::array<Index, 3>, Index> index_;
 };
 
@@ -44,8 +44,8 @@ void for_each_cell(const Mask& mask, Visit visit) {
 
 } // namespace
 
-RawMesh grid(Index columns, Index rows, double width, double height) {
-    RawMesh mesh;
+mesh::RawMesh grid(Index columns, Index rows, double width, double height) {
+    mesh::RawMesh mesh;
     for (Index y = 0; y <= rows; ++y)
         for (Index x = 0; x <= columns; ++x)
             mesh.points.emplace_back(width * x / columns, height * y / rows, 0.0);
@@ -57,8 +57,8 @@ RawMesh grid(Index columns, Index rows, double width, double height) {
     return mesh;
 }
 
-RawMesh plate(const Mask& mask) {
-    RawMesh mesh;
+mesh::RawMesh plate(const Mask& mask) {
+    mesh::RawMesh mesh;
     Lattice point(mesh);
     for_each_cell(mask, [&](Index x, Index y) {
         add_square(mesh, point(x, y, 0), point(x + 1, y, 0), point(x + 1, y + 1, 0),
@@ -67,8 +67,8 @@ RawMesh plate(const Mask& mask) {
     return mesh;
 }
 
-RawMesh slab(const Mask& mask) {
-    RawMesh mesh;
+mesh::RawMesh slab(const Mask& mask) {
+    mesh::RawMesh mesh;
     Lattice point(mesh);
     for_each_cell(mask, [&](Index x, Index y) {
         const auto p = [&](Index dx, Index dy, Index z) { return point(x + dx, y + dy, z); };
@@ -93,13 +93,13 @@ Mask mask_with_holes(Index holes) {
     return mask;
 }
 
-RawMesh double_torus() {
+mesh::RawMesh double_torus() {
     return slab(mask_with_holes(2));
 }
 
-RawMesh cube(Index cells) {
+mesh::RawMesh cube(Index cells) {
     // Six grids over a lattice of the surface, so that they share the points on their borders.
-    RawMesh mesh;
+    mesh::RawMesh mesh;
     Lattice point(mesh);
     for (Index axis = 0; axis < 3; ++axis)
         for (Index side = 0; side < 2; ++side)
@@ -119,9 +119,9 @@ RawMesh cube(Index cells) {
     return mesh;
 }
 
-RawMesh plate_with_handle() {
+mesh::RawMesh plate_with_handle() {
     const Mask mask = {"############", "#.#.#.###.##", "############"};
-    RawMesh mesh = plate(mask);
+    mesh::RawMesh mesh = plate(mask);
     constexpr Index steps = 6;
     constexpr double middle = 7.5; // x halfway between the holes that the tube joins
     const auto find = [&](const Vec3& p) {

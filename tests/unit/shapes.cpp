@@ -9,7 +9,7 @@ namespace devseg::shapes {
 
 namespace {
 
-void add_square(RawMesh& mesh, Index a, Index b, Index c, Index d) {
+void add_square(mesh::RawMesh& mesh, Index a, Index b, Index c, Index d) {
     mesh.faces.push_back({a, b, c});
     mesh.faces.push_back({a, c, d});
 }
@@ -25,8 +25,8 @@ std::vector<Vec2> arc(Index steps, double from, double to, const Vec2& centre, d
 
 } // namespace
 
-RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed) {
-    RawMesh mesh;
+mesh::RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed) {
+    mesh::RawMesh mesh;
     std::vector<std::vector<Index>> rings;
     for (const Vec2& p : profile) {
         std::vector<Index> ring;
@@ -59,14 +59,14 @@ RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed) {
     return mesh;
 }
 
-RawMesh cylinder_tube(Index around, Index along, double radius, double height) {
+mesh::RawMesh cylinder_tube(Index around, Index along, double radius, double height) {
     std::vector<Vec2> profile;
     for (Index i = 0; i <= along; ++i)
         profile.emplace_back(radius, height * i / along);
     return revolve(profile, around);
 }
 
-RawMesh capped_cylinder(Index around, Index along, double radius, double height) {
+mesh::RawMesh capped_cylinder(Index around, Index along, double radius, double height) {
     std::vector<Vec2> profile{{0.0, 0.0}, {0.5 * radius, 0.0}};
     for (Index i = 0; i <= along; ++i)
         profile.emplace_back(radius, height * i / along);
@@ -75,31 +75,31 @@ RawMesh capped_cylinder(Index around, Index along, double radius, double height)
     return revolve(profile, around);
 }
 
-RawMesh cone(Index around, Index along, double radius, double height) {
+mesh::RawMesh cone(Index around, Index along, double radius, double height) {
     return frustum(around, along, radius, 0.0, height);
 }
 
-RawMesh frustum(Index around, Index along, double radius, double top, double height) {
+mesh::RawMesh frustum(Index around, Index along, double radius, double top, double height) {
     std::vector<Vec2> profile;
     for (Index i = 0; i <= along; ++i)
         profile.emplace_back((radius * (along - i) + top * i) / along, height * i / along);
     return revolve(profile, around);
 }
 
-RawMesh annulus(Index around, Index rings, double inner, double outer) {
+mesh::RawMesh annulus(Index around, Index rings, double inner, double outer) {
     std::vector<Vec2> profile;
     for (Index i = 0; i <= rings; ++i)
         profile.emplace_back(outer + (inner - outer) * i / rings, 0.0);
     return revolve(profile, around);
 }
 
-RawMesh hemisphere(Index around, Index rings) {
+mesh::RawMesh hemisphere(Index around, Index rings) {
     std::vector<Vec2> profile = arc(rings, 0.0, 0.5 * pi, Vec2::Zero(), 1.0);
     profile.back().x() = 0.0;
     return revolve(profile, around);
 }
 
-RawMesh finger(Index around, Index along, double radius, double length) {
+mesh::RawMesh finger(Index around, Index along, double radius, double length) {
     std::vector<Vec2> profile;
     for (Index i = 0; i <= along; ++i)
         profile.emplace_back(radius, length * i / along);
@@ -107,15 +107,15 @@ RawMesh finger(Index around, Index along, double radius, double length) {
     return revolve(profile, around);
 }
 
-RawMesh torus(Index around, Index tube, double large, double small) {
+mesh::RawMesh torus(Index around, Index tube, double large, double small) {
     std::vector<Vec2> profile = arc(tube, 0.0, 2.0 * pi, Vec2(large, 0.0), small);
     profile.pop_back();
     return revolve(profile, around, true);
 }
 
-RawMesh sphere(Index subdivisions) {
+mesh::RawMesh sphere(Index subdivisions) {
     const double g = 0.5 * (1.0 + std::sqrt(5.0));
-    RawMesh mesh;
+    mesh::RawMesh mesh;
     mesh.points = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                    {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
     mesh.faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
@@ -147,13 +147,13 @@ RawMesh sphere(Index subdivisions) {
     return mesh;
 }
 
-RawMesh tetrahedron() {
+mesh::RawMesh tetrahedron() {
     return {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
             {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
 }
 
-RawMesh moebius_strip(Index around, Index across) {
-    RawMesh mesh;
+mesh::RawMesh moebius_strip(Index around, Index across) {
+    mesh::RawMesh mesh;
     for (Index i = 0; i < around; ++i)
         for (Index j = 0; j <= across; ++j) {
             const double t = 2.0 * pi * i / around;
@@ -171,8 +171,8 @@ RawMesh moebius_strip(Index around, Index across) {
     return mesh;
 }
 
-RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise) {
-    RawMesh mesh;
+mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise) {
+    mesh::RawMesh mesh;
     for (Index i = 0; i <= steps; ++i) {
         const double t = 2.0 * pi * turns * i / steps;
         for (const double r : {outer, inner})
@@ -183,8 +183,8 @@ RawMesh helix_strip(Index steps, double turns, double inner, double outer, doubl
     return mesh;
 }
 
-RawMesh folded_strip(Index folds, Index rows, double angle) {
-    RawMesh mesh = grid(folds, rows);
+mesh::RawMesh folded_strip(Index folds, Index rows, double angle) {
+    mesh::RawMesh mesh = grid(folds, rows);
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
     for (Index i = 0; i <= folds; ++i) {
         const Vec3 bottom(0.3 * i, 0.0, 0.0);

@@ -13,43 +13,43 @@ namespace devseg::shapes {
 constexpr double pi = 3.14159265358979323846;
 
 /// width × height in the plane z = 0, cut into columns × rows squares of two triangles.
-RawMesh grid(Index columns, Index rows, double width = 1.0, double height = 1.0);
+mesh::RawMesh grid(Index columns, Index rows, double width = 1.0, double height = 1.0);
 
 /// Rows of '#' (cell) and '.' (hole), unit cells; the first row is the lowest. A cell of a plate
 /// is a square; a cell of a slab is a cube, so that a slab is closed and its holes are handles.
 using Mask = std::vector<std::string>;
-RawMesh plate(const Mask& mask);
-RawMesh slab(const Mask& mask);
+mesh::RawMesh plate(const Mask& mask);
+mesh::RawMesh slab(const Mask& mask);
 /// A row of `holes` holes with a frame of one cell around them.
 Mask mask_with_holes(Index holes);
 
 /// The profile (radius, height) turned around the z axis. A radius of 0 is an apex and may be at
 /// the ends only. A closed profile joins its end to its start.
-RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed = false);
+mesh::RawMesh revolve(const std::vector<Vec2>& profile, Index around, bool closed = false);
 
-RawMesh cylinder_tube(Index around, Index along, double radius = 1.0, double height = 2.0);
-RawMesh capped_cylinder(Index around, Index along, double radius = 1.0, double height = 2.0);
-RawMesh cone(Index around, Index along, double radius = 1.0, double height = 2.0); // no base
-RawMesh frustum(Index around, Index along, double radius, double top, double height);
-RawMesh annulus(Index around, Index rings, double inner, double outer);
-RawMesh hemisphere(Index around, Index rings);
+mesh::RawMesh cylinder_tube(Index around, Index along, double radius = 1.0, double height = 2.0);
+mesh::RawMesh capped_cylinder(Index around, Index along, double radius = 1.0, double height = 2.0);
+mesh::RawMesh cone(Index around, Index along, double radius = 1.0, double height = 2.0); // no base
+mesh::RawMesh frustum(Index around, Index along, double radius, double top, double height);
+mesh::RawMesh annulus(Index around, Index rings, double inner, double outer);
+mesh::RawMesh hemisphere(Index around, Index rings);
 /// A tube, closed at one end by an apex.
-RawMesh finger(Index around, Index along, double radius, double length);
-RawMesh torus(Index around, Index tube, double large = 2.0, double small = 1.0);
-RawMesh double_torus();             // a slab with two holes
-RawMesh sphere(Index subdivisions); // icosphere of radius 1
-RawMesh cube(Index cells);          // of side 1, each face cells × cells squares
-RawMesh tetrahedron();
-RawMesh moebius_strip(Index around, Index across = 1);
+mesh::RawMesh finger(Index around, Index along, double radius, double length);
+mesh::RawMesh torus(Index around, Index tube, double large = 2.0, double small = 1.0);
+mesh::RawMesh double_torus();             // a slab with two holes
+mesh::RawMesh sphere(Index subdivisions); // icosphere of radius 1
+mesh::RawMesh cube(Index cells);          // of side 1, each face cells × cells squares
+mesh::RawMesh tetrahedron();
+mesh::RawMesh moebius_strip(Index around, Index across = 1);
 /// A plate with two holes, and a bent tube on it that joins two more: three loops and a handle.
-RawMesh plate_with_handle();
+mesh::RawMesh plate_with_handle();
 
 /// A strip that winds around the z axis like a spiral staircase: laid flat, it runs over itself
 /// where it makes more than one turn.
-RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise);
+mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise);
 
 /// A strip of paper, folded by the same angle (radians) along rulings whose direction varies: a
 /// tangent developable, built from its development.
-RawMesh folded_strip(Index folds, Index rows, double angle);
+mesh::RawMesh folded_strip(Index folds, Index rows, double angle);
 
 } // namespace devseg::shapes

@@ -8,7 +8,7 @@
 
 #include "devseg/atlas/join_loops.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 
@@ -74,4 +74,4 @@ void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,
         seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

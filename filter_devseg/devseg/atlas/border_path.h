@@ -3,7 +3,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// Factor of an edge's length: 1 on a smooth surface, down to 0.1 on a right-angled crease, where
 /// a cut is not seen and does not cost shape.
@@ -18,4 +18,4 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
 void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,
                std::vector<std::uint8_t>& seam);
 
-} // namespace devseg
+} // namespace devseg::atlas

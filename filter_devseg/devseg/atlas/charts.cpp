@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 
@@ -59,7 +59,7 @@ ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
     const auto same_label = [&](Index h) {
         return labels[at(h / 3)] == labels[at(mesh.twin[at(h)] / 3)];
     };
-    FaceComponents parts = face_components(
+    mesh::FaceComponents parts = mesh::face_components(
         mesh, [&](Index h) { return same_label(h) && !(split_at_seams && is_cut(h)); });
     ChartMap result;
     result.chart = std::move(parts.label);
@@ -198,8 +198,8 @@ Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
     part.faces = surface.corners;
     part.twin = surface.twin;
     part.unit_length = mesh.unit_length;
-    compute_face_geometry(part);
+    mesh::compute_face_geometry(part);
     return part;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -6,7 +6,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// A segmentation with its cuts. `seam` is symmetric: a half-edge and its twin agree. Edges
 /// between two charts are always seams; further ones are darts, slits and cuts to a disk.
@@ -77,4 +77,4 @@ std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& chart
 /// The surface as a mesh of its own, cut open along its seams; faces and vertices keep their order.
 Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface);
 
-} // namespace devseg
+} // namespace devseg::atlas

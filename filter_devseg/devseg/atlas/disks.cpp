@@ -10,10 +10,9 @@
 #include "devseg/atlas/handle_cutter.h"
 #include "devseg/atlas/join_loops.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
-
 
 // Shortest paths along edges to the only boundary loop, or to a root where there is none.
 struct PathForest {
@@ -324,4 +323,4 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress&
     return cut_charts_to_disks(mesh, charts, {false, {}}, progress);
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

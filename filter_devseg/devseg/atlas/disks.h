@@ -9,11 +9,11 @@
 //           (loops through handles first, then joining; tips)
 #pragma once
 
-#include "devseg/atlas/tips.h"
 #include "devseg/atlas/charts.h"
+#include "devseg/atlas/tips.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 struct DiskOptions {
     bool cut_tips = true; // cut up to tips as well
@@ -47,4 +47,4 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
 /// The same without cuts to tips: charts that are disks are left as they are.
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -6,7 +6,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& 
     return make_chart_map(mesh, pieces.chart, {}, false).chart;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -5,7 +5,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// Gives edge-connected pieces of a label that are smaller than `share` of the surface to the
 /// neighbour with the longest common border, the smallest piece first. Pieces without neighbours
@@ -13,4 +13,4 @@ namespace devseg {
 std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& label,
                                     double share);
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -4,7 +4,7 @@
 #include <queue>
 #include <tuple>
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 
@@ -249,4 +249,4 @@ std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
     return fronts.take_cuts();
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -10,7 +10,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// Half-edges (local, one for each edge) of one loop for each handle: cut open along them, the
 /// chart has no handle left, and hangs together. A region grows from one face and keeps its
@@ -19,4 +19,4 @@ namespace devseg {
 std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
                                const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::atlas

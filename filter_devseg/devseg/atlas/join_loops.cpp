@@ -6,7 +6,7 @@
 #include <queue>
 #include <utility>
 
-namespace devseg {
+namespace devseg::atlas {
 
 VertexEdges::VertexEdges(const ChartSurface& surface) : begin_(at(surface.vertex_count()) + 1, 0) {
     const auto each = [&](auto visit) {
@@ -35,8 +35,7 @@ namespace {
 class LoopJoiner {
 public:
     LoopJoiner(const Mesh& mesh, const ChartSurface& surface)
-        : mesh_(mesh), s_(surface), edges_(surface),
-          distance_(surface.vertex.size(), infinite),
+        : mesh_(mesh), s_(surface), edges_(surface), distance_(surface.vertex.size(), infinite),
           toward_(surface.vertex.size(), -1), open_loop_(surface.vertex.size(), -1) {
         for (std::size_t l = 0; l < s_.loops.size(); ++l)
             for (const Index h : s_.loops[l])
@@ -121,4 +120,4 @@ std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
     return LoopJoiner(mesh, surface).run(progress);
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

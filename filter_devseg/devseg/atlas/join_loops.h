@@ -6,7 +6,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// Half-edges (local, one for each edge) of cuts that join all boundary loops into one. Starting
 /// from the longest loop, the nearest loop is joined by a shortest path to all that is joined
@@ -29,4 +29,4 @@ private:
 
 double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vector<Index>& loop);
 
-} // namespace devseg
+} // namespace devseg::atlas

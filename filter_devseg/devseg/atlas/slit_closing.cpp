@@ -7,7 +7,7 @@
 
 #include "devseg/mesh/angle_defects.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 std::vector<Index> cut_edges_at_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
     std::vector<Index> edges(mesh.points.size(), 0);
@@ -21,8 +21,8 @@ std::vector<Index> cut_edges_at_vertices(const Mesh& mesh, const std::vector<std
 
 ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, double threshold,
                         std::vector<std::uint8_t>& seam) {
-    const std::vector<Index> leaving = leaving_half_edges(mesh);
-    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
+    const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
+    const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh);
     std::vector<Index> edges = cut_edges_at_vertices(mesh, seam);
     std::vector<double> defect = cost;                  // with all that was closed up to here
     std::vector<double> spent(mesh.points.size(), 0.0); // E_s of what was closed up to here
@@ -31,7 +31,7 @@ ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, doubl
         tips;
     const auto cut_edge = [&](Index v) {
         Index cut = -1;
-        visit_star(mesh, leaving[at(v)], [&](Index h) { cut = seam[at(h)] != 0 ? h : cut; });
+        mesh::visit_star(mesh, leaving[at(v)], [&](Index h) { cut = seam[at(h)] != 0 ? h : cut; });
         return cut;
     };
     const auto offer = [&](Index v) {
@@ -67,4 +67,4 @@ ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, doubl
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -10,7 +10,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 struct ClosedSlits {
     Index closed_edges = 0;
@@ -30,4 +30,4 @@ ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, doubl
 /// Cut edges at each vertex (#V); the mesh's own boundary does not count.
 std::vector<Index> cut_edges_at_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam);
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 // Writers of texture coordinates round to 6 digits: smaller differences are no seams.
@@ -58,8 +58,8 @@ double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv
         return all_surface / all_plane;
     double area = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f)
-        area += std::abs(uv_area(uv, f));
+        area += std::abs(plane::uv_area(uv, f));
     return area > 0.0 ? std::sqrt(mesh.total_area / area) : 0.0;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

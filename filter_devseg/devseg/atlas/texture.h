@@ -6,7 +6,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// Charts and cuts as texture coordinates show them: an edge is a seam where the coordinates on
 /// its two sides differ by more than a millionth of the size of the whole layout.
@@ -17,4 +17,4 @@ ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv);
 /// theirs; otherwise the one that gives the layout the surface's area. 0 for a layout without area.
 double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv);
 
-} // namespace devseg
+} // namespace devseg::atlas

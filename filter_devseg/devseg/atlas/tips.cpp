@@ -7,7 +7,7 @@
 
 #include "devseg/atlas/join_loops.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 namespace {
 
@@ -115,4 +115,4 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
     return tips;
 }
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -10,7 +10,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::atlas {
 
 /// A tip is the vertex farthest from the boundary, if it is at least as far away as the boundary is
 /// long [YGZS05], or the farthest one of a horn: a part of the chart that a loop of equal distance
@@ -25,4 +25,4 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
                              const std::vector<double>& distance, const TipRule& rule,
                              const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::atlas

@@ -26,8 +26,7 @@ inline void check_range(const char* name, double value, double low, double high,
 inline void check_charts_number(Index faces, int charts_number) {
     if (charts_number < 1 || charts_number > faces)
         refuse_option("charts_number",
-                      "a number from 1 to " + std::to_string(faces) +
-                          " (the number of faces)",
+                      "a number from 1 to " + std::to_string(faces) + " (the number of faces)",
                       charts_number);
 }
 

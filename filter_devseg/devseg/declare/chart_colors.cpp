@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-namespace devseg {
+namespace devseg::declare {
 
 namespace {
 
@@ -27,7 +27,7 @@ constexpr std::array<Color, 14> palette{{{{119, 170, 221}},
 
 } // namespace
 
-std::vector<Color> chart_colors(const Mesh& mesh, const ChartMap& charts) {
+std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
     const std::size_t count = at(charts.count);
     std::vector<std::set<Index>> neighbours(count);
     std::vector<double> area(count, 0.0);
@@ -62,7 +62,7 @@ std::vector<Color> chart_colors(const Mesh& mesh, const ChartMap& charts) {
     return colors;
 }
 
-std::vector<Color> face_chart_colors(const Mesh& mesh, const ChartMap& charts) {
+std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
     const std::vector<Color> colors = chart_colors(mesh, charts);
     std::vector<Color> result;
     result.reserve(charts.chart.size());
@@ -71,4 +71,4 @@ std::vector<Color> face_chart_colors(const Mesh& mesh, const ChartMap& charts) {
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::declare

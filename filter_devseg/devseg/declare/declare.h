@@ -10,7 +10,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/declare/filter.h"
 
-namespace devseg {
+namespace devseg::declare {
 
 /// The options of filters without parameters.
 struct NoOptions {};
@@ -134,4 +134,4 @@ private:
     std::vector<std::function<void(Options&, const ParameterValue&)>> setters_;
 };
 
-} // namespace devseg
+} // namespace devseg::declare

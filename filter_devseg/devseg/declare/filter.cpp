@@ -5,15 +5,15 @@
 #include <memory>
 #include <utility>
 
-#include "devseg/base/worker.h"
 #include "devseg/base/errors.h"
+#include "devseg/base/worker.h"
 #include "devseg/mesh/weld.h"
 
-namespace devseg {
+namespace devseg::declare {
 
 namespace {
 
-std::optional<ChartMap> read_charts(const HostMesh& host, const GatedMesh& gated) {
+std::optional<atlas::ChartMap> read_charts(const HostMesh& host, const mesh::GatedMesh& gated) {
     if (host.chart_id.empty() && host.seam_edges.empty())
         return std::nullopt;
     const Mesh& mesh = gated.mesh;
@@ -40,7 +40,7 @@ std::optional<ChartMap> read_charts(const HostMesh& host, const GatedMesh& gated
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         if (mesh.twin[at(h)] >= 0 && seam[at(h)] != 0)
             seam[at(mesh.twin[at(h)])] = 1;
-    return make_chart_map(mesh, labels, seam, true);
+    return atlas::make_chart_map(mesh, labels, seam, true);
 }
 
 // Hosts keep texture coordinates in 32 bits, where larger numbers are infinite.
@@ -49,7 +49,7 @@ bool is_coordinate(const Vec2& p) {
 }
 
 // Broken texture coordinates only matter to filters that need them.
-std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bool needed) {
+std::optional<CornerUv> read_uv(const HostMesh& host, const mesh::GatedMesh& gated, bool needed) {
     if (host.wedge_uv.empty())
         return std::nullopt;
     CornerUv uv(3 * gated.mesh.faces.size());
@@ -71,7 +71,7 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const GatedMesh& gated, bo
 
 // What the host has for each of its faces, for those behind the gate.
 template <class Value>
-std::vector<Value> of_faces(const std::vector<Value>& source, const GatedMesh& gated) {
+std::vector<Value> of_faces(const std::vector<Value>& source, const mesh::GatedMesh& gated) {
     std::vector<Value> values;
     if (!source.empty())
         for (const Index f : gated.source_face)
@@ -80,7 +80,7 @@ std::vector<Value> of_faces(const std::vector<Value>& source, const GatedMesh& g
 }
 
 // Bits of the source face's cut edges; edges that the gate had to cut are seams as well.
-int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
+int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, Index f) {
     int bits = 0;
     for (Index e = 0; e < 3; ++e)
         if (charts.seam[at(3 * f + e)] != 0 || gated.cut[at(3 * f + e)] != 0)
@@ -89,7 +89,7 @@ int seam_bits(const GatedMesh& gated, const ChartMap& charts, Index f) {
 }
 
 // Where the vertices have moved to; those that no face uses stay.
-std::vector<Vec3> moved_points(const HostMesh& host, const GatedMesh& gated,
+std::vector<Vec3> moved_points(const HostMesh& host, const mesh::GatedMesh& gated,
                                const std::vector<Vec3>& points) {
     std::vector<Vec3> moved = host.geometry.points;
     for (std::size_t v = 0; v < points.size(); ++v) {
@@ -100,7 +100,7 @@ std::vector<Vec3> moved_points(const HostMesh& host, const GatedMesh& gated,
     return moved;
 }
 
-HostResult map_back(const HostMesh& host, const GatedMesh& gated, FilterOutput output) {
+HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOutput output) {
     HostResult result;
     if (output.points)
         result.points = moved_points(host, gated, *output.points);
@@ -130,13 +130,13 @@ HostResult map_back(const HostMesh& host, const GatedMesh& gated, FilterOutput o
 }
 
 // The mesh with borders joined that lie on each other.
-GatedMesh gate_joined(const RawMesh& raw, const Progress& progress) {
+mesh::GatedMesh gate_joined(const mesh::RawMesh& raw, const Progress& progress) {
     for (const Triangle& t : raw.faces)
         for (const Index v : t)
             if (v < 0 || at(v) >= raw.points.size())
-                return gate_mesh(raw, progress); // which says what is wrong
-    const WeldedMesh welded = weld_borders(raw);
-    GatedMesh gated = gate_mesh(welded.mesh, progress);
+                return mesh::gate_mesh(raw, progress); // which says what is wrong
+    const mesh::WeldedMesh welded = mesh::weld_borders(raw);
+    mesh::GatedMesh gated = mesh::gate_mesh(welded.mesh, progress);
     if (welded.edges > 0)
         gated.notes.push_back(std::to_string(welded.edges) +
                               (welded.edges == 1 ? " border edge lies" : " border edges lie") +
@@ -158,8 +158,8 @@ struct FilterRun {
 
 void FilterRun::operator()(Progress& progress) {
     progress.begin_phase("reading the mesh", 0.0);
-    const GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
-                                                 : gate_mesh(host.geometry, progress);
+    const mesh::GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
+                                                       : mesh::gate_mesh(host.geometry, progress);
     progress.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),
@@ -195,4 +195,4 @@ HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const Para
     return std::move(run->result);
 }
 
-} // namespace devseg
+} // namespace devseg::declare

@@ -11,12 +11,12 @@
 #include <variant>
 #include <vector>
 
-#include "devseg/declare/layer_mesh.h"
 #include "devseg/atlas/charts.h"
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
+#include "devseg/declare/layer_mesh.h"
 
-namespace devseg {
+namespace devseg::declare {
 
 enum class ParameterKind { boolean, integer, real, choice, text, output_file };
 // A choice is the int of its position, texts and file names are UTF-8.
@@ -59,7 +59,7 @@ enum Writes : unsigned {
 /// What filters see of a mesh: checked, in internal units.
 struct FilterInput {
     const Mesh& mesh;
-    std::optional<ChartMap> charts;          // from chart_id and seam_edges, if the mesh has them
+    std::optional<atlas::ChartMap> charts;   // from chart_id and seam_edges, if the mesh has them
     std::optional<CornerUv> uv;              // wedge texture coordinates, if the mesh has them
     const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
     const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
@@ -74,7 +74,7 @@ struct FilterInput {
 };
 
 struct FilterOutput {
-    std::optional<ChartMap> charts;
+    std::optional<atlas::ChartMap> charts;
     std::optional<std::vector<double>> face_quality; // #F
     std::optional<std::vector<Color>> face_color;    // #F
     std::optional<CornerUv> uv;
@@ -104,7 +104,7 @@ const std::vector<FilterDeclaration>& filter_table();
 
 /// A mesh as a host has it; per-face data is for all faces or empty.
 struct HostMesh {
-    RawMesh geometry;
+    mesh::RawMesh geometry;
     std::vector<double> chart_id;
     std::vector<double> seam_edges; // bits 1, 2, 4
     std::vector<std::array<Vec2, 3>> wedge_uv;
@@ -131,4 +131,4 @@ struct HostResult {
 HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
                       Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::declare

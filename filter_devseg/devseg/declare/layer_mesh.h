@@ -9,17 +9,17 @@
 
 #include "devseg/mesh/input_gate.h"
 
-namespace devseg {
+namespace devseg::declare {
 
 using Color = std::array<std::uint8_t, 3>; // red, green, blue
 
 /// A mesh of its own, in model units or millimetres as the filter says.
 struct LayerMesh {
     std::string name;
-    RawMesh geometry;
+    mesh::RawMesh geometry;
     std::vector<Color> face_color;                                         // #F
     std::vector<double> face_quality;                                      // #F
     std::vector<std::pair<std::string, std::vector<int>>> face_attributes; // by name, #F each
 };
 
-} // namespace devseg
+} // namespace devseg::declare

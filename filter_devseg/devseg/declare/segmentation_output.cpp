@@ -5,19 +5,19 @@
 #include "devseg/declare/chart_colors.h"
 #include "devseg/metrics/segmentation.h"
 
-namespace devseg {
+namespace devseg::declare {
 
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
-                                 std::vector<double> face_quality, const DiskOptions& options,
-                                 Progress& progress) {
+                                 std::vector<double> face_quality,
+                                 const atlas::DiskOptions& options, Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.1);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, make_chart_map(input.mesh, labels, {}, false),
-                                        options, progress);
+    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(
+        input.mesh, atlas::make_chart_map(input.mesh, labels, {}, false), options, progress);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
         {"cut_length", cuts.cut_length * input.mesh.unit_length},
-        {"seam_length", seam_length(input.mesh, cuts.charts)},
+        {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
     output.face_color = face_chart_colors(input.mesh, cuts.charts);
     output.face_quality = std::move(face_quality);
@@ -25,4 +25,4 @@ FilterOutput segmentation_output(const FilterInput& input, const std::vector<Ind
     return output;
 }
 
-} // namespace devseg
+} // namespace devseg::declare

@@ -4,7 +4,7 @@
 
 #include "devseg/mesh/angle_defects.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 namespace {
 
@@ -14,12 +14,12 @@ constexpr double full_angle = 2.0 * pi;
 
 AngleConstraints::AngleConstraints(const Mesh& mesh, const std::vector<Index>& vertices,
                                    const std::vector<Index>& point_of) {
-    const std::vector<Index> leaving = leaving_half_edges(mesh);
+    const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
     begin_.push_back(0);
     for (const Index v : vertices) {
         point_.push_back(point_of[at(v)]);
-        visit_star(mesh, leaving[at(v)],
-                   [&](Index h) { point_.push_back(point_of[at(mesh.target(h))]); });
+        mesh::visit_star(mesh, leaving[at(v)],
+                         [&](Index h) { point_.push_back(point_of[at(mesh.target(h))]); });
         begin_.push_back(static_cast<Index>(point_.size()));
     }
     gradient_.assign(point_.size(), Vec3::Zero());
@@ -76,8 +76,8 @@ double AngleConstraints::defect(Index r, const std::vector<Vec3>& points) const 
     const Vec3& centre = points[at(point_[at(first - 1)])];
     double value = full_angle;
     for (Index e = first; e < last; ++e)
-        value -= corner_angle(centre, points[at(point_[at(e)])],
-                              points[at(point_[at(e + 1 < last ? e + 1 : first)])]);
+        value -= mesh::corner_angle(centre, points[at(point_[at(e)])],
+                                    points[at(point_[at(e + 1 < last ? e + 1 : first)])]);
     return value;
 }
 
@@ -145,4 +145,4 @@ std::vector<Vec3> AngleConstraints::displacement(const std::vector<double>& mobi
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::develop

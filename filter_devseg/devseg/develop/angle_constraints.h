@@ -15,7 +15,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 using Normal = Eigen::SparseMatrix<double>;
 
@@ -66,4 +66,4 @@ private:
     Normal normal_;
 };
 
-} // namespace devseg
+} // namespace devseg::develop

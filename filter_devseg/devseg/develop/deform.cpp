@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "devseg/atlas/border_path.h"
+#include "devseg/atlas/slit_closing.h"
+#include "devseg/base/errors.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/develop/projection.h"
-#include "devseg/base/errors.h"
 #include "devseg/mesh/angle_defects.h"
-#include "devseg/atlas/slit_closing.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 namespace {
 
@@ -35,9 +35,9 @@ constexpr double most_inner_defect = 0.5; // radians: more is not taken inside o
 } // namespace
 
 std::vector<Index> inner_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
-    const std::vector<Index> cuts = cut_edges_at_vertices(mesh, seam);
-    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
-    const std::vector<Index> leaving = leaving_half_edges(mesh);
+    const std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh, seam);
+    const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh);
+    const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
     std::vector<Index> inner;
     for (Index v = 0; v < mesh.vertex_count(); ++v)
         if (leaving[at(v)] >= 0 && boundary[at(v)] == 0 && cuts[at(v)] == 0)
@@ -49,10 +49,10 @@ namespace {
 
 class Deformation {
 public:
-    Deformation(const Mesh& mesh, const ChartMap& charts, const std::vector<Index>& point_of,
+    Deformation(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<Index>& point_of,
                 const DeformOptions& options, const std::vector<double>& ease)
         : mesh_(mesh), point_of_(point_of), options_(options), projection_(mesh, point_of, ease),
-          leaving_(leaving_half_edges(mesh)) {
+          leaving_(mesh::leaving_half_edges(mesh)) {
         result_.charts = charts;
         constrain_all();
         result_.start_residual = projection_.residual();
@@ -90,9 +90,9 @@ private:
         Mesh now = mesh_;
         for (std::size_t v = 0; v < now.points.size(); ++v)
             now.points[v] = projection_.points()[at(point_of_[v])];
-        const std::vector<double> defect = angle_defects(now);
-        const std::vector<std::uint8_t> boundary = boundary_vertices(mesh_);
-        std::vector<Index> cuts = cut_edges_at_vertices(mesh_, result_.charts.seam);
+        const std::vector<double> defect = mesh::angle_defects(now);
+        const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh_);
+        std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         std::vector<std::uint8_t>& seam = result_.charts.seam;
         const Index closed_before = result_.closed_edges;
         kept_open_.resize(mesh_.points.size(), 0);
@@ -101,8 +101,8 @@ private:
                 !(defect[at(v)] < -options_.tolerance) || defect[at(v)] < -most_inner_defect)
                 continue;
             Index edge = -1;
-            visit_star(mesh_, leaving_[at(v)],
-                       [&](Index h) { edge = seam[at(h)] != 0 ? h : edge; });
+            mesh::visit_star(mesh_, leaving_[at(v)],
+                             [&](Index h) { edge = seam[at(h)] != 0 ? h : edge; });
             const Index other = mesh_.target(edge);
             if (boundary[at(other)] == 0 && cuts[at(other)] == 1)
                 continue; // the last cut of a closed chart
@@ -236,8 +236,8 @@ private:
                 worst.emplace_back(-std::abs(defects[r]), rows_[at(r)]);
         std::sort(worst.begin(), worst.end());
         worst.resize(std::min(worst.size(), most));
-        std::vector<std::uint8_t> on_border = boundary_vertices(mesh_);
-        const std::vector<Index> cuts = cut_edges_at_vertices(mesh_, result_.charts.seam);
+        std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh_);
+        const std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         for (std::size_t v = 0; v < cuts.size(); ++v)
             on_border[v] = on_border[v] != 0 || cuts[v] > 0;
         std::vector<std::uint8_t> relieved(mesh_.points.size(), 0);
@@ -248,8 +248,8 @@ private:
             ++result_.added_slits;
             any = true;
             if (least < most_inner_defect)
-                visit_star(mesh_, leaving_[at(v)],
-                           [&](Index h) { relieved[at(mesh_.target(h))] = 1; });
+                mesh::visit_star(mesh_, leaving_[at(v)],
+                                 [&](Index h) { relieved[at(mesh_.target(h))] = 1; });
         }
         if (any)
             constrain_all();
@@ -263,8 +263,8 @@ private:
         for (Index f = 0; f < mesh_.face_count(); ++f)
             if (chart[at(f)] == chart[at(leaving_[at(v)] / 3)])
                 faces.push_back(f);
-        const std::vector<Index> path = path_to_border(mesh_, faces, result_.charts.seam, v);
-        mark_cuts(mesh_, path, result_.charts.seam);
+        const std::vector<Index> path = atlas::path_to_border(mesh_, faces, result_.charts.seam, v);
+        atlas::mark_cuts(mesh_, path, result_.charts.seam);
         for (const Index h : path)
             on_border[at(mesh_.origin(h))] = on_border[at(mesh_.target(h))] = 1;
         return !path.empty();
@@ -276,7 +276,7 @@ private:
     Projection projection_;
     std::vector<Index> rows_; // vertices of the projection's rows
     std::size_t all_rows_ = 0;
-    double effort_ = 0.0; // rounds; those with a part of the rows count by that part
+    double effort_ = 0.0;             // rounds; those with a part of the rows count by that part
     double late_residual_ = infinite; // at the last late look
     std::vector<Index> leaving_;
     bool focused_ = false;                // whether these are a part of all inner vertices
@@ -323,7 +323,7 @@ void check(const DeformResult& result, const DeformOptions& options) {
 
 } // namespace
 
-DeformResult deform_to_developable(const Mesh& mesh, const ChartMap& charts,
+DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& charts,
                                    const std::vector<Index>& point_of, const DeformOptions& options,
                                    Progress& progress) {
     if (options.max_iterations < 1)
@@ -365,4 +365,4 @@ DeformResult deform_to_developable(const Mesh& mesh, const ChartMap& charts,
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::develop

@@ -16,7 +16,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 struct DeformOptions {
     int max_iterations = 100;
@@ -27,7 +27,7 @@ struct DeformOptions {
 
 struct DeformResult {
     std::vector<Vec3> points; // #V, internal units
-    ChartMap charts;          // the given ones, with the slits that were added
+    atlas::ChartMap charts;   // the given ones, with the slits that were added
     bool converged = false;
     double residual = 0.0;       // largest angle defect of an inner vertex, radians
     double start_residual = 0.0; // before the deformation
@@ -46,11 +46,11 @@ struct DeformResult {
 /// `point_of` (#V) tells vertices that must stay together by equal numbers 0 … n − 1. A vertex is
 /// inner if none of its edges is cut and it is not on the mesh's boundary; a slit's tip is not.
 /// Throws InvalidParameter, and NumericalFailure where the tolerance is not reached.
-DeformResult deform_to_developable(const Mesh& mesh, const ChartMap& charts,
+DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& charts,
                                    const std::vector<Index>& point_of, const DeformOptions& options,
                                    Progress& progress);
 
 /// The inner vertices of all charts, ascending.
 std::vector<Index> inner_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam);
 
-} // namespace devseg
+} // namespace devseg::develop

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace devseg {
+namespace devseg::develop {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::vector<std::pair<Index, Index>> find_intersections(const std::vector<Vec3>&
     return pairs;
 }
 
-} // namespace devseg
+} // namespace devseg::develop

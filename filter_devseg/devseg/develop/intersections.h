@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 /// All pairs (i < j) of triangles that cross, sorted: an edge of one runs through the inside of the
 /// other. Triangles with a common edge never cross that way; those with a common vertex may. Mere
@@ -16,4 +16,4 @@ std::vector<std::pair<Index, Index>> find_intersections(const std::vector<Vec3>&
                                                         const std::vector<Triangle>& faces,
                                                         const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::develop

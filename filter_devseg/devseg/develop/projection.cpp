@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace devseg {
+namespace devseg::develop {
 
 namespace {
 
@@ -258,4 +258,4 @@ void Projection::relax_blocked(int rounds) {
     points_ = moved;
 }
 
-} // namespace devseg
+} // namespace devseg::develop

@@ -13,7 +13,7 @@
 
 #include "devseg/develop/angle_constraints.h"
 
-namespace devseg {
+namespace devseg::develop {
 
 class Projection {
 public:
@@ -77,4 +77,4 @@ private:
     bool count_blocks_ = false;
 };
 
-} // namespace devseg
+} // namespace devseg::develop

@@ -7,7 +7,7 @@
 #include "devseg/metrics/circle_maps.h"
 #include "devseg/metrics/gauss_area.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
@@ -26,21 +26,24 @@ constexpr const char* circle_help =
     "<b>\"Intrinsic Parameterizations of Surface Meshes\"</b><br>"
     "Computer Graphics Forum 21(3), 2002, doi:10.1111/1467-8659.00580";
 
-FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progress& progress) {
+declare::FilterOutput run_circle_maps(const declare::FilterInput& input, const declare::NoOptions&,
+                                      Progress& progress) {
     progress.begin_phase("mapping charts to discs", 1.0);
-    std::vector<double> stretch = circle_map_stretch(
-        input.mesh, cut_charts_to_disks(input.mesh, find_charts(input), progress).charts, progress);
+    std::vector<double> stretch = metrics::circle_map_stretch(
+        input.mesh, atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress).charts,
+        progress);
     double mean = 0.0;
     double largest = 0.0;
     for (const double s : stretch) {
         mean += s / static_cast<double>(stretch.size());
         largest = std::max(largest, s);
     }
-    FilterOutput output;
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", static_cast<int>(stretch.size())},
         {"circle_l2_stretch", mean},
-        {"circle_l2_stretch_std", std::isfinite(mean) ? standard_deviation(stretch) : mean},
+        {"circle_l2_stretch_std",
+         std::isfinite(mean) ? metrics::standard_deviation(stretch) : mean},
         {"largest_circle_l2_stretch", largest},
         {"chart_circle_l2_stretch", std::move(stretch)},
     };
@@ -49,9 +52,10 @@ FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progres
 
 } // namespace
 
-std::vector<FilterDeclaration> circle_map_filters() {
-    return {Declare<NoOptions>("Charts: Measure Maps to the Circle", "get_circle_map_measures",
-                               FilterCategory::measure, circle_help)
+std::vector<declare::FilterDeclaration> circle_map_filters() {
+    return {declare::Declare<declare::NoOptions>("Charts: Measure Maps to the Circle",
+                                                 "get_circle_map_measures",
+                                                 declare::FilterCategory::measure, circle_help)
                 .result("charts_number", "charts")
                 .result("circle_l2_stretch", "mean over the charts, 1 for an isometry")
                 .result("circle_l2_stretch_std", "standard deviation over the charts")
@@ -60,4 +64,4 @@ std::vector<FilterDeclaration> circle_map_filters() {
                 .runs(run_circle_maps)};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

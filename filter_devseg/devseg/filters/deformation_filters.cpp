@@ -2,11 +2,11 @@
 #include <string>
 
 #include "devseg/atlas/disks.h"
-#include "devseg/develop/deform.h"
 #include "devseg/declare/declare.h"
+#include "devseg/develop/deform.h"
 #include "devseg/filters/filter_groups.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
@@ -38,13 +38,14 @@ std::vector<Index> shared_points(const std::vector<Index>& source_vertex) {
     return point_of;
 }
 
-FilterOutput run_deform(const FilterInput& input, const DeformOptions& options,
-                        Progress& progress) {
+declare::FilterOutput run_deform(const declare::FilterInput& input,
+                                 const develop::DeformOptions& options, Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.02);
-    const DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
-    DeformResult result = deform_to_developable(
+    const atlas::DiskCuts cuts =
+        atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
+    develop::DeformResult result = develop::deform_to_developable(
         input.mesh, cuts.charts, shared_points(input.source_vertex), options, progress);
-    FilterOutput output;
+    declare::FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {
         {"charts_number", result.charts.count},
@@ -74,11 +75,12 @@ FilterOutput run_deform(const FilterInput& input, const DeformOptions& options,
 
 } // namespace
 
-std::vector<FilterDeclaration> deformation_filters() {
-    using O = DeformOptions;
+std::vector<declare::FilterDeclaration> deformation_filters() {
+    using O = develop::DeformOptions;
     return {
-        Declare<O>("Charts: Deform to Exact Developability", "apply_coord_developable_charts",
-                   FilterCategory::remeshing, deform_help)
+        declare::Declare<O>("Charts: Deform to Exact Developability",
+                            "apply_coord_developable_charts", declare::FilterCategory::remeshing,
+                            deform_help)
             .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                      "Rounds of the projection; one for a part of the charts counts by that part. "
                      "It ends when only rounding is left.")
@@ -91,7 +93,7 @@ std::vector<FilterDeclaration> deformation_filters() {
             .boolean(&O::keep_unfinished, "keep_unfinished", "Keep the best state",
                      "Where the tolerance is not reached, take the best state instead of leaving "
                      "the mesh as it is.")
-            .writes(writes_charts | writes_points)
+            .writes(declare::writes_charts | declare::writes_points)
             .result("charts_number", "charts, each a disk")
             .result("inner_vertices_number", "vertices inside of charts, whose angles count")
             .result("initial_residual", "largest difference of an inner vertex from 360 degrees "
@@ -108,4 +110,4 @@ std::vector<FilterDeclaration> deformation_filters() {
             .runs(run_deform)};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

@@ -5,22 +5,22 @@
 
 #include "devseg/declare/filter.h"
 
-namespace devseg {
+namespace devseg::filters {
 
-std::vector<FilterDeclaration> segmentation_filters();
-std::vector<FilterDeclaration> t_flooding_filters();
-std::vector<FilterDeclaration> papercraft_filters();
-std::vector<FilterDeclaration> deformation_filters();
-std::vector<FilterDeclaration> plush_filters();
-std::vector<FilterDeclaration> baseline_filters();
-std::vector<FilterDeclaration> flattening_filters();
-std::vector<FilterDeclaration> pattern_filters();
-std::vector<FilterDeclaration> sewn_preview_filters();
-std::vector<FilterDeclaration> measure_filters();
-std::vector<FilterDeclaration> circle_map_filters();
+std::vector<declare::FilterDeclaration> segmentation_filters();
+std::vector<declare::FilterDeclaration> t_flooding_filters();
+std::vector<declare::FilterDeclaration> papercraft_filters();
+std::vector<declare::FilterDeclaration> deformation_filters();
+std::vector<declare::FilterDeclaration> plush_filters();
+std::vector<declare::FilterDeclaration> baseline_filters();
+std::vector<declare::FilterDeclaration> flattening_filters();
+std::vector<declare::FilterDeclaration> pattern_filters();
+std::vector<declare::FilterDeclaration> sewn_preview_filters();
+std::vector<declare::FilterDeclaration> measure_filters();
+std::vector<declare::FilterDeclaration> circle_map_filters();
 
 /// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,
 /// its connected components.
-ChartMap find_charts(const FilterInput& input);
+atlas::ChartMap find_charts(const declare::FilterInput& input);
 
-} // namespace devseg
+} // namespace devseg::filters

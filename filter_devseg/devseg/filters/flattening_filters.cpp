@@ -9,12 +9,12 @@
 #include "devseg/flatten/flatten.h"
 #include "devseg/pack/pack.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
 struct FlattenOptions {
-    FlattenMethod method = FlattenMethod::symmetric_dirichlet;
+    flatten::FlattenMethod method = flatten::FlattenMethod::symmetric_dirichlet;
     bool pack = true; // into the unit square; otherwise side by side in model units
 };
 
@@ -57,23 +57,24 @@ constexpr const char* pack_help =
     "Charts are read from the texture coordinates and keep their shape; they are turned, but never "
     "mirrored.";
 
-FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
-                         Progress& progress) {
+declare::FilterOutput run_flatten(const declare::FilterInput& input, const FlattenOptions& options,
+                                  Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.05);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), progress);
+    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
     progress.begin_phase("flattening charts", 0.75);
-    FlattenResult flattened = flatten_charts(input.mesh, cuts.charts, options.method, progress);
+    flatten::FlattenResult flattened =
+        flatten::flatten_charts(input.mesh, cuts.charts, options.method, progress);
     progress.begin_phase("packing charts", 0.2);
-    const SheetLayout layout =
-        lay_out(input.mesh, flattened.flat, PackOptions{}, options.pack ? 1.0 : 0.0, progress);
+    const SheetLayout layout = lay_out(input.mesh, flattened.flat, pack::PackOptions{},
+                                       options.pack ? 1.0 : 0.0, progress);
 
-    FilterOutput output;
+    declare::FilterOutput output;
     int mended = 0;
     int pushed = 0;
     int developed = 0;
     bool converged = true;
     double energy = 0.0;
-    for (const FlatChart& chart : flattened.flat) {
+    for (const flatten::FlatChart& chart : flattened.flat) {
         pushed += chart.pushed ? 1 : 0;
         developed += chart.developed ? 1 : 0;
         mended += chart.mended ? 1 : 0;
@@ -107,15 +108,16 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
 }
 
 // A chart of existing texture coordinates at the scale of its area on the surface.
-FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv, ChartSurface surface) {
-    FlatChart chart;
+flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
+                                   atlas::ChartSurface surface) {
+    flatten::FlatChart chart;
     chart.uv.resize(surface.vertex.size());
     double plane = 0.0;
     double area = 0.0;
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         chart.uv[at(surface.origin(h))] = uv[at(surface.mesh_half_edge(h))];
     for (const Index f : surface.face) {
-        plane += std::abs(uv_area(uv, f));
+        plane += std::abs(plane::uv_area(uv, f));
         area += mesh.face_areas[at(f)];
     }
     if (!(plane > 0.0))
@@ -130,24 +132,26 @@ FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv, ChartSurface sur
     return chart;
 }
 
-FilterOutput run_pack(const FilterInput& input, const PackOptions& options, Progress& progress) {
+declare::FilterOutput run_pack(const declare::FilterInput& input, const pack::PackOptions& options,
+                               Progress& progress) {
     progress.begin_phase("packing charts", 1.0);
-    const ChartMap charts = charts_from_uv(input.mesh, *input.uv);
-    std::vector<FlatChart> flat;
-    for (ChartSurface& surface : extract_charts(input.mesh, charts))
+    const atlas::ChartMap charts = atlas::charts_from_uv(input.mesh, *input.uv);
+    std::vector<flatten::FlatChart> flat;
+    for (atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts))
         flat.push_back(read_flat_chart(input.mesh, *input.uv, std::move(surface)));
     const SheetLayout layout = lay_out(input.mesh, flat, options, 1.0, progress);
-    FilterOutput output;
+    declare::FilterOutput output;
     output.values = {{"charts_number", charts.count}};
     note_unsettled(layout, output);
     output.uv = layout.uv;
     return output;
 }
 
-FilterDeclaration flatten() {
+declare::FilterDeclaration flatten() {
     using O = FlattenOptions;
-    return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
-                      FilterCategory::texture, flatten_help)
+    return declare::Declare<O>("Charts: Flatten",
+                               "compute_texcoord_parametrization_charts_per_wedge",
+                               declare::FilterCategory::texture, flatten_help)
         .choice(&O::method, "method", "Method",
                 {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
                 "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
@@ -157,7 +161,7 @@ FilterDeclaration flatten() {
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in model units.")
-        .writes(writes_charts | writes_uv)
+        .writes(declare::writes_charts | declare::writes_uv)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut first")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
@@ -171,25 +175,25 @@ FilterDeclaration flatten() {
         .runs(run_flatten);
 }
 
-FilterDeclaration pack() {
-    using O = PackOptions;
-    return Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
-                      FilterCategory::texture, pack_help)
+declare::FilterDeclaration pack() {
+    using O = pack::PackOptions;
+    return declare::Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
+                               declare::FilterCategory::texture, pack_help)
         .real(&O::padding, "padding", "Padding", 0.0, 0.1,
               "Least distance of two charts, as a share of the square's side.")
         .boolean(&O::allow_rotation, "allow_rotation", "Allow rotation",
                  "Turn charts to their best box and by quarter turns; off keeps the direction of "
                  "the texture.")
         .needs_uv()
-        .writes(writes_uv)
+        .writes(declare::writes_uv)
         .result("charts_number", "charts that were packed")
         .runs(run_pack);
 }
 
 } // namespace
 
-std::vector<FilterDeclaration> flattening_filters() {
+std::vector<declare::FilterDeclaration> flattening_filters() {
     return {flatten(), pack()};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

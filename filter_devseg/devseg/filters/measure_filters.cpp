@@ -3,7 +3,7 @@
 #include "devseg/metrics/parametrization.h"
 #include "devseg/metrics/segmentation.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
@@ -33,10 +33,12 @@ std::vector<double> column(const std::vector<Record>& records, Number number) {
     return values;
 }
 
-FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
+declare::FilterOutput run_segmentation(const declare::FilterInput& input, const declare::NoOptions&,
+                                       Progress& progress) {
     progress.begin_phase("measuring charts", 1.0);
-    const SegmentationMeasures m = measure_segmentation(input.mesh, find_charts(input));
-    FilterOutput output;
+    const metrics::SegmentationMeasures m =
+        metrics::measure_segmentation(input.mesh, find_charts(input));
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
@@ -50,10 +52,12 @@ FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progre
     return output;
 }
 
-FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Progress& progress) {
+declare::FilterOutput run_parametrization(const declare::FilterInput& input,
+                                          const declare::NoOptions&, Progress& progress) {
     progress.begin_phase("measuring texture coordinates", 1.0);
-    const ParametrizationMeasures m = measure_parametrization(input.mesh, *input.uv);
-    FilterOutput output;
+    const metrics::ParametrizationMeasures m =
+        metrics::measure_parametrization(input.mesh, *input.uv);
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
@@ -66,31 +70,37 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
         {"overlapping_faces_number", m.overlapping_faces_number},
         {"seam_length", m.seam_length},
         {"packing_efficiency", m.packing_efficiency},
-        {"chart_area", column(m.charts, [](const ChartMeasures& c) { return c.area; })},
-        {"chart_l2_stretch", column(m.charts, [](const ChartMeasures& c) { return c.l2_stretch; })},
-        {"chart_extension", column(m.charts, [](const ChartMeasures& c) { return c.extension; })},
+        {"chart_area", column(m.charts, [](const metrics::ChartMeasures& c) { return c.area; })},
+        {"chart_l2_stretch",
+         column(m.charts, [](const metrics::ChartMeasures& c) { return c.l2_stretch; })},
+        {"chart_extension",
+         column(m.charts, [](const metrics::ChartMeasures& c) { return c.extension; })},
         {"chart_compression",
-         column(m.charts, [](const ChartMeasures& c) { return c.compression; })},
+         column(m.charts, [](const metrics::ChartMeasures& c) { return c.compression; })},
         {"chart_worst_face", column(m.charts,
-                                    [&](const ChartMeasures& c) {
+                                    [&](const metrics::ChartMeasures& c) {
                                         return c.worst_face < 0
                                                    ? -1.0
                                                    : double(input.source_face[at(c.worst_face)]);
                                     })},
-        {"seam_chart_a", column(m.seams, [](const SeamMeasures& s) { return s.chart_a; })},
-        {"seam_chart_b", column(m.seams, [](const SeamMeasures& s) { return s.chart_b; })},
-        {"seam_length_a", column(m.seams, [](const SeamMeasures& s) { return s.length_a; })},
-        {"seam_length_b", column(m.seams, [](const SeamMeasures& s) { return s.length_b; })},
-        {"seam_mismatch", column(m.seams, [](const SeamMeasures& s) { return s.mismatch(); })},
+        {"seam_chart_a", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_a; })},
+        {"seam_chart_b", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_b; })},
+        {"seam_length_a",
+         column(m.seams, [](const metrics::SeamMeasures& s) { return s.length_a; })},
+        {"seam_length_b",
+         column(m.seams, [](const metrics::SeamMeasures& s) { return s.length_b; })},
+        {"seam_mismatch",
+         column(m.seams, [](const metrics::SeamMeasures& s) { return s.mismatch(); })},
         {"seam_mismatch_percent",
-         column(m.seams, [](const SeamMeasures& s) { return s.mismatch_percent(); })},
+         column(m.seams, [](const metrics::SeamMeasures& s) { return s.mismatch_percent(); })},
     };
     return output;
 }
 
-FilterDeclaration segmentation_measures() {
-    return Declare<NoOptions>("Charts: Measure Segmentation", "get_segmentation_measures",
-                              FilterCategory::measure, segmentation_help)
+declare::FilterDeclaration segmentation_measures() {
+    return declare::Declare<declare::NoOptions>("Charts: Measure Segmentation",
+                                                "get_segmentation_measures",
+                                                declare::FilterCategory::measure, segmentation_help)
         .result("charts_number", "charts")
         .result("disk_charts_number", "charts that are disks once cut along the seams")
         .result("gauss_area_std", "standard deviation of the charts' Gauss areas, steradians")
@@ -104,9 +114,10 @@ FilterDeclaration segmentation_measures() {
         .runs(run_segmentation);
 }
 
-FilterDeclaration parametrization_measures() {
-    return Declare<NoOptions>("Charts: Measure Flattening", "get_parametrization_measures",
-                              FilterCategory::measure, parametrization_help)
+declare::FilterDeclaration parametrization_measures() {
+    return declare::Declare<declare::NoOptions>(
+               "Charts: Measure Flattening", "get_parametrization_measures",
+               declare::FilterCategory::measure, parametrization_help)
         .needs_uv()
         .result("charts_number", "charts, as the texture coordinates show them")
         .result("disk_charts_number", "charts that are disks")
@@ -138,8 +149,8 @@ FilterDeclaration parametrization_measures() {
 
 } // namespace
 
-std::vector<FilterDeclaration> measure_filters() {
+std::vector<declare::FilterDeclaration> measure_filters() {
     return {segmentation_measures(), parametrization_measures()};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

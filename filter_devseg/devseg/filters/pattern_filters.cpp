@@ -4,13 +4,13 @@
 #include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 #include "devseg/filters/sheet_layout.h"
-#include "devseg/plane/overlap.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
 #include "devseg/pattern/pieces.h"
 #include "devseg/pattern/strain.h"
+#include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
@@ -44,12 +44,12 @@ constexpr const char* optimize_help =
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum 24(3) (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
 
-struct LayerOptions : PatternOptions {
+struct LayerOptions : pattern::PatternOptions {
     double strain_range = 0.05; // strain that is drawn in full colour
 };
 
 template <class O>
-Declare<O> with_scale(Declare<O> filter) {
+declare::Declare<O> with_scale(declare::Declare<O> filter) {
     return filter
         .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
               "Size on paper of one unit of the model, in millimetres: 1 for a model in "
@@ -63,7 +63,7 @@ Declare<O> with_scale(Declare<O> filter) {
 }
 
 template <class O>
-Declare<O> with_seams(Declare<O> filter) {
+declare::Declare<O> with_seams(declare::Declare<O> filter) {
     return filter
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
@@ -85,16 +85,17 @@ std::uint8_t faded(double share) {
 }
 
 // The faces of all pieces where they lie on the sheet; vertices are shared within a piece.
-LayerMesh lay_out_faces(const FilterInput& input, const Pattern& pattern,
-                        const std::vector<FaceStrain>& strain, double strain_range) {
+declare::LayerMesh lay_out_faces(const declare::FilterInput& input, const pattern::Pattern& pattern,
+                                 const std::vector<pattern::FaceStrain>& strain,
+                                 double strain_range) {
     const CornerUv& uv = *input.uv;
-    LayerMesh layer;
+    declare::LayerMesh layer;
     layer.name = "pattern pieces";
     std::vector<int> piece_id;
     std::vector<int> source_face;
-    ChartMap charts =
-        make_chart_map(input.mesh, pattern.face_piece, charts_from_uv(input.mesh, uv).seam, false);
-    for (const ChartSurface& surface : extract_charts(input.mesh, charts)) {
+    atlas::ChartMap charts = atlas::make_chart_map(
+        input.mesh, pattern.face_piece, atlas::charts_from_uv(input.mesh, uv).seam, false);
+    for (const atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts)) {
         const Index p = pattern.face_piece[at(surface.face.front())];
         if (p < 0)
             continue; // charts too small to be cut out
@@ -111,10 +112,11 @@ LayerMesh lay_out_faces(const FilterInput& input, const Pattern& pattern,
             if (pattern.pieces[at(p)].place.scale.x() < 0.0)
                 std::swap(corners[1], corners[2]); // turned over: faces upwards again
             layer.geometry.faces.push_back(corners);
-            const FaceStrain& own = strain[at(source)];
+            const pattern::FaceStrain& own = strain[at(source)];
             const std::uint8_t fade = faded(own.largest() / strain_range);
             const bool longer = own.extension >= own.compression;
-            layer.face_color.push_back(longer ? Color{255, fade, fade} : Color{fade, fade, 255});
+            layer.face_color.push_back(longer ? declare::Color{255, fade, fade}
+                                              : declare::Color{fade, fade, 255});
             layer.face_quality.push_back(longer ? own.extension : -own.compression);
             piece_id.push_back(p);
             source_face.push_back(input.source_face[at(source)]);
@@ -125,14 +127,16 @@ LayerMesh lay_out_faces(const FilterInput& input, const Pattern& pattern,
     return layer;
 }
 
-FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, Progress& progress) {
-    const Pattern pattern = make_pattern(input.mesh, *input.uv, options, progress);
-    FilterOutput output;
+declare::FilterOutput run_pieces(const declare::FilterInput& input, const LayerOptions& options,
+                                 Progress& progress) {
+    const pattern::Pattern pattern =
+        pattern::make_pattern(input.mesh, *input.uv, options, progress);
+    declare::FilterOutput output;
     output.notes = pattern.notes;
     const double scale = 1.0 / (pattern.mm_per_unit * input.mesh.unit_length);
-    output.layer =
-        lay_out_faces(input, pattern, measure_strain(input.mesh, pattern.corner_place, scale),
-                      options.strain_range);
+    output.layer = lay_out_faces(input, pattern,
+                                 pattern::measure_strain(input.mesh, pattern.corner_place, scale),
+                                 options.strain_range);
     output.values = {{"pieces_number", static_cast<int>(pattern.pieces.size())},
                      {"width_mm", pattern.width},
                      {"height_mm", pattern.height}};
@@ -158,9 +162,9 @@ double total(const std::vector<double>& values) {
     return sum;
 }
 
-using Piece = PatternPiece;
+using Piece = pattern::PatternPiece;
 
-ResultValues measure_pieces(const Pattern& pattern) {
+declare::ResultValues measure_pieces(const pattern::Pattern& pattern) {
     const std::vector<Piece>& pieces = pattern.pieces;
     const auto areas = column(pieces, [](const Piece& p) { return p.area; });
     const auto lengths = column(pieces, [](const Piece& p) { return p.long_side; });
@@ -195,34 +199,40 @@ ResultValues measure_pieces(const Pattern& pattern) {
          column(pieces, [](const Piece& p) { return static_cast<double>(p.model); })}};
 }
 
-ResultValues measure_seams(const Pattern& pattern) {
-    const std::vector<Seam>& seams = pattern.seams;
-    const auto mismatches = column(seams, [](const Seam& s) { return std::abs(s.mismatch()); });
+declare::ResultValues measure_seams(const pattern::Pattern& pattern) {
+    const std::vector<pattern::Seam>& seams = pattern.seams;
+    const auto mismatches =
+        column(seams, [](const pattern::Seam& s) { return std::abs(s.mismatch()); });
     const auto darts =
-        std::count_if(seams.begin(), seams.end(), [](const Seam& s) { return s.is_dart; });
-    const auto apart = std::count_if(seams.begin(), seams.end(), [](const Seam& s) {
-        return !sides_agree(s.sides[0].length, s.sides[1].length);
+        std::count_if(seams.begin(), seams.end(), [](const pattern::Seam& s) { return s.is_dart; });
+    const auto apart = std::count_if(seams.begin(), seams.end(), [](const pattern::Seam& s) {
+        return !pattern::sides_agree(s.sides[0].length, s.sides[1].length);
     });
-    const auto notches =
-        column(seams, [](const Seam& s) { return static_cast<double>(s.sides[0].notches.size()); });
-    return {{"seams_number", static_cast<int>(seams.size())},
-            {"darts_number", static_cast<int>(darts)},
-            {"notches_number", static_cast<int>(total(notches))},
-            {"hem_length_mm", pattern.hem_length},
-            {"mismatched_seams_number", static_cast<int>(apart)},
-            {"max_seam_mismatch_mm", largest(mismatches)},
-            {"max_seam_mismatch_percent",
-             largest(column(seams, [](const Seam& s) { return std::abs(s.mismatch_percent()); }))},
-            {"seam_length_mm",
-             column(seams,
-                    [](const Seam& s) { return 0.5 * (s.sides[0].length + s.sides[1].length); })},
-            {"seam_mismatch_mm", column(seams, [](const Seam& s) { return s.mismatch(); })}};
+    const auto notches = column(seams, [](const pattern::Seam& s) {
+        return static_cast<double>(s.sides[0].notches.size());
+    });
+    return {
+        {"seams_number", static_cast<int>(seams.size())},
+        {"darts_number", static_cast<int>(darts)},
+        {"notches_number", static_cast<int>(total(notches))},
+        {"hem_length_mm", pattern.hem_length},
+        {"mismatched_seams_number", static_cast<int>(apart)},
+        {"max_seam_mismatch_mm", largest(mismatches)},
+        {"max_seam_mismatch_percent",
+         largest(
+             column(seams, [](const pattern::Seam& s) { return std::abs(s.mismatch_percent()); }))},
+        {"seam_length_mm", column(seams,
+                                  [](const pattern::Seam& s) {
+                                      return 0.5 * (s.sides[0].length + s.sides[1].length);
+                                  })},
+        {"seam_mismatch_mm", column(seams, [](const pattern::Seam& s) { return s.mismatch(); })}};
 }
 
-FilterOutput run_measures(const FilterInput& input, const PatternOptions& options,
-                          Progress& progress) {
-    const Pattern pattern = make_pattern(input.mesh, *input.uv, options, progress);
-    FilterOutput output;
+declare::FilterOutput run_measures(const declare::FilterInput& input,
+                                   const pattern::PatternOptions& options, Progress& progress) {
+    const pattern::Pattern pattern =
+        pattern::make_pattern(input.mesh, *input.uv, options, progress);
+    declare::FilterOutput output;
     output.notes = pattern.notes;
     output.values = measure_pieces(pattern);
     for (auto& value : measure_seams(pattern))
@@ -231,7 +241,7 @@ FilterOutput run_measures(const FilterInput& input, const PatternOptions& option
 }
 
 bool any_overlap(const CornerUv& uv) {
-    const std::vector<std::uint8_t> overlaps = find_overlapping_faces(uv);
+    const std::vector<std::uint8_t> overlaps = plane::find_overlapping_faces(uv);
     return std::find(overlaps.begin(), overlaps.end(), 1) != overlaps.end();
 }
 
@@ -240,28 +250,29 @@ bool lies_in_unit_square(const CornerUv& uv) {
                        [](const Vec2& p) { return p.minCoeff() >= 0.0 && p.maxCoeff() <= 1.0; });
 }
 
-FilterOutput run_optimize(const FilterInput& input, const OptimizeOptions& options,
-                          Progress& progress) {
+declare::FilterOutput run_optimize(const declare::FilterInput& input,
+                                   const pattern::OptimizeOptions& options, Progress& progress) {
     const Mesh& mesh = input.mesh;
-    FilterOutput output;
+    declare::FilterOutput output;
     CornerUv uv = *input.uv;
     progress.begin_phase("removing overlaps", 0.2);
-    FlatLayout layout = read_layout(mesh, uv);
+    pattern::FlatLayout layout = pattern::read_layout(mesh, uv);
     const bool is_stacked = options.remove_overlaps && any_overlap(uv);
     if (is_stacked)
-        remove_overlaps(mesh, layout, progress);
+        pattern::remove_overlaps(mesh, layout, progress);
     progress.begin_phase("joining small charts", 0.4);
     if (options.reattach_gussets)
-        reattach_gussets(mesh, options, layout, progress);
+        pattern::reattach_gussets(mesh, options, layout, progress);
     progress.begin_phase("packing charts", 0.3);
     if (is_stacked || layout.reattached > 0) {
         const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
-        SheetLayout sheet = lay_out(mesh, layout.flat, PackOptions{}, side, progress);
+        SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, progress);
         note_unsettled(sheet, output);
         uv = std::move(sheet.uv);
     }
     progress.begin_phase("gluing darts", 0.1);
-    GluedDarts glued = glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degrees);
+    pattern::GluedDarts glued =
+        pattern::glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degrees);
     output.values = {
         {"charts_number", glued.charts.count},
         {"overlap_cuts_number", layout.overlap_cuts},
@@ -274,11 +285,11 @@ FilterOutput run_optimize(const FilterInput& input, const OptimizeOptions& optio
     return output;
 }
 
-FilterDeclaration optimize() {
-    using O = OptimizeOptions;
-    return Declare<O>("Pattern: Optimize for Fabrication",
-                      "apply_texcoord_pattern_optimization_per_wedge", FilterCategory::texture,
-                      optimize_help)
+declare::FilterDeclaration optimize() {
+    using O = pattern::OptimizeOptions;
+    return declare::Declare<O>("Pattern: Optimize for Fabrication",
+                               "apply_texcoord_pattern_optimization_per_wedge",
+                               declare::FilterCategory::texture, optimize_help)
         .boolean(&O::remove_overlaps, "remove_overlaps", "Remove overlaps",
                  "Cut off the parts of a chart that lie on other parts of it.")
         .boolean(&O::reattach_gussets, "reattach_gussets", "Reattach small charts",
@@ -292,7 +303,7 @@ FilterDeclaration optimize() {
         .real(&O::max_dart_angle, "max_dart_angle", "Narrowest dart (degrees)", 0.0, 180.0,
               "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
         .needs_uv()
-        .writes(writes_charts | writes_uv)
+        .writes(declare::writes_charts | declare::writes_uv)
         .result("charts_number", "charts afterwards")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
         .result("reattached_charts_number", "small charts that were joined to a neighbour")
@@ -301,26 +312,27 @@ FilterDeclaration optimize() {
         .runs(run_optimize);
 }
 
-FilterDeclaration pieces() {
+declare::FilterDeclaration pieces() {
     using O = LayerOptions;
-    return with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
-                                 FilterCategory::texture, pieces_help))
+    return with_scale(declare::Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
+                                          declare::FilterCategory::texture, pieces_help))
         .real(&O::strain_range, "strain_range", "Strain in full colour", 1e-6, 10.0,
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
         .needs_uv()
         .joins_borders()
-        .writes(writes_layer)
+        .writes(declare::writes_layer)
         .result("pieces_number", "pieces on the new layer")
         .result("width_mm", "width of the layout in mm")
         .result("height_mm", "height of the layout in mm")
         .runs(run_pieces);
 }
 
-FilterDeclaration measures() {
-    using O = PatternOptions;
-    return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
-                                            FilterCategory::measure, measures_help)))
+declare::FilterDeclaration measures() {
+    using O = pattern::PatternOptions;
+    return with_seams(
+               with_scale(declare::Declare<O>("Pattern: Measure", "get_pattern_measures",
+                                              declare::FilterCategory::measure, measures_help)))
         .needs_uv()
         .joins_borders()
         .result("pieces_number", "pieces")
@@ -355,8 +367,8 @@ FilterDeclaration measures() {
 
 } // namespace
 
-std::vector<FilterDeclaration> pattern_filters() {
+std::vector<declare::FilterDeclaration> pattern_filters() {
     return {optimize(), pieces(), measures()};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

@@ -5,7 +5,7 @@
 #include "devseg/filters/filter_groups.h"
 #include "devseg/pattern/sewn_preview.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 namespace {
 
@@ -23,14 +23,16 @@ constexpr const char* preview_help =
     "<b>\"Projective Dynamics: Fusing Constraint Projections for Fast Simulation\"</b><br>"
     "ACM Transactions on Graphics (SIGGRAPH), 2014, doi:10.1145/2601097.2601116";
 
-FilterOutput run_preview(const FilterInput& input, const SewnOptions& options, Progress& progress) {
+declare::FilterOutput run_preview(const declare::FilterInput& input,
+                                  const pattern::SewnOptions& options, Progress& progress) {
     const Mesh& mesh = input.mesh;
     progress.begin_phase("sewing and stuffing", 1.0);
-    const SewnPreview preview = sew_and_inflate(mesh, *input.uv, options, progress);
+    const pattern::SewnPreview preview =
+        pattern::sew_and_inflate(mesh, *input.uv, options, progress);
     Eigen::AlignedBox3d box;
     for (const Vec3& p : mesh.points)
         box.extend(p);
-    LayerMesh layer;
+    declare::LayerMesh layer;
     layer.name = "sewn preview";
     for (const Vec3& p : preview.points)
         layer.geometry.points.push_back(input.to_model(p));
@@ -44,7 +46,7 @@ FilterOutput run_preview(const FilterInput& input, const SewnOptions& options, P
         layer.face_color.push_back({255, fade, fade});
         layer.face_quality.push_back(distance * mesh.unit_length);
     }
-    FilterOutput output;
+    declare::FilterOutput output;
     output.values = {{"mean_distance_share", preview.mean_distance},
                      {"largest_distance_share", preview.largest_distance},
                      {"rounds_number", preview.rounds},
@@ -59,10 +61,10 @@ FilterOutput run_preview(const FilterInput& input, const SewnOptions& options, P
 
 } // namespace
 
-std::vector<FilterDeclaration> sewn_preview_filters() {
-    using O = SewnOptions;
-    return {Declare<O>("Pattern: Sewn Preview", "generate_sewn_preview", FilterCategory::texture,
-                       preview_help)
+std::vector<declare::FilterDeclaration> sewn_preview_filters() {
+    using O = pattern::SewnOptions;
+    return {declare::Declare<O>("Pattern: Sewn Preview", "generate_sewn_preview",
+                                declare::FilterCategory::texture, preview_help)
                 .real(&O::stuffing, "stuffing", "Stuffing", 0.0, 0.2,
                       "How much the stuffing stretches the cloth of a ball of the model's size, as "
                       "a share: 0.01 = 1 %.")
@@ -70,7 +72,7 @@ std::vector<FilterDeclaration> sewn_preview_filters() {
                          "The simulation ends here at the latest; usually the cloth is at rest "
                          "before.")
                 .needs_uv()
-                .writes(writes_layer)
+                .writes(declare::writes_layer)
                 .result("mean_distance_share", "mean distance of the sewn toy from the model, as a "
                                                "share of the model's diagonal")
                 .result("largest_distance_share", "largest distance, as a share of the diagonal")
@@ -79,4 +81,4 @@ std::vector<FilterDeclaration> sewn_preview_filters() {
                 .runs(run_preview)};
 }
 
-} // namespace devseg
+} // namespace devseg::filters

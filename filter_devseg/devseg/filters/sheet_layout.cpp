@@ -6,14 +6,14 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/repair/snap.h"
 
-namespace devseg {
+namespace devseg::filters {
 
-SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
-                    double scale_to_side, Progress& progress) {
-    std::vector<PackItem> items;
-    for (const FlatChart& chart : charts)
+SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
+                    const pack::PackOptions& options, double scale_to_side, Progress& progress) {
+    std::vector<pack::PackItem> items;
+    for (const flatten::FlatChart& chart : charts)
         items.push_back({&chart.surface.corners, &chart.uv});
-    const PackResult packed = pack_charts(items, options, progress);
+    const pack::PackResult packed = pack::pack_charts(items, options, progress);
     const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
     if (!(scale * packed.side < std::numeric_limits<float>::max()))
         throw InvalidMesh("expected a model small enough for 32-bit texture coordinates in its own "
@@ -21,21 +21,21 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const Pack
     SheetLayout layout;
     layout.uv.assign(mesh.twin.size(), Vec2::Zero());
     for (std::size_t c = 0; c < charts.size(); ++c) {
-        FlatChart& chart = charts[c];
+        flatten::FlatChart& chart = charts[c];
         for (Vec2& p : chart.uv)
             p = scale * packed.placements[c](p);
-        layout.unsettled += snap_to_single(chart.surface.corners, chart.uv);
+        layout.unsettled += flatten::snap_to_single(chart.surface.corners, chart.uv);
         for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
             layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
     }
     return layout;
 }
 
-void note_unsettled(const SheetLayout& layout, FilterOutput& output) {
+void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output) {
     if (layout.unsettled > 0)
         output.notes.push_back(std::to_string(layout.unsettled) +
                                " faces are too thin for 32-bit texture coordinates and lost their "
                                "area in the plane");
 }
 
-} // namespace devseg
+} // namespace devseg::filters

@@ -7,7 +7,7 @@
 #include "devseg/flatten/flatten.h"
 #include "devseg/pack/pack.h"
 
-namespace devseg {
+namespace devseg::filters {
 
 struct SheetLayout {
     CornerUv uv;
@@ -16,10 +16,10 @@ struct SheetLayout {
 
 /// Moves flat charts to their places, rounds them to 32 bit, and spreads them to corners. The sheet
 /// has the side `scale_to_side`, or for 0 the size of the model, in model units.
-SheetLayout lay_out(const Mesh& mesh, std::vector<FlatChart>& charts, const PackOptions& options,
-                    double scale_to_side, Progress& progress);
+SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
+                    const pack::PackOptions& options, double scale_to_side, Progress& progress);
 
 /// Tells the user about faces that rounding flattened.
-void note_unsettled(const SheetLayout& layout, FilterOutput& output);
+void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output);
 
-} // namespace devseg
+} // namespace devseg::filters

@@ -5,11 +5,11 @@
 #include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
 
-namespace devseg {
+namespace devseg::filters {
 
-const std::vector<FilterDeclaration>& filter_table() {
-    static const std::vector<FilterDeclaration> table = [] {
-        std::vector<FilterDeclaration> all;
+const std::vector<declare::FilterDeclaration>& filter_table() {
+    static const std::vector<declare::FilterDeclaration> table = [] {
+        std::vector<declare::FilterDeclaration> all;
         for (auto group :
              {segmentation_filters(), t_flooding_filters(), plush_filters(), papercraft_filters(),
               baseline_filters(), deformation_filters(), flattening_filters(), pattern_filters(),
@@ -30,12 +30,13 @@ double checked(const std::string& name, double minimum, double maximum, double v
     throw InvalidParameter(text.str());
 }
 
-ChartMap find_charts(const FilterInput& input) {
+atlas::ChartMap find_charts(const declare::FilterInput& input) {
     if (input.charts)
         return *input.charts;
     if (input.uv)
-        return charts_from_uv(input.mesh, *input.uv);
-    return make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {}, false);
+        return atlas::charts_from_uv(input.mesh, *input.uv);
+    return atlas::make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {},
+                                 false);
 }
 
-} // namespace devseg
+} // namespace devseg::filters

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/base/parallel.h"
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/reattach.h"
 #include "devseg/plane/overlap.h"
-#include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -45,11 +45,12 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vect
         for (const Index h : cut)
             seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
     }
-    result.charts =
-        cut_charts_to_disks(mesh, make_chart_map(mesh, old_chart, seam, true), progress).charts;
+    result.charts = atlas::cut_charts_to_disks(
+                        mesh, atlas::make_chart_map(mesh, old_chart, seam, true), progress)
+                        .charts;
     std::vector<FlatChart> flat;
     std::vector<std::size_t> open;
-    for (ChartSurface& surface : extract_charts(mesh, result.charts)) {
+    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, result.charts)) {
         const std::size_t old = at(old_chart[at(surface.face.front())]);
         if (cuts[old].empty()) {
             flat.push_back(std::move(result.flat[old]));
@@ -66,18 +67,18 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vect
 
 } // namespace
 
-FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
+FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress) {
     FlattenResult result;
     result.charts = charts;
     std::vector<std::size_t> open;
-    for (ChartSurface& surface : extract_charts(mesh, charts)) {
+    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
         open.push_back(result.flat.size());
         result.flat.emplace_back();
         result.flat.back().surface = std::move(surface);
     }
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
-    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
     while (!open.empty())
         open = cut_apart(mesh, flatten_some(mesh, method, tolerance, open, result.flat, progress),
                          result, progress);
@@ -87,4 +88,4 @@ FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMe
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

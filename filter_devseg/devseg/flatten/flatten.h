@@ -7,14 +7,14 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 enum class FlattenMethod { symmetric_dirichlet, lscm, abf, arap, lpfb };
 
 /// One chart in the plane: positively oriented, no face flipped, with its own 3D area (LPFB: with
 /// the lengths of its boundary edges instead).
 struct FlatChart {
-    ChartSurface surface;
+    atlas::ChartSurface surface;
     std::vector<Vec2> uv;   // #v, internal units of the mesh
     bool mended = false;    // the chosen method flipped faces: the injective one was used instead
     bool pushed = false;    // parts lay on top of each other and were pushed apart
@@ -25,7 +25,7 @@ struct FlatChart {
 };
 
 struct FlattenResult {
-    ChartMap charts; // the given charts, cut where a part lay on top of another
+    atlas::ChartMap charts; // the given charts, cut where a part lay on top of another
     std::vector<FlatChart> flat;
     int cuts = 0;       // that were needed
     int reattached = 0; // parts that were hinged to another chart after that
@@ -38,7 +38,7 @@ struct FlattenResult {
 /// method: only cut apart, never pushed, and small parts are hinged to another chart. The result
 /// does not depend on the number of threads. Throws NumericalFailure, naming the chart's size,
 /// where no map without flips could be found.
-FlattenResult flatten_charts(const Mesh& mesh, const ChartMap& charts, FlattenMethod method,
+FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

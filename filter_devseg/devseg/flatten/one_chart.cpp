@@ -10,24 +10,24 @@
 #include <Eigen/Geometry>
 
 #include "devseg/base/errors.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/energy/multilevel.h"
+#include "devseg/flatten/energy/needles.h"
+#include "devseg/flatten/energy/peaks.h"
+#include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/abf.h"
 #include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/maps/lpfb.h"
 #include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/energy/multilevel.h"
-#include "devseg/flatten/energy/needles.h"
-#include "devseg/flatten/repair/overlaps.h"
-#include "devseg/flatten/energy/peaks.h"
-#include "devseg/flatten/repair/push_apart.h"
-#include "devseg/flatten/repair/slits.h"
-#include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/maps/unfold.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/flatten/repair/push_apart.h"
+#include "devseg/flatten/repair/slits.h"
 #include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -72,18 +72,18 @@ std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& 
                            std::to_string(problem.faces.size()) + " faces");
 }
 
-std::vector<Vec2> isometric_start(const Mesh& mesh, const ChartSurface& surface,
+std::vector<Vec2> isometric_start(const Mesh& mesh, const atlas::ChartSurface& surface,
                                   const FlatteningProblem& problem, bool& refined,
                                   const Progress& progress) {
     refined = false;
     if (surface.face_count() < multilevel_threshold)
         return valid_start(problem, progress);
     // Parts that lie on each other are pushed apart where that is cheap.
-    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface& disk) {
+    const auto solve = [&](const FlatteningProblem& coarse, const atlas::ChartSurface& disk) {
         std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
                                                             SymmetricDirichletOptions{}, progress)
                                    .uv;
-        const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+        const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
         const Pairs pairs = overlapping_pairs(disk, uv, tolerance);
         if (!pairs.empty() && surface.face_count() > most_polished_faces)
             if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance, progress, coarse_gap))
@@ -179,14 +179,14 @@ bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMet
     return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
 }
 
-std::vector<Index> on_mesh(const ChartSurface& surface, std::vector<Index> half_edges) {
+std::vector<Index> on_mesh(const atlas::ChartSurface& surface, std::vector<Index> half_edges) {
     for (Index& h : half_edges)
         h = surface.mesh_half_edge(h);
     return half_edges;
 }
 
 // The mesh half-edges of a short cut between the first face and the one that is most faces away.
-std::vector<Index> halve(const Mesh& mesh, const ChartSurface& surface) {
+std::vector<Index> halve(const Mesh& mesh, const atlas::ChartSurface& surface) {
     std::vector<std::uint8_t> seen(surface.face.size(), 0);
     std::vector<Index> reached{0};
     seen[0] = 1;
@@ -277,4 +277,4 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
     return on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

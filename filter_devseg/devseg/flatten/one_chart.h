@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/flatten.h"
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/flatten/flatten.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Flattens chart.surface, a disk, and fills in the rest of `chart`. Returns the half-edges of the
 /// mesh to cut where parts lie on each other, by more than `tolerance`, and could not be pushed
@@ -18,4 +18,4 @@ std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double to
 /// lie on each other. `problem` is that of chart.surface.
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart);
 
-} // namespace devseg
+} // namespace devseg::flatten

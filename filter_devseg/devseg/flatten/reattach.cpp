@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/one_chart.h"
-#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/flatten/maps/unfold.h"
+#include "devseg/flatten/one_chart.h"
+#include "devseg/flatten/repair/overlaps.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -33,14 +33,15 @@ public:
         std::vector<std::pair<double, Index>> parts;
         for (std::size_t c = 0; c < result_.flat.size(); ++c)
             if (result_.flat[c].cut_off)
-                parts.emplace_back(area_of(mesh_, result_.flat[c].surface), static_cast<Index>(c));
+                parts.emplace_back(atlas::area_of(mesh_, result_.flat[c].surface),
+                                   static_cast<Index>(c));
         std::sort(parts.begin(), parts.end());
         return parts;
     }
 
     bool glue(Index part, FlattenMethod method, Progress& progress) {
         const std::vector<Index> others =
-            neighbour_labels(mesh_, result_.charts.chart, flat(part).surface);
+            atlas::neighbour_labels(mesh_, result_.charts.chart, flat(part).surface);
         return std::any_of(others.begin(), others.end(), [&](Index other) {
             progress.check();
             return try_to_glue(part, other, method, progress);
@@ -65,8 +66,8 @@ public:
     void renumber() {
         std::vector<FlatChart> flat;
         const std::vector<Index> old = result_.charts.chart;
-        result_.charts = make_chart_map(mesh_, old, result_.charts.seam, false);
-        for (const ChartSurface& surface : extract_charts(mesh_, result_.charts))
+        result_.charts = atlas::make_chart_map(mesh_, old, result_.charts.seam, false);
+        for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh_, result_.charts))
             flat.push_back(std::move(result_.flat[at(old[at(surface.face.front())])]));
         result_.flat = std::move(flat);
     }
@@ -80,7 +81,7 @@ private:
         const FlatChart& large = flat(other);
         std::vector<std::uint8_t> seam = result_.charts.seam;
         FlatChart joined;
-        joined.surface = join_surfaces(mesh_, small.surface, large.surface, seam);
+        joined.surface = atlas::join_surfaces(mesh_, small.surface, large.surface, seam);
         if (!joined.surface.is_disk())
             return false;
         // What can be folded of paper stays so.
@@ -113,7 +114,7 @@ private:
         faces.insert(faces.end(), added.begin(), added.end());
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
-        joined.surface = extract_surface(mesh_, std::move(faces), seam);
+        joined.surface = atlas::extract_surface(mesh_, std::move(faces), seam);
         if (!develop(mesh_, make_flattening_problem(mesh_, joined.surface), joined) ||
             !overlapping_pairs(joined.surface, joined.uv, tolerance_).empty()) {
             seam[at(h)] = seam[at(twin)] = 1;
@@ -131,7 +132,7 @@ private:
     }
 
     double excess_of(const FlatChart& chart) const {
-        return (chart.energy - 1.0) * area_of(mesh_, chart.surface);
+        return (chart.energy - 1.0) * atlas::area_of(mesh_, chart.surface);
     }
 
     double largest_stretch(const FlatChart& chart) const {
@@ -174,4 +175,4 @@ int reattach_parts(const Mesh& mesh, double tolerance, FlattenResult& result, Pr
     return number;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

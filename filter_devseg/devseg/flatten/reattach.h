@@ -3,7 +3,7 @@
 
 #include "devseg/flatten/flatten.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
 /// their whole common border, where its map stays one-to-one and is stretched little more; the
@@ -17,4 +17,4 @@ void hand_over_slivers(const Mesh& mesh, FlattenMethod method, double tolerance,
 /// to hold the part. Returns how many. `tolerance` is a length in the plane.
 int reattach_parts(const Mesh& mesh, double tolerance, FlattenResult& result, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

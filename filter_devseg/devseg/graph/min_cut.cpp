@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-namespace devseg {
+namespace devseg::graph {
 
 namespace {
 constexpr double rounding = 1e-12; // of the largest weight
@@ -150,4 +150,4 @@ std::vector<CutSide> MinCut::solve(const Progress& progress) {
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::graph

@@ -11,7 +11,7 @@
 #include "devseg/base/numbers.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::graph {
 
 enum class CutSide : std::uint8_t { open, source, sink };
 
@@ -50,4 +50,4 @@ private:
     double saturated_ = 0.0;  // a rest of capacity below this is rounding
 };
 
-} // namespace devseg
+} // namespace devseg::graph

@@ -6,15 +6,15 @@
 
 #include "devseg/atlas/disks.h"
 #include "devseg/base/errors.h"
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/maps/lscm.h"
+#include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/repair/push_apart.h"
-#include "devseg/flatten/energy/symmetric_dirichlet.h"
-#include "devseg/flatten/maps/tutte.h"
 #include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::judge {
 
 namespace {
 
@@ -28,29 +28,30 @@ constexpr int many_rounds = 200;
 // Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over 1,
 // depending on how much of the distortion is shear: an energy whose excess is that of the wanted
 // l2² is hopeless.
-std::vector<Vec2> trial_uv(const FlatteningProblem& problem, const TrialEffort& effort,
+std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const TrialEffort& effort,
                            const Progress& progress) {
-    std::vector<Vec2> uv = flatten_lscm(problem);
-    if (count_flips(problem, uv) > 0)
-        uv = flatten_tutte(problem);
-    SymmetricDirichletOptions options;
+    std::vector<Vec2> uv = flatten::flatten_lscm(problem);
+    if (flatten::count_flips(problem, uv) > 0)
+        uv = flatten::flatten_tutte(problem);
+    flatten::SymmetricDirichletOptions options;
     const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
     options.relative_tolerance = std::clamp(precision * excess, finest, coarsest);
     options.max_iterations = precision * excess < coarsest ? many_rounds : few_rounds;
     if (effort.give_up)
         options.give_up_energy = 1.0 + excess;
-    uv = minimise_symmetric_dirichlet(problem, uv, options, progress).uv;
-    scale_to_area(problem, uv);
+    uv = flatten::minimise_symmetric_dirichlet(problem, uv, options, progress).uv;
+    flatten::scale_to_area(problem, uv);
     return uv;
 }
 
 // Faces that are stretched more than all faces around them.
-std::vector<Index> local_maxima(const ChartSurface& surface, const std::vector<double>& stretch) {
+std::vector<Index> local_maxima(const atlas::ChartSurface& surface,
+                                const std::vector<double>& stretch) {
     std::vector<Index> maxima;
     for (Index f = 0; f < surface.face_count(); ++f) {
         bool highest = true;
         for (Index h = 3 * f; h < 3 * f + 3 && highest; ++h)
-            visit_star(surface.twin, h, [&](Index k) {
+            mesh::visit_star(surface.twin, h, [&](Index k) {
                 const Index g = k / 3;
                 if (stretch[at(g)] > stretch[at(f)] || (stretch[at(g)] == stretch[at(f)] && g < f))
                     highest = false;
@@ -72,15 +73,15 @@ double TrialMap::peaks_above(double bound) const {
     return sum;
 }
 
-std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                    TrialMap& map) {
+std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
+                                    const std::vector<Vec2>& uv, TrialMap& map) {
     std::vector<double> stretch(problem.faces.size());
     map.area = problem.total_area;
     map.l2_squared = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian(problem, uv, f);
+        const Eigen::Matrix2d j = flatten::jacobian(problem, uv, f);
         const double det = j.determinant();
-        stretch[f] = face_stretch(problem, uv, f);
+        stretch[f] = flatten::face_stretch(problem, uv, f);
         map.l2_squared +=
             0.5 * j.squaredNorm() / (det * det) * problem.area[f] / problem.total_area;
         map.linf = std::max(map.linf, stretch[f]);
@@ -94,10 +95,10 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     TrialMap map;
     for (const Index f : faces)
         map.area += mesh.face_areas[at(f)];
-    std::vector<std::uint8_t> marks = enclose(mesh, faces, seam);
-    const ChartSurface surface =
-        cut_to_disk(mesh, extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
-    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+    std::vector<std::uint8_t> marks = atlas::enclose(mesh, faces, seam);
+    const atlas::ChartSurface surface = atlas::cut_to_disk(
+        mesh, atlas::extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
+    const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
     std::vector<Vec2> uv;
     try {
         uv = trial_uv(problem, effort, progress);
@@ -105,11 +106,12 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
         return map; // not flat
     }
     map.flat = true;
-    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
-    auto pairs = overlapping_pairs(surface, uv, tolerance);
+    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
+    auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
     map.overlaps = !pairs.empty();
     if (map.overlaps && effort.push_apart)
-        if (auto apart = push_apart(problem, surface, uv, std::move(pairs), tolerance, progress)) {
+        if (auto apart =
+                flatten::push_apart(problem, surface, uv, std::move(pairs), tolerance, progress)) {
             uv = std::move(*apart);
             map.overlaps = false;
         }
@@ -122,4 +124,4 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     return map;
 }
 
-} // namespace devseg
+} // namespace devseg::judge

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::judge {
 
 /// Stretch of one chart's map [Sander et al. 2001], as in measure_parametrization.
 struct TrialMap {
@@ -42,7 +42,7 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const Progress& progress);
 
 /// Fills in the area and the stretch of a map; returns Γ of each face.
-std::vector<double> measure_stretch(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                    TrialMap& map);
+std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
+                                    const std::vector<Vec2>& uv, TrialMap& map);
 
-} // namespace devseg
+} // namespace devseg::judge

@@ -1,6 +1,6 @@
 #include "devseg/mesh/angle_defects.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 std::vector<double> angle_defects(const Mesh& mesh) {
     std::vector<double> defect(mesh.points.size(), 2.0 * pi);
@@ -31,4 +31,4 @@ std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh) {
     return boundary;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -7,7 +7,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// Angle of the triangle v a b at v, in radians, from 0 to π; exact for thin triangles too.
 inline double corner_angle(const Vec3& v, const Vec3& a, const Vec3& b) {
@@ -24,4 +24,4 @@ std::vector<Index> leaving_half_edges(const Mesh& mesh);
 /// 1 for each vertex (#V) on the mesh's boundary.
 std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh);
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace devseg {
+namespace devseg::mesh {
 
 namespace {
 
@@ -74,4 +74,4 @@ Mesh in_frame(const Mesh& mesh, const CanonicalFrame& frame, const Progress& pro
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// The principal axes of a surface about its centre, and its size.
 struct CanonicalFrame {
@@ -30,4 +30,4 @@ CanonicalFrame canonical_frame(const Mesh& mesh, const Progress& progress);
 /// The mesh with all points in the frame.
 Mesh in_frame(const Mesh& mesh, const CanonicalFrame& frame, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::mesh

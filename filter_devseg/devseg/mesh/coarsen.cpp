@@ -7,7 +7,7 @@
 
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 namespace {
 
@@ -469,4 +469,4 @@ std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface 
     return label;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// A surface with a part of its vertices removed. A collapse takes the two faces beside an edge out
 /// (one on a boundary) and gives the other faces of the removed vertex to the kept one, so that
@@ -52,4 +52,4 @@ CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface);
 std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
                                  std::vector<Index> label, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::mesh

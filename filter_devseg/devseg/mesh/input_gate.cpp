@@ -10,7 +10,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/mesh/weld.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 namespace {
 
@@ -420,4 +420,4 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
     return gated;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// A mesh as hosts have it: any triangles, possibly non-manifold, unoriented or degenerate.
 struct RawMesh {
@@ -46,4 +46,4 @@ struct GatedMesh {
 /// coordinates that are not finite, all faces without area; Cancelled.
 GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress = Progress());
 
-} // namespace devseg
+} // namespace devseg::mesh

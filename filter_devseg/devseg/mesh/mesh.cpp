@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace devseg {
+namespace devseg::mesh {
 
 namespace {
 
@@ -63,4 +63,4 @@ void compute_face_geometry(Mesh& mesh) {
     spread_normals(mesh, std::move(without_normal));
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

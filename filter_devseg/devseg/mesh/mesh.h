@@ -19,7 +19,7 @@
 
 #include "devseg/base/numbers.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 struct Mesh {
     std::vector<Vec3> points;       // #V, in internal units
@@ -100,4 +100,8 @@ bool visit_star(const Mesh& mesh, Index half_edge, Visit visit) {
     return visit_star(mesh.twin, half_edge, visit);
 }
 
+} // namespace devseg::mesh
+
+namespace devseg {
+using mesh::Mesh;
 } // namespace devseg

@@ -10,7 +10,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 class NearestPoints {
 public:
@@ -33,7 +33,6 @@ public:
     }
 
 private:
-
     template <class Accept>
     struct Search {
         using Scalar = double;
@@ -61,4 +60,4 @@ private:
     Eigen::KdBVH<double, 3, Index> tree_;
 };
 
-} // namespace devseg
+} // namespace devseg::mesh

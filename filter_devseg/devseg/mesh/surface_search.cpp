@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace devseg {
+namespace devseg::mesh {
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     std::vector<Vec3> normal(mesh.points.size(), Vec3::Zero());
@@ -30,4 +30,4 @@ Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
     return best;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

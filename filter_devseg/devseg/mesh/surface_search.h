@@ -7,7 +7,7 @@
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/mesh/nearest_points.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// Unit normals at vertices, means of the faces' weighted by area. #V.
 std::vector<Vec3> vertex_normals(const Mesh& mesh);
@@ -55,4 +55,4 @@ private:
     std::vector<Vec3> normal_;
 };
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace devseg {
+namespace devseg::mesh {
 
 namespace {
 
@@ -134,4 +134,4 @@ WeldedMesh weld_borders(const RawMesh& raw) {
     return welded;
 }
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -3,7 +3,7 @@
 
 #include "devseg/mesh/input_gate.h"
 
-namespace devseg {
+namespace devseg::mesh {
 
 /// Files such as STL hold separate triangles: where no two faces share a vertex, those with the
 /// same coordinates become one in `faces`. Returns how many there are less, 0 for any other mesh.
@@ -22,4 +22,4 @@ struct WeldedMesh {
 /// layers. Indices must be in range.
 WeldedMesh weld_borders(const RawMesh& raw);
 
-} // namespace devseg
+} // namespace devseg::mesh

@@ -7,10 +7,10 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 namespace {
 
@@ -20,7 +20,7 @@ using Positions = Eigen::MatrixX2d;
 constexpr double least_edge = 1e-9;
 
 // The boundary on the unit circle, in proportion to its length; rows of inner vertices are zero.
-Positions circle_positions(const FlatteningProblem& problem) {
+Positions circle_positions(const flatten::FlatteningProblem& problem) {
     const double given =
         std::accumulate(problem.boundary_edge.begin(), problem.boundary_edge.end(), 0.0);
     const double added = least_edge * given;
@@ -36,7 +36,7 @@ Positions circle_positions(const FlatteningProblem& problem) {
 }
 
 // Inner vertices first: numbers of all vertices in the order of the unknowns.
-std::vector<Index> unknowns_first(const FlatteningProblem& problem, Index& unknowns) {
+std::vector<Index> unknowns_first(const flatten::FlatteningProblem& problem, Index& unknowns) {
     std::vector<Index> number(at(problem.vertex_count), 0);
     for (const Index v : problem.boundary)
         number[at(v)] = -1;
@@ -46,7 +46,7 @@ std::vector<Index> unknowns_first(const FlatteningProblem& problem, Index& unkno
     return number;
 }
 
-Positions conformal_positions(const FlatteningProblem& problem) {
+Positions conformal_positions(const flatten::FlatteningProblem& problem) {
     Positions positions = circle_positions(problem);
     Index unknowns = 0;
     const std::vector<Index> number = unknowns_first(problem, unknowns);
@@ -83,7 +83,7 @@ Positions conformal_positions(const FlatteningProblem& problem) {
     return positions;
 }
 
-double stretch(const FlatteningProblem& problem, const Positions& positions) {
+double stretch(const flatten::FlatteningProblem& problem, const Positions& positions) {
     double flat_area = 0.0;
     double sum = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
@@ -96,26 +96,26 @@ double stretch(const FlatteningProblem& problem, const Positions& positions) {
         const double face = (problem.edges[f] * flat.inverse()).squaredNorm();
         // Without area in the plane, the inverse is infinite in one direction and no number in
         // the other.
-        sum += std::isfinite(face) ? problem.area[f] * 0.5 * face
-                                   : infinite;
+        sum += std::isfinite(face) ? problem.area[f] * 0.5 * face : infinite;
     }
     return std::sqrt(sum / problem.total_area * (flat_area / problem.total_area));
 }
 
 } // namespace
 
-std::vector<double> circle_map_stretch(const Mesh& mesh, const ChartMap& charts,
+std::vector<double> circle_map_stretch(const Mesh& mesh, const atlas::ChartMap& charts,
                                        Progress& progress) {
-    const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
+    const std::vector<atlas::ChartSurface> surfaces = atlas::extract_charts(mesh, charts);
     std::vector<double> result(surfaces.size(), 0.0);
     parallel_for(
         static_cast<int>(surfaces.size()),
         [&](int c) {
-            const FlatteningProblem problem = make_flattening_problem(mesh, surfaces[at(c)]);
+            const flatten::FlatteningProblem problem =
+                flatten::make_flattening_problem(mesh, surfaces[at(c)]);
             result[at(c)] = stretch(problem, conformal_positions(problem));
         },
         progress);
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -14,13 +14,13 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 /// L2 stretch (Sander et al. 2001) of each chart's map to the disc, with the disc scaled so that
 /// the faces have the chart's area in sum. The inside minimises the Dirichlet energy (cotangents as
 /// they are: faces may turn over, which changes neither their stretch nor their area).
 /// Throws NumericalFailure for charts that are no disks, and Cancelled.
-std::vector<double> circle_map_stretch(const Mesh& mesh, const ChartMap& charts,
+std::vector<double> circle_map_stretch(const Mesh& mesh, const atlas::ChartMap& charts,
                                        Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace devseg {
+namespace devseg::metrics {
 
 namespace {
 // Normals whose spread is below this (in radians squared) come from a plane up to rounding: the
@@ -48,4 +48,4 @@ std::vector<ConicProxy> fit_conics(const Mesh& mesh, const std::vector<Index>& c
     return proxies;
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -11,7 +11,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 /// ⟨N_C, θ_C⟩ of [JKS05, section 2.1.1]: all normals of the chart make the angle θ with the axis.
 struct ConicProxy {
@@ -47,4 +47,4 @@ ConicProxy fit_conic(const NormalMoments& moments);
 /// The proxy of each chart 0 … count − 1; faces labelled −1 belong to none.
 std::vector<ConicProxy> fit_conics(const Mesh& mesh, const std::vector<Index>& chart, Index count);
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace devseg {
+namespace devseg::metrics {
 
 namespace {
 
@@ -42,7 +42,7 @@ struct Star {
 
 void walk_star(const Mesh& mesh, Index first, const std::vector<std::uint8_t>& crease, Star& star) {
     star.half_edges.clear();
-    star.closed = visit_star(mesh, first, [&](Index h) { star.half_edges.push_back(h); });
+    star.closed = mesh::visit_star(mesh, first, [&](Index h) { star.half_edges.push_back(h); });
     if (star.closed)
         std::rotate(star.half_edges.begin(),
                     std::find_if(star.half_edges.begin(), star.half_edges.end(),
@@ -221,4 +221,4 @@ double standard_deviation(const std::vector<double>& values) {
     return std::sqrt(variance);
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -10,7 +10,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 /// Absolute Gauss areas in steradians. Only creases and corners give edges and vertices an area;
 /// elements on the mesh's boundary have none, as they never lie inside of a chart.
@@ -49,4 +49,4 @@ std::vector<double> chart_gauss_areas(const Mesh& mesh, const GaussAreas& areas,
 /// Standard deviation [YGZS05, equation 3, with the sum divided by the number of values].
 double standard_deviation(const std::vector<double>& values);
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -7,10 +7,10 @@
 #include <Eigen/LU>
 
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/plane/overlap.h"
 #include "devseg/metrics/segmentation.h"
+#include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 namespace {
 
@@ -82,13 +82,13 @@ struct ChartAreas {
     std::vector<double> balance; // sum of the signed areas: its sign is the chart's orientation
 };
 
-ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts) {
+ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts) {
     const std::size_t count = at(charts.count);
     ChartAreas areas{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0),
                      std::vector<double>(count, 0.0)};
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const std::size_t c = at(charts.chart[at(f)]);
-        const double area = uv_area(uv, f);
+        const double area = plane::uv_area(uv, f);
         areas.surface[c] += mesh.face_areas[at(f)];
         areas.plane[c] += std::abs(area);
         areas.balance[c] += area;
@@ -131,7 +131,7 @@ void add_face(const Mesh& mesh, const CornerUv& uv, Index f, double scale, bool 
         sums->energy += area * 0.25 * (large2 + small2 + 1.0 / large2 + 1.0 / small2);
         sums->shear += area * shear;
     }
-    const double flat = std::abs(uv_area(uv, f));
+    const double flat = std::abs(plane::uv_area(uv, f));
     result.max_area_change = std::max(result.max_area_change, std::abs(1.0 - flat * scale / area));
     if (flipped)
         return;
@@ -148,12 +148,12 @@ void add_face(const Mesh& mesh, const CornerUv& uv, Index f, double scale, bool 
 } // namespace
 
 ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv& uv) {
-    const ChartMap charts = charts_from_uv(mesh, uv);
+    const atlas::ChartMap charts = atlas::charts_from_uv(mesh, uv);
     const ChartAreas areas = sum_areas(mesh, uv, charts);
     ParametrizationMeasures result;
     result.charts_number = charts.count;
     result.charts.resize(at(charts.count));
-    for (const ChartSurface& surface : extract_charts(mesh, charts))
+    for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts))
         result.disk_charts_number += surface.is_disk() ? 1 : 0;
 
     Sums all;
@@ -162,11 +162,11 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const std::size_t c = at(charts.chart[at(f)]);
         const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
-        const bool flipped =
-            !(sign * orientation(uv[at(3 * f)], uv[at(3 * f + 1)], uv[at(3 * f + 2)]) > 0.0);
+        const bool flipped = !(
+            sign * flatten::orientation(uv[at(3 * f)], uv[at(3 * f + 1)], uv[at(3 * f + 2)]) > 0.0);
         result.flipped_faces_number += flipped ? 1 : 0;
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
-        const double flat = std::abs(uv_area(uv, f));
+        const double flat = std::abs(plane::uv_area(uv, f));
         covered += flat;
         if (has_area(mesh, f) && flat * scale > collapsed * mesh.face_areas[at(f)])
             add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
@@ -180,7 +180,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         result.charts[c].area = areas.surface[c] * mesh.unit_length * mesh.unit_length;
         result.charts[c].l2_stretch = own[c].l2_stretch();
     }
-    for (const std::uint8_t overlapping : find_overlapping_faces(uv))
+    for (const std::uint8_t overlapping : plane::find_overlapping_faces(uv))
         result.overlapping_faces_number += overlapping;
     result.seam_length = seam_length(mesh, charts);
     result.seams = measure_seams(mesh, charts, uv);
@@ -189,4 +189,4 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -10,7 +10,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/metrics/seams.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 /// One chart. Extension and compression are those of a line in the material that goes from the
 /// surface to the plane, at the worst place and in the worst direction.
@@ -44,4 +44,4 @@ struct ParametrizationMeasures {
 /// Charts are read from the texture coordinates, whoever made them.
 ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv& uv);
 
-} // namespace devseg
+} // namespace devseg::metrics

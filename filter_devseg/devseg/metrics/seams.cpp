@@ -3,11 +3,11 @@
 #include <map>
 #include <utility>
 
-namespace devseg {
+namespace devseg::metrics {
 
-std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const ChartMap& charts,
+std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                         const CornerUv& uv) {
-    const double scale = layout_scale(mesh, charts, uv) * mesh.unit_length;
+    const double scale = atlas::layout_scale(mesh, charts, uv) * mesh.unit_length;
     const auto flat_length = [&](Index h) {
         return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
     };
@@ -34,4 +34,4 @@ std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const ChartMap& charts
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -5,7 +5,7 @@
 
 #include "devseg/atlas/texture.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 /// All edges along which two charts meet; a dart, slit or disk cut joins a chart to itself. Lengths
 /// are flat, at the one scale at which the layout has the surface's area, in model units.
@@ -25,7 +25,7 @@ struct SeamMeasures {
 };
 
 /// One record for each pair of charts that share a seam, sorted by the pair.
-std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const ChartMap& charts,
+std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                         const CornerUv& uv);
 
-} // namespace devseg
+} // namespace devseg::metrics

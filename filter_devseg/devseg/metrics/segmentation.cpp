@@ -5,7 +5,7 @@
 #include "devseg/metrics/conic_proxy.h"
 #include "devseg/metrics/gauss_area.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 namespace {
 
@@ -27,11 +27,11 @@ double share_of_creases(const Mesh& mesh, const std::vector<std::uint8_t>& creas
 
 } // namespace
 
-SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& charts) {
+SegmentationMeasures measure_segmentation(const Mesh& mesh, const atlas::ChartMap& charts) {
     SegmentationMeasures result;
     result.charts_number = charts.count;
     result.seam_length = seam_length(mesh, charts);
-    for (const ChartSurface& surface : extract_charts(mesh, charts)) {
+    for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
         result.disk_charts_number += surface.is_disk() ? 1 : 0;
         NormalMoments moments;
         for (const Index f : surface.face)
@@ -52,7 +52,7 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& char
     return result;
 }
 
-double seam_length(const Mesh& mesh, const ChartMap& charts) {
+double seam_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     double sum = 0.0;
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         if (charts.seam[at(h)] != 0 && h < mesh.twin[at(h)])
@@ -60,4 +60,4 @@ double seam_length(const Mesh& mesh, const ChartMap& charts) {
     return sum * mesh.unit_length;
 }
 
-} // namespace devseg
+} // namespace devseg::metrics

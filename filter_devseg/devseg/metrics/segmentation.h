@@ -7,7 +7,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::metrics {
 
 struct SegmentationMeasures {
     Index charts_number = 0;
@@ -21,9 +21,9 @@ struct SegmentationMeasures {
     double largest_chart_area_share = 0.0; // of the surface, 0 to 1
 };
 
-SegmentationMeasures measure_segmentation(const Mesh& mesh, const ChartMap& charts);
+SegmentationMeasures measure_segmentation(const Mesh& mesh, const atlas::ChartMap& charts);
 
 /// Length of all cut edges, each counted once, model units. The mesh's own boundary is no seam.
-double seam_length(const Mesh& mesh, const ChartMap& charts);
+double seam_length(const Mesh& mesh, const atlas::ChartMap& charts);
 
-} // namespace devseg
+} // namespace devseg::metrics

@@ -15,7 +15,7 @@
 #include "devseg/pack/proximity.h"
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -194,11 +194,11 @@ private:
         bound.normal = pair.normal;
         bound.need = need;
         const Body& a = bodies_[pair.a];
-        bound.arm_a = cross(pair.at_a - a.position, pair.normal);
+        bound.arm_a = plane::cross(pair.at_a - a.position, pair.normal);
         bound.inverse_mass = 1.0 + bound.arm_a * bound.arm_a * a.inverse_inertia;
         if (pair.b < bodies_.size()) {
             const Body& b = bodies_[pair.b];
-            bound.arm_b = cross(pair.at_b - b.position, pair.normal);
+            bound.arm_b = plane::cross(pair.at_b - b.position, pair.normal);
             bound.inverse_mass += 1.0 + bound.arm_b * bound.arm_b * b.inverse_inertia;
         } else {
             bound.inverse_mass += wall_inverse_mass;
@@ -274,4 +274,4 @@ std::vector<Placement> compact(const std::vector<Outline>& outlines,
     return best;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -11,7 +11,7 @@
 #include "devseg/pack/outline.h"
 #include "devseg/pack/pack.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 /// How bad a layout with a box of this size is. Efficiency counts the box; of two boxes that are
 /// about as large, the one closer to a square is better.
@@ -23,4 +23,4 @@ std::vector<Placement> compact(const std::vector<Outline>& outlines,
                                const std::vector<Placement>& placements, const PackOptions& options,
                                const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -7,11 +7,11 @@
 #include <limits>
 #include <numeric>
 
+#include "devseg/base/parallel.h"
 #include "devseg/pack/compaction.h"
 #include "devseg/pack/outline_raster.h"
-#include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -292,4 +292,4 @@ std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pack

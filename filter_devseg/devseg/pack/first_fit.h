@@ -6,7 +6,7 @@
 #include "devseg/pack/outline.h"
 #include "devseg/pack/pack.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 /// Lays the charts out one after the other, at least options.padding times the square's side apart,
 /// in a nearly square box. Several widths are tried; the work grows with the number of charts, and
@@ -14,4 +14,4 @@ namespace devseg {
 std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
                                       const PackOptions& options, double side, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pack

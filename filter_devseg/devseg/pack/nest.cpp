@@ -4,18 +4,17 @@
 #include <cmath>
 #include <numeric>
 
-#include "devseg/pack/compaction.h"
 #include "devseg/base/parallel.h"
+#include "devseg/pack/compaction.h"
 
 // Sanitizers make the search thirty times as slow: their builds ask for a part of it.
 #ifndef DEVSEG_NESTING_SHARE
 #define DEVSEG_NESTING_SHARE 1.0
 #endif
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
-
 
 // The coarse grid. Values are the best of those measured on the charts of 22 public meshes.
 constexpr double coarse_cells = 96.0; // along the square's side
@@ -263,4 +262,4 @@ std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLa
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -13,7 +13,7 @@
 #include "devseg/pack/pack.h"
 #include "devseg/pack/separation.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 constexpr std::size_t few_charts = 5; // that cannot fill a square
 
@@ -45,4 +45,4 @@ CoarseLayout begin_nesting(const NestProblem& problem, double aspect, std::uint6
 std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLayout& begun,
                                       const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pack

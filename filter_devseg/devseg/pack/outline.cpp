@@ -7,7 +7,7 @@
 
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -24,7 +24,7 @@ std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
         const std::size_t start = hull.size();
         for (const Vec2& p : points) {
             while (hull.size() >= start + 2 &&
-                   cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
+                   plane::cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
                 hull.pop_back();
             hull.push_back(p);
         }
@@ -54,7 +54,7 @@ Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>
     std::vector<std::size_t> end(start.begin(), start.end() - 1);
     for (const Triangle& t : faces) {
         const double twice =
-            cross(points[at(t[1])] - points[at(t[0])], points[at(t[2])] - points[at(t[0])]);
+            plane::cross(points[at(t[1])] - points[at(t[0])], points[at(t[2])] - points[at(t[0])]);
         outline.area += 0.5 * std::abs(twice);
         const Index orientation = twice < 0.0 ? -1 : 1;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -102,7 +102,7 @@ double best_box_angle(const Outline& outline) {
         Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
         Vec2 high = -low;
         for (const Vec2& p : hull) {
-            const Vec2 q(along.dot(p), cross(along, p));
+            const Vec2 q(along.dot(p), plane::cross(along, p));
             low = low.cwiseMin(q);
             high = high.cwiseMax(q);
         }
@@ -115,4 +115,4 @@ double best_box_angle(const Outline& outline) {
     return best;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -9,7 +9,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 struct OutlineEdge {
     Vec2 from;
@@ -27,4 +27,4 @@ Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>
 /// Angle in radians to turn the chart by, after which its bounding box has the least area.
 double best_box_angle(const Outline& outline);
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -225,4 +225,4 @@ ChartCells coarsen(const ChartCells& fine, Index factor) {
     return image;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

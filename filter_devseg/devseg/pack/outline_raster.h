@@ -5,7 +5,7 @@
 
 #include "devseg/pack/outline.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 /// Cells first … last − 1 of one row.
 struct CellRun {
@@ -42,4 +42,4 @@ ChartCells rasterize(const Outline& outline, double angle, double cell, double m
 /// Faithful on average, not conservative.
 ChartCells coarsen(const ChartCells& fine, Index factor);
 
-} // namespace devseg
+} // namespace devseg::pack

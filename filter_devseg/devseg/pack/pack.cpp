@@ -6,14 +6,14 @@
 #include <string>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/parallel.h"
 #include "devseg/pack/compaction.h"
 #include "devseg/pack/first_fit.h"
 #include "devseg/pack/nest.h"
 #include "devseg/pack/proximity.h"
 #include "devseg/pack/shelves.h"
-#include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -185,4 +185,4 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 struct PackOptions {
     double padding = 0.002;     // least distance of two charts, as a share of the square's side
@@ -47,4 +47,4 @@ struct PackResult {
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
                        Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -5,7 +5,7 @@
 
 #include "devseg/pack/simd_clones.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -164,4 +164,4 @@ void PlaceSearch::descend(const ChartCells& cells, Spot spot, std::int32_t cost,
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pack

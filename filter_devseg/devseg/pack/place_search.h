@@ -9,7 +9,7 @@
 
 #include "devseg/pack/outline_raster.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 /// Where a chart lies: the corner cell of the image of one of its poses.
 struct Spot {
@@ -74,4 +74,4 @@ private:
     std::int64_t work_ = 0;
 };
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -103,4 +103,4 @@ const std::vector<ClosePair>& Proximity::find(const std::vector<PlacedEdge>& edg
     return pairs_;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

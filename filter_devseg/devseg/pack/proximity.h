@@ -5,7 +5,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 struct PlacedEdge {
     Vec2 from;
@@ -62,4 +62,4 @@ private:
     std::vector<ClosePair> pairs_;
 };
 
-} // namespace devseg
+} // namespace devseg::pack

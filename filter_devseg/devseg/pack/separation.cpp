@@ -16,7 +16,7 @@
 #include <limits>
 #include <numeric>
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -273,4 +273,4 @@ void Separation::move(std::size_t i, const SeparationOptions& options) {
     work_ -= places_.work() - before;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

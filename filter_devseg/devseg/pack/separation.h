@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/pack/place_search.h"
 #include "devseg/base/progress.h"
+#include "devseg/pack/place_search.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 using Layout = std::vector<Spot>; // one for each chart
 using ChartPoses = std::vector<ChartCells>;
@@ -82,4 +82,4 @@ private:
     PlaceSearch places_;
 };
 
-} // namespace devseg
+} // namespace devseg::pack

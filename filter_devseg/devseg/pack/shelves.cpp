@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace devseg {
+namespace devseg::pack {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::vector<Placement> pack_on_shelves(const std::vector<Outline>& outlines,
     return placements;
 }
 
-} // namespace devseg
+} // namespace devseg::pack

@@ -7,10 +7,10 @@
 #include "devseg/pack/outline.h"
 #include "devseg/pack/pack.h"
 
-namespace devseg {
+namespace devseg::pack {
 
 /// `side`: where the search for the square begins, from below.
 std::vector<Placement> pack_on_shelves(const std::vector<Outline>& outlines,
                                        const PackOptions& options, double side, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pack

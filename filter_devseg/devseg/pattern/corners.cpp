@@ -5,7 +5,7 @@
 
 #include "devseg/pattern/simplify.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -174,4 +174,4 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -5,7 +5,7 @@
 
 #include "devseg/pattern/seams.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// The chains, cut at their corners. Borders of charts follow the edges of a mesh, so that outlines
 /// are ragged: a corner is a place where the lines that fit the outline best in front of it and
@@ -22,4 +22,4 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
 std::vector<Index> find_corners(const std::vector<std::vector<Vec2>>& sides, double reach,
                                 double corner_angle);
 
-} // namespace devseg
+} // namespace devseg::pattern

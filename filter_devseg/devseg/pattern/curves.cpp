@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -324,4 +324,4 @@ void fit_curves(std::vector<PatternPiece>& pieces, const std::vector<Chain>& cha
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -9,7 +9,7 @@
 
 #include "devseg/pattern/seams.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Fills PiecePath::curves of all outlines: between the ends of chains, cubic Bézier curves with
 /// common tangents at their joints, within `tolerance` mm of the outline, and lines where it is
@@ -29,4 +29,4 @@ std::vector<OutlineCurve> fit_ring(const std::vector<Vec2>& ring, double corner_
 /// Points along closed curves whose polygon leaves them by `sagitta` at most.
 std::vector<Vec2> flatten_curves(const std::vector<OutlineCurve>& curves, double sagitta);
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -3,10 +3,9 @@
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/pattern/optimize.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
-
 
 double angle_at(const CornerUv& uv, Index h) {
     const Vec2 p = uv[at(Mesh::next(h))] - uv[at(h)];
@@ -16,7 +15,7 @@ double angle_at(const CornerUv& uv, Index h) {
 
 class Zipper {
 public:
-    Zipper(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv, double angle)
+    Zipper(const Mesh& mesh, const atlas::ChartMap& charts, const CornerUv& uv, double angle)
         : mesh_(mesh), seam_(charts.seam), uv_(uv), angle_(angle) {}
 
     // Glues from the tip that `h` runs into, whose twin runs back; returns the number of edges.
@@ -85,7 +84,7 @@ private:
         const Vec2 rounded(static_cast<double>(static_cast<float>(middle.x())),
                            static_cast<double>(static_cast<float>(middle.y())));
         corners.insert(corners.end(), others.begin(), others.end());
-        const double side = uv_area(uv_, h / 3);
+        const double side = plane::uv_area(uv_, h / 3);
         std::vector<Vec2> old;
         for (const Index corner : corners) {
             old.push_back(uv_[at(corner)]);
@@ -93,7 +92,8 @@ private:
         }
         for (const Index corner : corners) {
             const Index f = corner / 3;
-            const double area = orientation(uv_[at(3 * f)], uv_[at(3 * f + 1)], uv_[at(3 * f + 2)]);
+            const double area =
+                flatten::orientation(uv_[at(3 * f)], uv_[at(3 * f + 1)], uv_[at(3 * f + 2)]);
             if (!(side > 0.0 ? area > 0.0 : area < 0.0)) {
                 for (std::size_t i = 0; i < corners.size(); ++i)
                     uv_[at(corners[i])] = old[i];
@@ -111,7 +111,8 @@ private:
 
 } // namespace
 
-GluedDarts glue_darts(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv, double angle) {
+GluedDarts glue_darts(const Mesh& mesh, const atlas::ChartMap& charts, const CornerUv& uv,
+                      double angle) {
     GluedDarts result;
     Zipper zipper(mesh, charts, uv, angle);
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
@@ -120,9 +121,9 @@ GluedDarts glue_darts(const Mesh& mesh, const ChartMap& charts, const CornerUv& 
             result.edges += glued;
             result.darts += glued > 0 ? 1 : 0;
         }
-    result.charts = make_chart_map(mesh, charts.chart, zipper.seam(), true);
+    result.charts = atlas::make_chart_map(mesh, charts.chart, zipper.seam(), true);
     result.uv = zipper.uv();
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

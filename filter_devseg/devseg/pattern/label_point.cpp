@@ -8,7 +8,7 @@
 #include <limits>
 #include <queue>
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -125,4 +125,4 @@ LabelPoint find_label_point(const Outlines& outlines) {
     return best;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -5,7 +5,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 struct LabelPoint {
     Vec2 position = Vec2::Zero();
@@ -17,4 +17,4 @@ struct LabelPoint {
 /// however thin the piece.
 LabelPoint find_label_point(const std::vector<const std::vector<Vec2>*>& outlines);
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -4,7 +4,7 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -64,8 +64,8 @@ bool edges_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
     const auto opposite = [](double p, double q) {
         return (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
     };
-    return opposite(orientation(a, b, c), orientation(a, b, d)) &&
-           opposite(orientation(c, d, a), orientation(c, d, b));
+    return opposite(flatten::orientation(a, b, c), flatten::orientation(a, b, d)) &&
+           opposite(flatten::orientation(c, d, a), flatten::orientation(c, d, b));
 }
 
 void move_piece(PatternPiece& piece, const Vec2& offset) {
@@ -136,4 +136,4 @@ void shelve(std::vector<PatternPiece>& pieces, std::vector<std::size_t> moved) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

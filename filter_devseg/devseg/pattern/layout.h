@@ -5,7 +5,7 @@
 
 #include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Moves the piece and all that is drawn in it.
 void move_piece(PatternPiece& piece, const Vec2& offset);
@@ -24,4 +24,4 @@ std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pie
 /// Moves these pieces to rows above all others, the highest first. The pieces' boxes must be set.
 void shelve(std::vector<PatternPiece>& pieces, std::vector<std::size_t> moved);
 
-} // namespace devseg
+} // namespace devseg::pattern

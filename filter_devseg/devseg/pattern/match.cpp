@@ -14,7 +14,7 @@
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/simplify.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -157,7 +157,8 @@ bool close_by_angles(std::vector<Vec2>& points, const std::vector<double>& lengt
                      const Progress& progress) {
     try {
         std::vector<Vec2> closed =
-            close_boundary(lengths, inner_angles(points), LpfbOptions{}, progress).points;
+            flatten::close_boundary(lengths, inner_angles(points), flatten::LpfbOptions{}, progress)
+                .points;
         lay_onto(points, closed);
         points = std::move(closed);
     } catch (const NumericalFailure&) {
@@ -368,4 +369,4 @@ Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
     return changed;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

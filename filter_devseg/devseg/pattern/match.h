@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "devseg/pattern/seams.h"
 #include "devseg/base/progress.h"
+#include "devseg/pattern/seams.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Gives the edges of seams whose sides differ by more than half of what sewing bears (0.2 % and
 /// 0.5 mm) one length on both sides: that on the model where one side has it, as LPFB makes them,
@@ -21,4 +21,4 @@ Index match_sides(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
 /// Whether the two sides of a seam differ by less than sewing bears: 0.2 % and 0.5 mm.
 bool sides_agree(double length_a, double length_b);
 
-} // namespace devseg
+} // namespace devseg::pattern

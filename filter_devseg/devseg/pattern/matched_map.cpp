@@ -8,7 +8,7 @@
 
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -45,7 +45,7 @@ Vec2 interpolated(const std::vector<MovedRing>& rings, const Vec2& p) {
             const double s = b.norm();
             if (r == 0.0)
                 return ring.moves[i];
-            const double area = cross(a, b);
+            const double area = plane::cross(a, b);
             const double dot = a.dot(b);
             if (area == 0.0 && dot < 0.0) // on the edge
                 return (s * ring.moves[i] + r * ring.moves[j]) / (r + s);
@@ -90,4 +90,4 @@ std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
     return corners;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -6,7 +6,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// The places on paper of all corners of the given faces, in mm: 3 for each. Corners follow the
 /// outlines of the piece, which may have been changed to match its seams: a corner on an outline
@@ -14,4 +14,4 @@ namespace devseg {
 std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
                                 const std::vector<Index>& faces, const PatternPiece& piece);
 
-} // namespace devseg
+} // namespace devseg::pattern

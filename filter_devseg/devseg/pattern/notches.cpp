@@ -5,7 +5,7 @@
 
 #include "devseg/pattern/seams.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -80,4 +80,4 @@ void set_notches(Pattern& pattern, double spacing_mm) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

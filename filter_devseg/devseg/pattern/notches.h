@@ -3,7 +3,7 @@
 
 #include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Places the notches of every seam at the same shares of the length on both sides, about
 /// `spacing_mm` apart and away from the seam's ends, where all corners are. Their distances grow
@@ -11,4 +11,4 @@ namespace devseg {
 /// moves to a straighter place close by, on both sides alike. 0 = no notches.
 void set_notches(Pattern& pattern, double spacing_mm);
 
-} // namespace devseg
+} // namespace devseg::pattern

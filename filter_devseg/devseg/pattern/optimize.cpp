@@ -9,10 +9,10 @@
 #include "devseg/flatten/energy/distortion.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/repair/overlaps.h"
-#include "devseg/plane/overlap.h"
 #include "devseg/metrics/conic_proxy.h"
+#include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -23,12 +23,12 @@ constexpr double energy_increase = 0.02;
 constexpr double same_length = 1e-3;
 
 // The map of a chart at the scale of the layout.
-FlatChart read_chart(const CornerUv& uv, double scale, ChartSurface surface) {
-    FlatChart chart;
+flatten::FlatChart read_chart(const CornerUv& uv, double scale, atlas::ChartSurface surface) {
+    flatten::FlatChart chart;
     chart.uv.resize(surface.vertex.size());
     double area = 0.0;
     for (const Index f : surface.face)
-        area += uv_area(uv, f);
+        area += plane::uv_area(uv, f);
     for (Index h = 0; h < 3 * surface.face_count(); ++h) {
         const Vec2 p = scale * uv[at(surface.mesh_half_edge(h))];
         chart.uv[at(surface.origin(h))] = area < 0.0 ? Vec2(-p.x(), p.y()) : p;
@@ -37,9 +37,9 @@ FlatChart read_chart(const CornerUv& uv, double scale, ChartSurface surface) {
     return chart;
 }
 
-CornerUv spread(const Mesh& mesh, const std::vector<FlatChart>& flat) {
+CornerUv spread(const Mesh& mesh, const std::vector<flatten::FlatChart>& flat) {
     CornerUv uv(mesh.twin.size(), Vec2::Zero());
-    for (const FlatChart& chart : flat)
+    for (const flatten::FlatChart& chart : flat)
         for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
             uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
     return uv;
@@ -48,9 +48,10 @@ CornerUv spread(const Mesh& mesh, const std::vector<FlatChart>& flat) {
 // The charts of the layout's seams, with the positions that their corners have.
 void rebuild(const Mesh& mesh, const CornerUv& uv, const std::vector<std::uint8_t>& seam,
              FlatLayout& layout) {
-    layout.charts = make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, true);
+    layout.charts =
+        atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, true);
     layout.flat.clear();
-    for (ChartSurface& surface : extract_charts(mesh, layout.charts))
+    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, layout.charts))
         layout.flat.push_back(read_chart(uv, 1.0, std::move(surface)));
 }
 
@@ -65,26 +66,28 @@ bool keeps_lengths(const Mesh& mesh, const FlatLayout& layout, const CornerUv& u
     return true;
 }
 
-double energy_of(const Mesh& mesh, const FlatChart& chart) {
+double energy_of(const Mesh& mesh, const flatten::FlatChart& chart) {
     if (!chart.surface.is_disk())
         return 1.0;
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    Positions x(static_cast<Eigen::Index>(chart.uv.size()), 2);
+    const flatten::FlatteningProblem problem =
+        flatten::make_flattening_problem(mesh, chart.surface);
+    flatten::Positions x(static_cast<Eigen::Index>(chart.uv.size()), 2);
     for (std::size_t v = 0; v < chart.uv.size(); ++v)
         x.row(static_cast<Eigen::Index>(v)) = chart.uv[v].transpose();
-    return distortion(problem, x);
+    return flatten::distortion(problem, x);
 }
 
 // A map of the surface without flips and overlaps, if the method finds one without cuts.
-bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
+bool flatten_whole(const Mesh& mesh, flatten::FlattenMethod method, flatten::FlatChart& chart,
                    const std::function<bool()>& go_on) {
-    const Mesh part = mesh_of(mesh, chart.surface);
-    const ChartMap one = make_chart_map(part, std::vector<Index>(part.faces.size(), 0), {}, false);
+    const Mesh part = atlas::mesh_of(mesh, chart.surface);
+    const atlas::ChartMap one =
+        atlas::make_chart_map(part, std::vector<Index>(part.faces.size(), 0), {}, false);
     Progress quiet([&](double, const char*) { return go_on(); });
-    const FlattenResult result = flatten_charts(part, one, method, quiet);
+    const flatten::FlattenResult result = flatten::flatten_charts(part, one, method, quiet);
     if (result.flat.size() != 1 || result.cuts > 0 || result.flat.front().mended)
         return false;
-    const FlatChart& flat = result.flat.front();
+    const flatten::FlatChart& flat = result.flat.front();
     chart.uv.resize(chart.surface.vertex.size());
     for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
         chart.uv[at(chart.surface.origin(flat.surface.mesh_half_edge(h)))] =
@@ -93,16 +96,17 @@ bool flatten_whole(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
 }
 
 // Mean fitting error of the small chart's faces with the proxy of both charts together.
-double joint_error(const Mesh& mesh, const ChartSurface& small, const ChartSurface& neighbour) {
-    NormalMoments moments;
-    for (const ChartSurface* surface : {&small, &neighbour})
+double joint_error(const Mesh& mesh, const atlas::ChartSurface& small,
+                   const atlas::ChartSurface& neighbour) {
+    metrics::NormalMoments moments;
+    for (const atlas::ChartSurface* surface : {&small, &neighbour})
         for (const Index f : surface->face)
             moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
-    const ConicProxy proxy = fit_conic(moments);
+    const metrics::ConicProxy proxy = metrics::fit_conic(moments);
     double error = 0.0;
     for (const Index f : small.face)
         error += mesh.face_areas[at(f)] * proxy.fitting_error(mesh.face_normals[at(f)]);
-    return error / area_of(mesh, small);
+    return error / atlas::area_of(mesh, small);
 }
 
 // While charts are joined: labels of faces and the charts that are left, by label.
@@ -112,33 +116,34 @@ public:
         : mesh_(mesh), options_(options), layout_(layout), progress_(progress),
           label_(layout.charts.chart) {
         method_ = keeps_lengths(mesh, layout, spread(mesh, layout.flat))
-                      ? FlattenMethod::lpfb
-                      : FlattenMethod::symmetric_dirichlet;
+                      ? flatten::FlattenMethod::lpfb
+                      : flatten::FlattenMethod::symmetric_dirichlet;
     }
 
     bool is_small(std::size_t c) const {
         return !layout_.flat[c].surface.face.empty() &&
-               area_of(mesh_, layout_.flat[c].surface) <
+               atlas::area_of(mesh_, layout_.flat[c].surface) <
                    options_.max_gusset_area * mesh_.total_area;
     }
 
     // Joins the chart to the first neighbour that takes it; `done` is the share of the work so far.
     bool join(std::size_t c, double done) {
         done_ = done;
-        const std::vector<Index> order = neighbour_labels(mesh_, label_, layout_.flat[c].surface);
+        const std::vector<Index> order =
+            atlas::neighbour_labels(mesh_, label_, layout_.flat[c].surface);
         return std::any_of(order.begin(), order.end(),
                            [&](Index neighbour) { return join(c, at(neighbour)); });
     }
 
 private:
     bool join(std::size_t c, std::size_t n) {
-        const FlatChart& small = layout_.flat[c];
-        const FlatChart& neighbour = layout_.flat[n];
+        const flatten::FlatChart& small = layout_.flat[c];
+        const flatten::FlatChart& neighbour = layout_.flat[n];
         if (joint_error(mesh_, small.surface, neighbour.surface) > options_.merge_threshold)
             return false;
         std::vector<std::uint8_t> seam = layout_.charts.seam;
-        FlatChart both;
-        both.surface = join_surfaces(mesh_, small.surface, neighbour.surface, seam);
+        flatten::FlatChart both;
+        both.surface = atlas::join_surfaces(mesh_, small.surface, neighbour.surface, seam);
         const double limit =
             std::max(energy_of(mesh_, small), energy_of(mesh_, neighbour)) + energy_increase;
         if (!both.surface.is_disk() ||
@@ -149,7 +154,7 @@ private:
             label_[at(f)] = static_cast<Index>(n);
         layout_.charts.seam = std::move(seam);
         layout_.flat[n] = std::move(both);
-        layout_.flat[c] = FlatChart{};
+        layout_.flat[c] = flatten::FlatChart{};
         ++layout_.reattached;
         return true;
     }
@@ -170,35 +175,35 @@ private:
     Progress& progress_;
     double done_ = 0.0;
     std::vector<Index> label_; // #F
-    FlattenMethod method_ = FlattenMethod::symmetric_dirichlet;
+    flatten::FlattenMethod method_ = flatten::FlattenMethod::symmetric_dirichlet;
 };
 
 } // namespace
 
 FlatLayout read_layout(const Mesh& mesh, const CornerUv& uv) {
     FlatLayout layout;
-    layout.charts = charts_from_uv(mesh, uv);
-    const double scale = layout_scale(mesh, layout.charts, uv);
+    layout.charts = atlas::charts_from_uv(mesh, uv);
+    const double scale = atlas::layout_scale(mesh, layout.charts, uv);
     if (!(scale > 0.0) || !std::isfinite(scale))
         throw InvalidMesh("expected texture coordinates that cover an area, found none; run "
                           "'Charts: Flatten' first");
-    for (ChartSurface& surface : extract_charts(mesh, layout.charts))
+    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, layout.charts))
         layout.flat.push_back(read_chart(uv, scale, std::move(surface)));
     return layout;
 }
 
 void remove_overlaps(const Mesh& mesh, FlatLayout& layout, Progress& progress) {
-    const double tolerance = layout_tolerance(std::sqrt(mesh.total_area));
+    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
     for (bool again = true; again;) {
         again = false;
         std::vector<std::uint8_t> seam = layout.charts.seam;
-        for (const FlatChart& chart : layout.flat) {
+        for (const flatten::FlatChart& chart : layout.flat) {
             progress.check();
-            const auto pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
+            const auto pairs = flatten::overlapping_pairs(chart.surface, chart.uv, tolerance);
             if (pairs.empty())
                 continue;
-            for (const Index local : separating_path(mesh, chart.surface, pairs)) {
+            for (const Index local : flatten::separating_path(mesh, chart.surface, pairs)) {
                 const Index h = chart.surface.mesh_half_edge(local);
                 seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
             }
@@ -215,7 +220,8 @@ void reattach_gussets(const Mesh& mesh, const OptimizeOptions& options, FlatLayo
     std::vector<std::size_t> order(layout.flat.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return area_of(mesh, layout.flat[a].surface) < area_of(mesh, layout.flat[b].surface);
+        return atlas::area_of(mesh, layout.flat[a].surface) <
+               atlas::area_of(mesh, layout.flat[b].surface);
     });
     Joiner joiner(mesh, options, layout, progress);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -228,4 +234,4 @@ void reattach_gussets(const Mesh& mesh, const OptimizeOptions& options, FlatLayo
         rebuild(mesh, spread(mesh, layout.flat), layout.charts.seam, layout);
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

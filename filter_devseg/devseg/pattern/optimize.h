@@ -7,10 +7,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/flatten.h"
 #include "devseg/atlas/texture.h"
+#include "devseg/flatten/flatten.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 struct OptimizeOptions {
     bool remove_overlaps = true;   // cut off the parts of a chart that lie on other parts of it
@@ -23,10 +23,10 @@ struct OptimizeOptions {
 
 /// Charts in the plane with their face numbers: chart c is flat[c].
 struct FlatLayout {
-    ChartMap charts;
-    std::vector<FlatChart> flat; // uv in internal units, positively oriented
-    Index overlap_cuts = 0;      // that were made
-    Index reattached = 0;        // small charts that were joined to a neighbour
+    atlas::ChartMap charts;
+    std::vector<flatten::FlatChart> flat; // uv in internal units, positively oriented
+    Index overlap_cuts = 0;               // that were made
+    Index reattached = 0;                 // small charts that were joined to a neighbour
 };
 
 /// The charts of texture coordinates at the one scale of the layout; mirrored ones turned over.
@@ -45,7 +45,7 @@ void reattach_gussets(const Mesh& mesh, const OptimizeOptions& options, FlatLayo
                       Progress& progress);
 
 struct GluedDarts {
-    ChartMap charts;
+    atlas::ChartMap charts;
     CornerUv uv;
     Index edges = 0; // that were glued
     Index darts = 0; // that became shorter or vanished
@@ -54,6 +54,7 @@ struct GluedDarts {
 /// Glues darts from their tips on, as long as the angles around the tip sum up to a full turn
 /// within `angle` (radians): both copies of a vertex move to the middle, rounded to 32 bit. Edges
 /// that would turn a face over, or close the chart's only boundary, stay open.
-GluedDarts glue_darts(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv, double angle);
+GluedDarts glue_darts(const Mesh& mesh, const atlas::ChartMap& charts, const CornerUv& uv,
+                      double angle);
 
-} // namespace devseg
+} // namespace devseg::pattern

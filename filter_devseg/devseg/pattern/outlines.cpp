@@ -7,7 +7,7 @@
 
 #include "devseg/pattern/layout.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -16,8 +16,8 @@ namespace {
 constexpr double no_area = 1e-12;
 
 // Corners of the texture coordinates along a boundary loop, brought to paper.
-PiecePath trace(const ChartSurface& surface, const std::vector<Index>& loop, const CornerUv& uv,
-                const PaperMap& place) {
+PiecePath trace(const atlas::ChartSurface& surface, const std::vector<Index>& loop,
+                const CornerUv& uv, const PaperMap& place) {
     PiecePath path;
     for (const Index h : loop) {
         path.half_edge.push_back(surface.mesh_half_edge(h));
@@ -88,10 +88,11 @@ void measure_outlines(PatternPiece& piece) {
     }
 }
 
-std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
+std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
+                                       const atlas::ChartMap& charts,
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress) {
-    const std::vector<ChartSurface> surfaces = extract_charts(mesh, charts);
+    const std::vector<atlas::ChartSurface> surfaces = atlas::extract_charts(mesh, charts);
     // A layout that is mirrored for the most part is mirrored as a whole, which keeps its pieces
     // apart as they were; what is still mirrored then is turned over in its place.
     const double balance = std::accumulate(uv_areas.begin(), uv_areas.end(), 0.0);
@@ -121,4 +122,4 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv, con
     return pieces;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

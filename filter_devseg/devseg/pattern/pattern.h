@@ -10,7 +10,7 @@
 
 #include "devseg/pattern/seam.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// One cubic Bézier curve of an outline; straight lines are curves as well (`is_line`).
 struct OutlineCurve {
@@ -108,4 +108,4 @@ struct Pattern {
     std::vector<std::string> notes; // what the user should know, one sentence each
 };
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -21,7 +21,7 @@
 #include "devseg/pattern/split.h"
 #include "devseg/pattern/strain.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -50,7 +50,6 @@ constexpr double fold_tolerance = 1e-3;
 // Larger errors of a piece's lengths are reported. 'Charts: Flatten' keeps all areas; other
 // makers of texture coordinates often do not.
 constexpr double scale_tolerance = 0.01;
-
 
 std::string number(double value) {
     std::ostringstream text;
@@ -139,14 +138,14 @@ struct ChartAreas {
     }
 };
 
-ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts) {
+ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts) {
     ChartAreas areas;
     areas.surface.assign(at(charts.count), 0.0);
     areas.plane.assign(at(charts.count), 0.0);
     areas.covered.assign(at(charts.count), 0.0);
     areas.surface_total = mesh.total_area;
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        const double area = uv_area(uv, f);
+        const double area = plane::uv_area(uv, f);
         areas.surface[at(charts.chart[at(f)])] += mesh.face_areas[at(f)];
         areas.plane[at(charts.chart[at(f)])] += area;
         areas.covered[at(charts.chart[at(f)])] += std::abs(area);
@@ -156,13 +155,13 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& 
         throw InvalidMesh(
             std::string("expected texture coordinates that cover an area, found ") +
             (areas.plane_total > 0.0 ? "some that are too large to measure" : "none") + remedy);
-    areas.scale = layout_scale(mesh, charts, uv);
+    areas.scale = atlas::layout_scale(mesh, charts, uv);
     return areas;
 }
 
 // Charts without area in the plane cannot be cut; crumbs need not be. Small ones are left
 // out for that.
-void check_charts(const ChartMap& charts, ChartAreas& areas) {
+void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
     const double scale = areas.scale;
     std::vector<std::uint8_t> is_bad(at(charts.count), 0);
     Index count = 0;
@@ -281,7 +280,7 @@ void place_label(PatternPiece& piece) {
 SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
                          double mm, ChartAreas& areas, Progress& progress) {
     SplitCharts result;
-    result.charts = charts_from_uv(mesh, uv);
+    result.charts = atlas::charts_from_uv(mesh, uv);
     areas = measure_charts(mesh, uv, result.charts);
     check_charts(result.charts, areas);
     if (options.max_piece_mm > 0.0) {
@@ -364,10 +363,10 @@ std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
 }
 
 // Everything that is read off the finished outlines.
-void describe_pieces(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
+void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
                      const PatternOptions& options, double mm, Pattern& pattern,
                      Progress& progress) {
-    const ChartFaces groups = group_faces(charts);
+    const atlas::ChartFaces groups = atlas::group_faces(charts);
     const auto faces_of = [&](const PatternPiece& piece) {
         const std::size_t c = at(piece.chart);
         return std::vector<Index>(groups.faces.begin() + groups.begin[c],
@@ -441,4 +440,4 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     return pattern;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "devseg/atlas/texture.h"
-#include "devseg/pattern/pattern.h"
 #include "devseg/base/progress.h"
+#include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Where the threads of a woven cloth run in a piece.
 enum class GrainDirection { longest, texture_v };
@@ -39,4 +39,4 @@ struct PatternOptions {
 Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pattern

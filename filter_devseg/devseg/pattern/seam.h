@@ -7,7 +7,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// What lies along one edge of an outline: a side of a seam, or the open boundary of the model.
 struct OutlineSeam {
@@ -43,4 +43,4 @@ struct Seam {
     }
 };
 
-} // namespace devseg
+} // namespace devseg::pattern

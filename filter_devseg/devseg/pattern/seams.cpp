@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -346,4 +346,4 @@ SidePoint point_on_side(const std::vector<PatternPiece>& pieces, const SeamSide&
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -6,7 +6,7 @@
 
 #include "devseg/pattern/pattern.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// A stretch of outline that keeps its ends when outlines are simplified: both sides of a seam, or
 /// one side of open boundary (side_count 1). Both sides have the same number of edges.
@@ -65,4 +65,4 @@ struct SidePoint {
 /// The place `mm` along a side, from the seam's start, as the notches are given.
 SidePoint point_on_side(const std::vector<PatternPiece>& pieces, const SeamSide& side, double mm);
 
-} // namespace devseg
+} // namespace devseg::pattern

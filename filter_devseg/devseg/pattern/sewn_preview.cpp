@@ -7,10 +7,10 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
-#include "devseg/mesh/surface_search.h"
 #include "devseg/base/option_checks.h"
+#include "devseg/mesh/surface_search.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -92,9 +92,9 @@ void align(const Mesh& mesh, Points& x) {
 }
 
 void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
-    const SurfaceSearch search(mesh);
+    const mesh::SurfaceSearch search(mesh);
     result.distance.assign(mesh.points.size(), 0.0);
-    const std::vector<Vec3> normals = vertex_normals(mesh);
+    const std::vector<Vec3> normals = mesh::vertex_normals(mesh);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
         if (search.leaving(v) < 0)
             continue;
@@ -118,7 +118,7 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
                             Progress& progress) {
     if (options.max_iterations < 1)
         refuse_option("max_iterations", "a number of at least 1", options.max_iterations);
-    const double scale = layout_scale(mesh, charts_from_uv(mesh, uv), uv);
+    const double scale = atlas::layout_scale(mesh, atlas::charts_from_uv(mesh, uv), uv);
     if (!(scale > 0.0))
         throw InvalidMesh("expected texture coordinates with an area, found none; run "
                           "'Charts: Flatten' again");
@@ -177,4 +177,4 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

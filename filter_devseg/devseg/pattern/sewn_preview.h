@@ -11,7 +11,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 struct SewnOptions {
     double stuffing = 0.01;   // how much the cloth is stretched by what is inside: 0.01 = 1 %
@@ -36,4 +36,4 @@ struct SewnPreview {
 SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOptions& options,
                             Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -8,7 +8,7 @@
 #include "devseg/pack/outline.h"
 #include "devseg/pattern/outlines.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -234,7 +234,7 @@ PieceBox least_box(const std::vector<Vec2>& points) {
     std::vector<Triangle> fan;
     for (std::size_t i = 2; i < points.size(); ++i)
         fan.push_back({0, static_cast<Index>(i) - 1, static_cast<Index>(i)});
-    const double angle = best_box_angle(find_outline(fan, points));
+    const double angle = pack::best_box_angle(pack::find_outline(fan, points));
     const Vec2 along(std::cos(angle), -std::sin(angle));
     const Vec2 across(-along.y(), along.x());
     Eigen::AlignedBox2d box;
@@ -286,4 +286,4 @@ void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -3,7 +3,7 @@
 
 #include "devseg/pattern/pieces.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Long and short side of the least box around the piece, and the direction of the long side.
 struct PieceBox {
@@ -22,4 +22,4 @@ void set_sizes(PatternPiece& piece, GrainDirection grain);
 /// hundredth of the piece's size) from the other. Sets model, mirrored and the quantities.
 void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm);
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -9,7 +9,7 @@
 
 #include "devseg/pattern/layout.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -243,4 +243,4 @@ bool crosses_itself(const PatternPiece& piece, double depth) {
     return false;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -9,7 +9,7 @@
 
 #include "devseg/pattern/seams.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// Which points of a polyline stay: the first, the last, and so many between them that those left
 /// out lie within `tolerance` of the polyline that remains. `sides` are one polyline or two with
@@ -40,4 +40,4 @@ void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& ch
 /// than `depth` mm from the other edge.
 bool crosses_itself(const PatternPiece& piece, double depth = 0.0);
 
-} // namespace devseg
+} // namespace devseg::pattern

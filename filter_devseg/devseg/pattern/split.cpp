@@ -7,7 +7,7 @@
 #include "devseg/graph/min_cut.h"
 #include "devseg/pattern/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -38,23 +38,23 @@ CutLine choose_line(const PieceBox& box, double start, double longest) {
 }
 
 // Which faces of the chart lie before the shortest cut near the line.
-std::vector<CutSide> sides_of(const ChartSurface& surface, const CornerUv& uv,
-                              const CutLine& line) {
+std::vector<graph::CutSide> sides_of(const atlas::ChartSurface& surface, const CornerUv& uv,
+                                     const CutLine& line) {
     std::vector<double> place;
     for (const Index f : surface.face)
         place.push_back(line.along.dot(uv[at(3 * f)] + uv[at(3 * f + 1)] + uv[at(3 * f + 2)]) /
                         3.0);
     const auto [first, last] = std::minmax_element(place.begin(), place.end());
-    std::vector<CutSide> sides(place.size(), CutSide::open);
+    std::vector<graph::CutSide> sides(place.size(), graph::CutSide::open);
     for (std::size_t f = 0; f < place.size(); ++f)
         if (place[f] < line.low)
-            sides[f] = CutSide::source;
+            sides[f] = graph::CutSide::source;
         else if (place[f] > line.high)
-            sides[f] = CutSide::sink;
+            sides[f] = graph::CutSide::sink;
     // Large faces may leave no centre beyond the stretch.
-    sides[static_cast<std::size_t>(first - place.begin())] = CutSide::source;
-    sides[static_cast<std::size_t>(last - place.begin())] = CutSide::sink;
-    MinCut cut(sides);
+    sides[static_cast<std::size_t>(first - place.begin())] = graph::CutSide::source;
+    sides[static_cast<std::size_t>(last - place.begin())] = graph::CutSide::sink;
+    graph::MinCut cut(sides);
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         if (surface.twin[at(h)] > h) {
             const Index own = surface.mesh_half_edge(h);
@@ -73,7 +73,8 @@ std::vector<CutSide> sides_of(const ChartSurface& surface, const CornerUv& uv,
 
 // Turns all parts of a side over to the other one but its largest: the rest is crumbs between the
 // cut and the outline, and arms that no cut of this chart should take off.
-void join_crumbs(const ChartSurface& surface, const CornerUv& uv, std::vector<CutSide>& sides) {
+void join_crumbs(const atlas::ChartSurface& surface, const CornerUv& uv,
+                 std::vector<graph::CutSide>& sides) {
     std::vector<Index> part(sides.size(), -1);
     std::vector<double> area;
     std::vector<Index> stack;
@@ -87,7 +88,7 @@ void join_crumbs(const ChartSurface& surface, const CornerUv& uv, std::vector<Cu
         while (!stack.empty()) {
             const Index f = stack.back();
             stack.pop_back();
-            area.back() += std::abs(uv_area(uv, surface.face[at(f)]));
+            area.back() += std::abs(plane::uv_area(uv, surface.face[at(f)]));
             for (Index h = 3 * f; h < 3 * f + 3; ++h) {
                 const Index twin = surface.twin[at(h)];
                 if (twin < 0 || part[at(twin / 3)] >= 0 || sides[at(twin / 3)] != sides[at(f)])
@@ -98,7 +99,7 @@ void join_crumbs(const ChartSurface& surface, const CornerUv& uv, std::vector<Cu
         }
     }
     std::array<Index, 2> largest{-1, -1}; // of the source and of the sink
-    const auto place = [&](std::size_t f) { return sides[f] == CutSide::source ? 0U : 1U; };
+    const auto place = [&](std::size_t f) { return sides[f] == graph::CutSide::source ? 0U : 1U; };
     for (std::size_t f = 0; f < sides.size(); ++f) {
         Index& best = largest[place(f)];
         if (best < 0 || area[at(part[f])] > area[at(best)])
@@ -106,11 +107,13 @@ void join_crumbs(const ChartSurface& surface, const CornerUv& uv, std::vector<Cu
     }
     for (std::size_t f = 0; f < sides.size(); ++f)
         if (part[f] != largest[0] && part[f] != largest[1])
-            sides[f] = sides[f] == CutSide::source ? CutSide::sink : CutSide::source;
+            sides[f] =
+                sides[f] == graph::CutSide::source ? graph::CutSide::sink : graph::CutSide::source;
 }
 
-void mark_cut(const Mesh& mesh, const ChartSurface& surface, const std::vector<CutSide>& sides,
-              SplitCharts& result, std::vector<std::uint8_t>& seam) {
+void mark_cut(const Mesh& mesh, const atlas::ChartSurface& surface,
+              const std::vector<graph::CutSide>& sides, SplitCharts& result,
+              std::vector<std::uint8_t>& seam) {
     for (Index h = 0; h < 3 * surface.face_count(); ++h) {
         const Index twin = surface.twin[at(h)];
         if (twin < h || sides[at(h / 3)] == sides[at(twin / 3)])
@@ -123,7 +126,7 @@ void mark_cut(const Mesh& mesh, const ChartSurface& surface, const std::vector<C
 
 } // namespace
 
-SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const ChartMap& charts,
+SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
                                double longest, Progress& progress) {
     SplitCharts result;
     result.charts = charts;
@@ -133,7 +136,7 @@ SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const Chart
         again = false;
         result.too_large = 0;
         std::vector<std::uint8_t> seam = result.charts.seam;
-        for (const ChartSurface& surface : extract_charts(mesh, result.charts)) {
+        for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, result.charts)) {
             progress.check();
             std::vector<Vec2> points;
             for (const Index f : surface.face)
@@ -150,15 +153,15 @@ SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const Chart
             for (const Vec2& p : points)
                 start = std::min(start, box.direction.dot(p));
             const CutLine line = choose_line(box, start, longest);
-            std::vector<CutSide> sides = sides_of(surface, uv, line);
+            std::vector<graph::CutSide> sides = sides_of(surface, uv, line);
             join_crumbs(surface, uv, sides);
             mark_cut(mesh, surface, sides, result, seam);
             again = true;
         }
         if (again)
-            result.charts = make_chart_map(mesh, result.charts.chart, seam, true);
+            result.charts = atlas::make_chart_map(mesh, result.charts.chart, seam, true);
     }
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

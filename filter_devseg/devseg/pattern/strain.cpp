@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace devseg {
+namespace devseg::pattern {
 
 namespace {
 
@@ -92,4 +92,4 @@ void measure_inside(const Mesh& mesh, const std::vector<Vec2>& corners,
     piece.strain.area_change = piece.area / (mm * mm * area) - 1.0;
 }
 
-} // namespace devseg
+} // namespace devseg::pattern

@@ -3,7 +3,7 @@
 
 #include "devseg/pattern/pieces.h"
 
-namespace devseg {
+namespace devseg::pattern {
 
 /// The lines in a face that are longest and shortest on paper, compared with the model.
 struct FaceStrain {
@@ -27,4 +27,4 @@ void measure_inside(const Mesh& mesh, const std::vector<Vec2>& paper,
                     const std::vector<FaceStrain>& strain, double fold_angle, double mm,
                     PatternPiece& piece);
 
-} // namespace devseg
+} // namespace devseg::pattern

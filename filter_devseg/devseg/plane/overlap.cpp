@@ -7,7 +7,7 @@
 
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::plane {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::vector<std::uint8_t> find_overlapping_faces(const CornerUv& uv) {
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::plane

@@ -7,7 +7,7 @@
 
 #include "devseg/base/numbers.h"
 
-namespace devseg {
+namespace devseg::plane {
 
 /// All pairs (i < j) of triangles whose interiors overlap, by the separating axis test. Triangle i
 /// has its corners at corners[3 i] … corners[3 i + 2]. Touching by less than a millionth of the
@@ -23,4 +23,4 @@ double layout_tolerance(double extent);
 /// 1 for each face that overlaps another one in the plane by more than its coordinates' rounding.
 std::vector<std::uint8_t> find_overlapping_faces(const CornerUv& uv);
 
-} // namespace devseg
+} // namespace devseg::plane

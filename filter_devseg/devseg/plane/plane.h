@@ -3,7 +3,7 @@
 
 #include "devseg/base/numbers.h"
 
-namespace devseg {
+namespace devseg::plane {
 
 /// Twice the signed area of the triangle (0, p, q): positive where q lies to the left of p.
 inline double cross(const Vec2& p, const Vec2& q) {
@@ -15,4 +15,4 @@ inline double uv_area(const CornerUv& uv, Index f) {
     return 0.5 * cross(uv[at(3 * f + 1)] - uv[at(3 * f)], uv[at(3 * f + 2)] - uv[at(3 * f)]);
 }
 
-} // namespace devseg
+} // namespace devseg::plane

@@ -9,11 +9,11 @@ namespace {
 
 using devseg::to_qstring;
 
-const devseg::FilterDeclaration& declaration(int filter) {
-    return devseg::plugin_filters().at(static_cast<std::size_t>(filter));
+const devseg::declare::FilterDeclaration& declaration(int filter) {
+    return devseg::exporting::plugin_filters().at(static_cast<std::size_t>(filter));
 }
 
-QVariant to_variant(const devseg::ResultValue& value) {
+QVariant to_variant(const devseg::declare::ResultValue& value) {
     if (const auto* values = std::get_if<std::vector<double>>(&value)) {
         Eigen::VectorXd vector(static_cast<Eigen::Index>(values->size()));
         for (std::size_t i = 0; i < values->size(); ++i)
@@ -30,7 +30,7 @@ QVariant to_variant(const devseg::ResultValue& value) {
 } // namespace
 
 DevsegFilterPlugin::DevsegFilterPlugin() {
-    const int count = static_cast<int>(devseg::plugin_filters().size());
+    const int count = static_cast<int>(devseg::exporting::plugin_filters().size());
     for (int filter = 0; filter < count; ++filter) {
         typeList.push_back(filter);
         actionList.push_back(new QAction(filterName(filter), this));

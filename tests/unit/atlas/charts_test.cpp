@@ -10,7 +10,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::atlas {
 namespace {
 
 using checks::is_valid;
@@ -64,7 +64,7 @@ void expect_local_manifold(const Mesh& mesh, const ChartSurface& s) {
 TEST(Charts, TopologyOfKnownShapes) {
     struct Known {
         const char* name;
-        RawMesh raw;
+        mesh::RawMesh raw;
         Index euler;
         Index loops;
     };
@@ -263,4 +263,4 @@ TEST(ChartsFromUv, IslandsAndSlitsAreFound) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::atlas

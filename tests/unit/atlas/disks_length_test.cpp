@@ -14,7 +14,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::atlas {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -27,14 +27,14 @@ DiskCuts cut(const Mesh& mesh) {
 }
 
 // Lengths of the model, whatever the internal unit.
-double cut_length(const RawMesh& raw) {
+double cut_length(const mesh::RawMesh& raw) {
     const Mesh mesh = checks::gated(raw);
     return cut(mesh).cut_length * mesh.unit_length;
 }
 
 TEST(CutLength, AnAnnulusIsCutAlongTheShortestPathBetweenItsLoops) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-        const RawMesh raw = shapes::with_noise(shapes::annulus(16, 5, 1.0, 2.0), 0.08, seed);
+        const mesh::RawMesh raw = shapes::with_noise(shapes::annulus(16, 5, 1.0, 2.0), 0.08, seed);
         const Mesh mesh = checks::gated(raw);
         // Bellman and Ford from the outer loop to the inner one: vertices 0–15 and 80–95.
         std::vector<double> distance(mesh.points.size(), infinity);
@@ -68,7 +68,7 @@ TEST(CutLength, CutsMayBranchOffFromOthers) {
     // All is mountains but a valley from the border, which forks to two holes.
     shapes::Mask mask(9, std::string(11, '#'));
     mask[4][2] = mask[4][8] = '.';
-    RawMesh raw = shapes::plate(mask);
+    mesh::RawMesh raw = shapes::plate(mask);
     for (Vec3& p : raw.points) {
         const bool border = p.x() < 0.5 || p.x() > 10.5 || p.y() < 0.5 || p.y() > 8.5;
         const bool hole = p.y() > 3.5 && p.y() < 5.5 &&
@@ -195,7 +195,7 @@ TEST(CutLength, TheSmallestTorusIsCutNearlyAsShortAsCanBe) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
         // Seven vertices, each joined to all others.
         shapes::Random random(seed);
-        RawMesh raw;
+        mesh::RawMesh raw;
         for (Index i = 0; i < 7; ++i) {
             raw.points.push_back(random.direction());
             raw.faces.push_back({i, (i + 1) % 7, (i + 3) % 7});
@@ -299,4 +299,4 @@ TEST(CutLength, ADoubleTorusIsCutNearlyAsShortAsASearchFinds) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::atlas

@@ -10,7 +10,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::atlas {
 namespace {
 
 DiskCuts cut(const Mesh& mesh, const ChartMap& charts) {
@@ -53,20 +53,20 @@ void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts
 }
 
 TEST(CutToDisks, EveryShapeBecomesADisk) {
-    std::vector<RawMesh> all = {shapes::torus(12, 8),
-                                shapes::double_torus(),
-                                shapes::annulus(12, 3, 1, 2),
-                                shapes::sphere(0),
-                                shapes::sphere(3),
-                                shapes::tetrahedron(),
-                                shapes::cube(3),
-                                shapes::cylinder_tube(10, 6),
-                                shapes::moebius_strip(24, 3),
-                                shapes::moebius_strip(9),
-                                shapes::plate_with_handle(),
-                                shapes::torus(3, 3),
-                                shapes::cylinder_tube(3, 1),
-                                shapes::capped_cylinder(8, 3)};
+    std::vector<mesh::RawMesh> all = {shapes::torus(12, 8),
+                                      shapes::double_torus(),
+                                      shapes::annulus(12, 3, 1, 2),
+                                      shapes::sphere(0),
+                                      shapes::sphere(3),
+                                      shapes::tetrahedron(),
+                                      shapes::cube(3),
+                                      shapes::cylinder_tube(10, 6),
+                                      shapes::moebius_strip(24, 3),
+                                      shapes::moebius_strip(9),
+                                      shapes::plate_with_handle(),
+                                      shapes::torus(3, 3),
+                                      shapes::cylinder_tube(3, 1),
+                                      shapes::capped_cylinder(8, 3)};
     for (const Index holes : {1, 2, 5, 9}) {
         all.push_back(shapes::plate(shapes::mask_with_holes(holes)));
         all.push_back(shapes::slab(shapes::mask_with_holes(holes)));
@@ -87,7 +87,7 @@ TEST(CutToDisks, HolesThatTouchAndNest) {
              {"####", "#..#", "#..#", "####"},
              {"#######", "#.....#", "#.###.#", "#.#.#.#", "#.###.#", "#.....#", "#######"},
              {"####", "#.##", "##.#", "####"}}) { // holes that share a corner
-        for (const RawMesh& raw : {shapes::plate(mask), shapes::slab(mask)}) {
+        for (const mesh::RawMesh& raw : {shapes::plate(mask), shapes::slab(mask)}) {
             const Mesh mesh = checks::gated(raw);
             const ChartMap charts = checks::components(mesh);
             expect_disks(mesh, charts, cut(mesh, charts));
@@ -114,8 +114,8 @@ TEST(CutToDisks, RandomChartsOnRandomSurfaces) {
 }
 
 // A thin crooked finger on a torus; its tip is the first corner of the first face.
-RawMesh torus_with_finger(std::uint32_t seed) {
-    RawMesh mesh = shapes::torus(16, 10);
+mesh::RawMesh torus_with_finger(std::uint32_t seed) {
+    mesh::RawMesh mesh = shapes::torus(16, 10);
     shapes::Random random(seed);
     const Triangle base = mesh.faces.back();
     mesh.faces.pop_back();
@@ -140,7 +140,7 @@ RawMesh torus_with_finger(std::uint32_t seed) {
 
 TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
     for (std::uint32_t seed = 1; seed <= 10; ++seed)
-        for (const RawMesh& raw :
+        for (const mesh::RawMesh& raw :
              {torus_with_finger(seed), shapes::with_noise(shapes::double_torus(), 0.05, seed)}) {
             const Mesh mesh = checks::gated(raw);
             const ChartMap charts = checks::components(mesh);
@@ -154,7 +154,7 @@ TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
 }
 
 TEST(CutToDisks, FacesWithoutLengthDoNotStopIt) {
-    RawMesh raw = shapes::torus(10, 6);
+    mesh::RawMesh raw = shapes::torus(10, 6);
     for (Index i = 0; i < 12; ++i)
         raw.points[at(i)] = raw.points[at(20)]; // a region of edges without length
     const Mesh mesh = checks::gated(raw);
@@ -163,7 +163,8 @@ TEST(CutToDisks, FacesWithoutLengthDoNotStopIt) {
 }
 
 TEST(CutToDisks, DisksAreUntouched) {
-    for (const RawMesh& raw : {shapes::grid(5, 4), shapes::cone(12, 4), shapes::hemisphere(8, 4)}) {
+    for (const mesh::RawMesh& raw :
+         {shapes::grid(5, 4), shapes::cone(12, 4), shapes::hemisphere(8, 4)}) {
         const Mesh mesh = checks::gated(raw);
         const DiskCuts cuts = cut(mesh);
         EXPECT_EQ(cuts.cut_charts, 0);
@@ -197,7 +198,7 @@ TEST(CutToDisks, ASlitOfOneEdgeIsLengthened) {
 TEST(CutToDisks, TheLengthIsThatOfTheSeams) {
     const Mesh mesh = checks::gated(shapes::moved(shapes::double_torus(), 37.0, Vec3::Zero()));
     const DiskCuts cuts = cut(mesh);
-    EXPECT_NEAR(cuts.cut_length * mesh.unit_length, seam_length(mesh, cuts.charts), 1e-9);
+    EXPECT_NEAR(cuts.cut_length * mesh.unit_length, metrics::seam_length(mesh, cuts.charts), 1e-9);
 }
 
 TEST(CutToDisks, Cancels) {
@@ -207,4 +208,4 @@ TEST(CutToDisks, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::atlas

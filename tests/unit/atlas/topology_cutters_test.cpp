@@ -11,7 +11,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::atlas {
 namespace {
 
 using shapes::pi;
@@ -69,7 +69,7 @@ TEST(Tips, AFingerIsCutOnceItIsLongerThanItsRim) {
 }
 
 // A plate with a hole whose rim is drawn up to a horn.
-RawMesh plate_with_horn(double height) {
+mesh::RawMesh plate_with_horn(double height) {
     std::vector<Vec2> profile{{0.0, height}};
     for (int i = 1; i <= 20; ++i)
         profile.emplace_back(1.0, height * (1.0 - i / 20.0));
@@ -94,7 +94,8 @@ TEST(CircleMaps, ADiscKeepsItsShape) {
     const DiskCuts cuts = cut(mesh, DiskOptions{false, {}});
     EXPECT_EQ(cuts.cut_charts, 1);
     const Mesh disc = checks::gated(shapes::cone(96, 12, 1.0, 0.0));
-    const std::vector<double> flat = circle_map_stretch(disc, checks::components(disc), progress);
+    const std::vector<double> flat =
+        metrics::circle_map_stretch(disc, checks::components(disc), progress);
     ASSERT_EQ(flat.size(), 1U);
     EXPECT_NEAR(flat[0], 1.0, 1e-9);
 }
@@ -103,14 +104,16 @@ TEST(CircleMaps, AHemisphereIsStretchedAsByStereographicProjection) {
     // ρ = tan(θ/2) has the scale 1 / (1 + cos θ): L2² = ½ ∫ (1 + u)² du from 0 to 1 = 7/6.
     const Mesh mesh = checks::gated(shapes::hemisphere(128, 48));
     Progress progress;
-    const std::vector<double> found = circle_map_stretch(mesh, checks::components(mesh), progress);
+    const std::vector<double> found =
+        metrics::circle_map_stretch(mesh, checks::components(mesh), progress);
     EXPECT_NEAR(found[0], std::sqrt(7.0 / 6.0), 2e-3);
 }
 
 TEST(CircleMaps, ChartsMustBeDisks) {
     const Mesh mesh = checks::gated(shapes::torus(12, 8));
     Progress progress;
-    EXPECT_THROW(circle_map_stretch(mesh, checks::components(mesh), progress), NumericalFailure);
+    EXPECT_THROW(metrics::circle_map_stretch(mesh, checks::components(mesh), progress),
+                 NumericalFailure);
 }
 
 TEST(MinCut, GoesOnFromTheFlowThatItHas) {
@@ -118,11 +121,11 @@ TEST(MinCut, GoesOnFromTheFlowThatItHas) {
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         shapes::Random random(seed);
         constexpr Index nodes = 40;
-        std::vector<CutSide> sides(at(nodes) + 2, CutSide::open);
-        sides[at(nodes)] = CutSide::source;
-        sides[at(nodes) + 1] = CutSide::sink;
-        MinCut steps(sides);
-        MinCut once(sides);
+        std::vector<graph::CutSide> sides(at(nodes) + 2, graph::CutSide::open);
+        sides[at(nodes)] = graph::CutSide::source;
+        sides[at(nodes) + 1] = graph::CutSide::sink;
+        graph::MinCut steps(sides);
+        graph::MinCut once(sides);
         std::vector<Index> links;
         std::vector<double> weights;
         for (int i = 0; i < 160; ++i) {
@@ -142,4 +145,4 @@ TEST(MinCut, GoesOnFromTheFlowThatItHas) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::atlas

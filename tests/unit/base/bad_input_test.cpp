@@ -21,7 +21,7 @@ using checks::value;
 // In the order of the filter's parameter.
 constexpr const char* methods[] = {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"};
 
-HostResult flatten(const RawMesh& raw, int method) {
+declare::HostResult flatten(const mesh::RawMesh& raw, int method) {
     return run("Charts: Flatten", checks::host_of(raw), {{"method", method}});
 }
 
@@ -48,9 +48,9 @@ Index overlapping_pairs(const std::vector<std::array<Vec2, 3>>& uv) {
 }
 
 // No face flipped or without area, nothing on top of another thing, all in the unit square.
-void expect_valid_layout(const RawMesh& raw, int method) {
+void expect_valid_layout(const mesh::RawMesh& raw, int method) {
     SCOPED_TRACE(methods[method]);
-    const HostResult flat = flatten(raw, method);
+    const declare::HostResult flat = flatten(raw, method);
     ASSERT_EQ(flat.wedge_uv.size(), raw.faces.size());
     Index flips = 0;
     Eigen::AlignedBox2d box;
@@ -62,29 +62,29 @@ void expect_valid_layout(const RawMesh& raw, int method) {
     EXPECT_EQ(flips, 0);
     EXPECT_EQ(overlapping_pairs(flat.wedge_uv), 0);
     checks::expect_agreement(raw, flat);
-    HostMesh laid = checks::host_of(raw);
+    declare::HostMesh laid = checks::host_of(raw);
     laid.wedge_uv = flat.wedge_uv;
-    const HostResult m = run("Charts: Measure Flattening", laid);
+    const declare::HostResult m = run("Charts: Measure Flattening", laid);
     EXPECT_EQ(value(m, "flipped_faces_number"), 0);
     EXPECT_EQ(value(m, "overlapping_faces_number"), 0);
     EXPECT_EQ(value(m, "disk_charts_number"), value(m, "charts_number"));
     EXPECT_EQ(value(m, "charts_number"), value(flat, "charts_number"));
 }
 
-void expect_valid_layouts(const RawMesh& raw) {
+void expect_valid_layouts(const mesh::RawMesh& raw) {
     for (int method = 0; method < 5; ++method)
         expect_valid_layout(raw, method);
 }
 
 // The packing of several charts takes a fixed effort: here for two methods only.
-void expect_valid_layouts_of_parts(const RawMesh& raw) {
+void expect_valid_layouts_of_parts(const mesh::RawMesh& raw) {
     expect_valid_layout(raw, 0);
     expect_valid_layout(raw, 4);
 }
 
 // A square plate of which some faces have no area: vertices on edges, and two on one point.
-RawMesh plate_with_flat_faces() {
-    RawMesh raw = shapes::grid(6, 6);
+mesh::RawMesh plate_with_flat_faces() {
+    mesh::RawMesh raw = shapes::grid(6, 6);
     const auto split_flat = [&](std::size_t f) { // a vertex in the middle of edge 0 of face f
         const Triangle t = raw.faces[f];
         const auto middle = static_cast<Index>(raw.points.size());
@@ -114,7 +114,7 @@ TEST(BadInput, Needles) {
 TEST(BadInput, ChartsOfOneTriangle) {
     expect_valid_layouts({{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
     expect_valid_layouts({{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}}, {{0, 1, 2}}});
-    RawMesh many;
+    mesh::RawMesh many;
     for (Index i = 0; i < 4; ++i)
         many = shapes::join(many, shapes::moved({{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 1}}, {{0, 1, 2}}},
                                                 1.0 + i, {5.0 * i, 0, 0}));
@@ -123,16 +123,16 @@ TEST(BadInput, ChartsOfOneTriangle) {
 }
 
 TEST(BadInput, ManyHoles) {
-    const RawMesh plate = shapes::plate(shapes::mask_with_holes(27));
+    const mesh::RawMesh plate = shapes::plate(shapes::mask_with_holes(27));
     expect_valid_layouts(plate);
-    RawMesh bent = plate;
+    mesh::RawMesh bent = plate;
     for (Vec3& p : bent.points)
         p.z() = std::sin(0.8 * p.x()) * (0.3 + 0.2 * p.y());
     expect_valid_layouts_of_parts(bent);
 }
 
 TEST(BadInput, HandlesAndClosedSurfaces) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::tetrahedron(), shapes::cube(2), shapes::sphere(2), shapes::torus(16, 10),
           shapes::double_torus(), shapes::slab(shapes::mask_with_holes(4)),
           shapes::plate_with_handle()})
@@ -140,12 +140,12 @@ TEST(BadInput, HandlesAndClosedSurfaces) {
 }
 
 TEST(BadInput, TinyHugeAndFarAway) {
-    const RawMesh raw = shapes::with_noise(shapes::hemisphere(16, 6), 0.02, 5);
+    const mesh::RawMesh raw = shapes::with_noise(shapes::hemisphere(16, 6), 0.02, 5);
     for (int method = 0; method < 5; ++method) {
         const double energy = value(flatten(raw, method), "worst_chart_energy");
         for (const auto& [scale, place] :
              {std::pair(1e-9, Vec3(0, 0, 0)), {1e9, Vec3(0, 0, 0)}, {1.0, Vec3(1e6, -2e6, 0)}}) {
-            const RawMesh other = shapes::moved(raw, scale, place);
+            const mesh::RawMesh other = shapes::moved(raw, scale, place);
             expect_valid_layout(other, method);
             EXPECT_NEAR(value(flatten(other, method), "worst_chart_energy"), energy, 1e-4 * energy);
         }
@@ -156,7 +156,7 @@ TEST(BadInput, CoordinatesThatAreNotFiniteAreRefusedWithTheFace) {
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         for (int method = 0; method < 5; ++method) {
-            RawMesh raw = shapes::grid(4, 4);
+            mesh::RawMesh raw = shapes::grid(4, 4);
             raw.points[at(raw.faces[30][1])].y() = bad;
             std::vector<Index> expected;
             for (std::size_t f = 0; f < raw.faces.size(); ++f)
@@ -174,13 +174,13 @@ TEST(BadInput, CoordinatesThatAreNotFiniteAreRefusedWithTheFace) {
 }
 
 TEST(BadInput, TextureCoordinatesThatNoHostHoldsAreRefusedWithTheFace) {
-    const HostMesh flat = [] {
-        HostMesh host = checks::host_of(shapes::with_noise(shapes::grid(4, 4), 0.05, 1));
+    const declare::HostMesh flat = [] {
+        declare::HostMesh host = checks::host_of(shapes::with_noise(shapes::grid(4, 4), 0.05, 1));
         host.wedge_uv = run("Charts: Flatten", host).wedge_uv;
         return host;
     }();
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1e300, 1e39}) {
-        HostMesh host = flat;
+        declare::HostMesh host = flat;
         host.wedge_uv[30][1].y() = bad;
         try {
             run("Pattern: Sewn Preview", host);
@@ -189,7 +189,7 @@ TEST(BadInput, TextureCoordinatesThatNoHostHoldsAreRefusedWithTheFace) {
             EXPECT_EQ(error.faces, std::vector<Index>{30});
         }
     }
-    HostMesh host = flat;
+    declare::HostMesh host = flat;
     host.wedge_uv[30][1].y() = std::numeric_limits<float>::max();
     EXPECT_NO_THROW(run("Pattern: Sewn Preview", host));
 }
@@ -198,12 +198,12 @@ TEST(BadInput, TextureCoordinatesThatNoHostHoldsAreRefusedWithTheFace) {
 // large as the model are of no use.
 TEST(BadInput, ATetrahedronWithACollapsedEdgeStaysSmall) {
     for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, -4, 0), Vec3(2, 1, 0)}) {
-        RawMesh raw;
+        mesh::RawMesh raw;
         raw.points = {{0, 0, 0}, 1e-11 * way, {0.28, 0, 0}, {0.2, 0.29, 0}};
         raw.faces = {{0, 1, 2}, {1, 3, 2}, {0, 3, 1}, {0, 2, 3}};
         for (int method = 0; method < 5; ++method) {
             SCOPED_TRACE(methods[method]);
-            const HostResult flat =
+            const declare::HostResult flat =
                 run("Charts: Flatten", checks::host_of(raw), {{"method", method}, {"pack", false}});
             for (const auto& corners : flat.wedge_uv)
                 for (const Vec2& p : corners)
@@ -215,7 +215,7 @@ TEST(BadInput, ATetrahedronWithACollapsedEdgeStaysSmall) {
 
 TEST(BadInput, AFoldedBackStripAndABowtie) {
     // Two squares that touch in one vertex, and a strip folded onto itself in space.
-    RawMesh bowtie =
+    mesh::RawMesh bowtie =
         shapes::join(shapes::grid(3, 3), shapes::moved(shapes::grid(3, 3), 1.0, {1.0, 1.0, 0.0}));
     const Index corner = 15; // (1, 1) of the first, and corner 0 of the second
     for (Triangle& t : bowtie.faces)

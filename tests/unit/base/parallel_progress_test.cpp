@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/base/worker.h"
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
 #include "devseg/base/progress.h"
+#include "devseg/base/worker.h"
 
 namespace devseg {
 namespace {

@@ -15,7 +15,7 @@
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::declare {
 namespace {
 
 using checks::contains;
@@ -129,7 +129,7 @@ std::vector<ParameterValue> other_values(const Parameter& p) {
 
 // Twenty cubes, for creases, and a finger, for a tip: one chart each.
 HostMesh cubes_and_a_finger() {
-    RawMesh all = shapes::finger(12, 20, 1.0, 9.0);
+    mesh::RawMesh all = shapes::finger(12, 20, 1.0, 9.0);
     for (int i = 1; i <= 20; ++i)
         all = shapes::join(all, shapes::moved(shapes::cube(2), 1.0, Vec3(3.0 * i, 0.0, 0.0)));
     return checks::host_of(all);
@@ -149,7 +149,7 @@ HostResult run_or_refuse(const FilterDeclaration& filter, const HostMesh& host,
 
 // A long bumpy body with a skeleton.
 HostMesh bumpy_body() {
-    RawMesh raw = shapes::sphere(3);
+    mesh::RawMesh raw = shapes::sphere(3);
     for (Vec3& p : raw.points) {
         p *= 1.0 + 0.25 * std::sin(4.0 * p.z() + 1.0) + 0.1 * std::cos(3.0 * p.x() + p.z());
         p.z() *= 2.2;
@@ -293,4 +293,4 @@ TEST(DeclaredFilters, ProgressNeverGoesBackAndPhasesHaveNames) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::declare

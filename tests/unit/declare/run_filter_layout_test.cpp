@@ -10,7 +10,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::declare {
 namespace {
 
 using checks::area_on_surface;
@@ -22,13 +22,13 @@ using checks::signed_area;
 using checks::take_charts;
 using checks::value;
 
-RawMesh noisy_torus() {
+mesh::RawMesh noisy_torus() {
     return shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4);
 }
 
 TEST(Layout, TextureCoordinatesMeetExceptAtSeams) {
     for (const bool mixed : {false, true}) {
-        RawMesh raw = noisy_torus();
+        mesh::RawMesh raw = noisy_torus();
         std::vector<bool> turned(raw.faces.size(), false);
         for (std::size_t f = 0; f < raw.faces.size() && mixed; f += 3) {
             std::swap(raw.faces[f][1], raw.faces[f][2]);
@@ -64,7 +64,7 @@ TEST(Layout, TextureCoordinatesMeetExceptAtSeams) {
 }
 
 TEST(Layout, ALayoutIsInTheUnitSquareAtOneScale) {
-    const RawMesh raw = shapes::moved(noisy_torus(), 30.0, Vec3(100, 0, 0));
+    const mesh::RawMesh raw = shapes::moved(noisy_torus(), 30.0, Vec3(100, 0, 0));
     HostMesh host = host_of(raw);
     take_charts(host, run("Segmentation: D-Charts", host));
     for (const bool pack : {true, false}) {
@@ -118,8 +118,9 @@ TEST(Layout, PackingKeepsShapesAndEvensScales) {
 }
 
 TEST(Layout, AllMethodsGiveValidLayouts) {
-    for (const RawMesh& raw : {noisy_torus(), shapes::moebius_strip(24, 2), shapes::double_torus(),
-                               shapes::with_noise(shapes::grid(12, 12), 0.1, 4)}) {
+    for (const mesh::RawMesh& raw :
+         {noisy_torus(), shapes::moebius_strip(24, 2), shapes::double_torus(),
+          shapes::with_noise(shapes::grid(12, 12), 0.1, 4)}) {
         HostMesh host = host_of(raw); // one chart: packed at once
         for (int method = 0; method < 5; ++method) {
             const HostResult flat = run("Charts: Flatten", host, {{"method", method}});
@@ -136,4 +137,4 @@ TEST(Layout, AllMethodsGiveValidLayouts) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::declare

@@ -11,7 +11,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::declare {
 namespace {
 
 using checks::contains;
@@ -23,13 +23,13 @@ using checks::signed_area;
 using checks::take_charts;
 using checks::value;
 
-RawMesh noisy_torus() {
+mesh::RawMesh noisy_torus() {
     return shapes::with_noise(shapes::torus(24, 14, 2.0, 0.9), 0.03, 4);
 }
 
 TEST(RunFilter, BothFacesOfAnEdgeAgreeWhateverTheirOrientation) {
     for (std::uint32_t seed = 0; seed < 4; ++seed) {
-        const RawMesh raw =
+        const mesh::RawMesh raw =
             seed == 0 ? noisy_torus() : shapes::with_random_orientations(noisy_torus(), seed);
         HostMesh host = host_of(raw);
         const HostResult segmented = run("Segmentation: D-Charts", host);
@@ -46,8 +46,8 @@ TEST(RunFilter, BothFacesOfAnEdgeAgreeWhateverTheirOrientation) {
 }
 
 TEST(RunFilter, TheOrientationOfFacesDoesNotChangeTheCharts) {
-    const RawMesh raw = noisy_torus();
-    RawMesh mixed = raw;
+    const mesh::RawMesh raw = noisy_torus();
+    mesh::RawMesh mixed = raw;
     for (std::size_t f = 0; f < mixed.faces.size(); f += 3) // a minority
         std::swap(mixed.faces[f][1], mixed.faces[f][2]);
     const HostResult a = run("Segmentation: D-Charts", host_of(raw));
@@ -62,7 +62,7 @@ TEST(RunFilter, TheOrientationOfFacesDoesNotChangeTheCharts) {
 }
 
 TEST(RunFilter, ChartsComeFromAttributesThenCoordinatesThenComponents) {
-    RawMesh raw = shapes::grid(4, 1); // 8 faces
+    mesh::RawMesh raw = shapes::grid(4, 1); // 8 faces
     HostMesh host = host_of(raw);
     const auto charts = [&] { return value(run("Charts: Colorize", host), "charts_number"); };
     EXPECT_EQ(charts(), 1);
@@ -116,7 +116,7 @@ TEST(RunFilter, BrokenCoordinatesOnlyMatterWhereTheyAreNeeded) {
 }
 
 TEST(RunFilter, FacesThatWereLeftOutTakeResultsOfOthers) {
-    RawMesh raw = shapes::sphere(1);
+    mesh::RawMesh raw = shapes::sphere(1);
     raw.faces.insert(raw.faces.begin(), Triangle{3, 3, 7}); // names a vertex twice
     raw.faces.push_back({raw.faces[9][1], raw.faces[9][0], raw.faces[9][2]}); // face 9, turned over
     HostMesh host = host_of(raw);
@@ -138,7 +138,7 @@ TEST(RunFilter, FacesThatWereLeftOutTakeResultsOfOthers) {
 }
 
 TEST(RunFilter, ErrorsNameTheHostsFaces) {
-    RawMesh raw = shapes::grid(2, 1);
+    mesh::RawMesh raw = shapes::grid(2, 1);
     raw.faces.insert(raw.faces.begin(), Triangle{1, 1, 2}); // the gate drops it
     HostMesh host = host_of(raw);
     host.wedge_uv.assign(5, {Vec2(0.5, 0.5), Vec2(0.5, 0.5), Vec2(0.5, 0.5)});
@@ -151,15 +151,15 @@ TEST(RunFilter, ErrorsNameTheHostsFaces) {
 }
 
 TEST(RunFilter, EdgesThatTheGateCutAreSeams) {
-    const RawMesh fins = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
-                          {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
+    const mesh::RawMesh fins = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
+                                {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
     const HostResult r = run("Charts: Cut to Disks", host_of(fins));
     EXPECT_EQ(r.seam_edges, (std::vector<int>{1, 1, 1}));
     EXPECT_EQ(r.chart_id, (std::vector<int>{0, 1, 2}));
 }
 
 TEST(RunFilter, NeighbouringChartsHaveDifferentColours) {
-    const RawMesh raw = shapes::sphere(3);
+    const mesh::RawMesh raw = shapes::sphere(3);
     const HostResult r =
         run("Segmentation: D-Charts", host_of(raw),
             {{"charts_number", 60}, {"merge_charts", false}, {"straighten_boundaries", false}});
@@ -175,7 +175,8 @@ TEST(RunFilter, NeighbouringChartsHaveDifferentColours) {
 }
 
 TEST(RunFilter, LengthsAreInModelUnits) {
-    const RawMesh raw = shapes::moved(shapes::cylinder_tube(12, 4, 1.0, 3.0), 37.0, Vec3(5, 5, 5));
+    const mesh::RawMesh raw =
+        shapes::moved(shapes::cylinder_tube(12, 4, 1.0, 3.0), 37.0, Vec3(5, 5, 5));
     HostMesh host = host_of(raw);
     const HostResult r = run("Charts: Cut to Disks", host);
     EXPECT_NEAR(value(r, "cut_length"), 3.0 * 37.0, 1e-9);
@@ -199,4 +200,4 @@ TEST(RunFilter, FacesThatCoordinatesCannotExpressAreReported) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::declare

@@ -5,10 +5,10 @@
 
 #include <Eigen/Geometry>
 
+#include "devseg/base/errors.h"
 #include "devseg/develop/angle_constraints.h"
 #include "devseg/develop/deform.h"
 #include "devseg/develop/intersections.h"
-#include "devseg/base/errors.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/maps/unfold.h"
 #include "devseg/methods/papercraft/papercraft.h"
@@ -16,7 +16,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::develop {
 namespace {
 
 std::vector<Index> own_points(const Mesh& mesh) {
@@ -26,14 +26,15 @@ std::vector<Index> own_points(const Mesh& mesh) {
     return point_of;
 }
 
-DeformResult deform(const Mesh& mesh, const ChartMap& charts, const DeformOptions& options = {}) {
+DeformResult deform(const Mesh& mesh, const atlas::ChartMap& charts,
+                    const DeformOptions& options = {}) {
     Progress progress;
     return deform_to_developable(mesh, charts, own_points(mesh), options, progress);
 }
 
 Mesh with_points(Mesh mesh, const std::vector<Vec3>& points) {
     mesh.points = points;
-    compute_face_geometry(mesh);
+    mesh::compute_face_geometry(mesh);
     return mesh;
 }
 
@@ -62,10 +63,10 @@ Mesh lumpy_torus() {
 
 struct Deformed {
     explicit Deformed(const Mesh& start, int charts) : mesh(start) {
-        PapercraftOptions options;
+        papercraft::PapercraftOptions options;
         options.charts_number = charts;
         Progress progress;
-        result = deform(start, segment_papercraft(start, options, progress).charts);
+        result = deform(start, papercraft::segment_papercraft(start, options, progress).charts);
         mesh = with_points(start, result.points);
     }
     Mesh mesh;
@@ -136,11 +137,11 @@ TEST(Deform, WhatIsDevelopableStays) {
 
 TEST(Deform, SlitsStayWhereTheyMustNotBeAdjusted) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::hemisphere(32, 10), 0.01, 1));
-    PapercraftOptions options;
+    papercraft::PapercraftOptions options;
     options.charts_number = 6;
     options.slit_threshold = 0.0;
     Progress progress;
-    const ChartMap charts = segment_papercraft(mesh, options, progress).charts;
+    const atlas::ChartMap charts = papercraft::segment_papercraft(mesh, options, progress).charts;
     const DeformResult r = deform(mesh, charts, {200, 1e-6, false, false});
     EXPECT_EQ(r.charts.seam, charts.seam);
     EXPECT_LE(worst_defect(with_points(mesh, r.points), charts.seam), 1e-6);
@@ -172,14 +173,14 @@ TEST(Deform, TheSameSphereConvergesWithMoreSlits) {
 
 TEST(Deform, SurfacesThatWouldCrossAreRefused) {
     // Two shells with charts of their own, nearer to each other than they have to move.
-    const RawMesh shell = shapes::with_noise(shapes::sphere(3), 0.003, 8);
-    const RawMesh inside = shapes::with_noise(shapes::sphere(3), 0.003, 9);
+    const mesh::RawMesh shell = shapes::with_noise(shapes::sphere(3), 0.003, 8);
+    const mesh::RawMesh inside = shapes::with_noise(shapes::sphere(3), 0.003, 9);
     const Mesh mesh =
         checks::gated(shapes::join(shell, shapes::moved(inside, 0.975, Vec3::Zero())));
-    PapercraftOptions options;
+    papercraft::PapercraftOptions options;
     options.charts_number = 12;
     Progress progress;
-    const ChartMap charts = segment_papercraft(mesh, options, progress).charts;
+    const atlas::ChartMap charts = papercraft::segment_papercraft(mesh, options, progress).charts;
     ASSERT_TRUE(find_intersections(mesh.points, mesh.faces, progress).empty());
     DeformOptions anyway;
     anyway.keep_unfinished = true;
@@ -194,14 +195,14 @@ TEST(Deform, SurfacesThatWouldCrossAreRefused) {
 
 TEST(Deform, VerticesThatShareAPointStayTogether) {
     // Two fans that touch in a vertex of the host: the gate splits it.
-    RawMesh raw = shapes::with_noise(shapes::hemisphere(12, 4), 0.02, 1);
-    const RawMesh other = shapes::moved(raw, -1.0, 2.0 * raw.points[0]);
-    RawMesh both = shapes::join(raw, other);
+    mesh::RawMesh raw = shapes::with_noise(shapes::hemisphere(12, 4), 0.02, 1);
+    const mesh::RawMesh other = shapes::moved(raw, -1.0, 2.0 * raw.points[0]);
+    mesh::RawMesh both = shapes::join(raw, other);
     const Index offset = static_cast<Index>(raw.points.size());
     for (Triangle& t : both.faces)
         for (Index& v : t)
             v = (both.points[at(v)] - both.points[0]).norm() < 1e-9 ? 0 : v;
-    const GatedMesh gated = gate_mesh(both);
+    const mesh::GatedMesh gated = mesh::gate_mesh(both);
     ASSERT_GT(offset, 0);
     ASSERT_NE(std::count(gated.source_vertex.begin(), gated.source_vertex.end(), 0), 0);
     const std::vector<Index> point_of(gated.source_vertex.begin(), gated.source_vertex.end());
@@ -238,8 +239,9 @@ TEST(Intersections, CrossingCountsAndTouchingDoesNot) {
 }
 
 TEST(Intersections, TheTreeFindsWhatAllPairsFind) {
-    RawMesh raw = shapes::join(shapes::sphere(2), shapes::moved(shapes::torus(20, 10, 1.0, 0.4),
-                                                                1.0, Vec3(0.3, 0.2, 0.1)));
+    mesh::RawMesh raw =
+        shapes::join(shapes::sphere(2),
+                     shapes::moved(shapes::torus(20, 10, 1.0, 0.4), 1.0, Vec3(0.3, 0.2, 0.1)));
     const auto all = find_intersections(raw.points, raw.faces, Progress());
     EXPECT_GT(all.size(), 20U);
     std::vector<std::pair<Index, Index>> one_by_one;
@@ -253,7 +255,7 @@ TEST(Intersections, TheTreeFindsWhatAllPairsFind) {
 }
 
 // The chart folded back: each face beside its neighbour, turned by the fold angle of their edge.
-std::vector<Vec3> fold_back(const Mesh& mesh, const ChartSurface& surface,
+std::vector<Vec3> fold_back(const Mesh& mesh, const atlas::ChartSurface& surface,
                             const std::vector<Vec2>& uv) {
     std::vector<Eigen::Isometry3d> place(surface.face.size(), Eigen::Isometry3d::Identity());
     std::vector<bool> seen(surface.face.size(), false);
@@ -285,7 +287,8 @@ std::vector<Vec3> fold_back(const Mesh& mesh, const ChartSurface& surface,
     return folded;
 }
 
-void expect_folds_back(const Mesh& mesh, const ChartSurface& surface, const std::vector<Vec2>& uv) {
+void expect_folds_back(const Mesh& mesh, const atlas::ChartSurface& surface,
+                       const std::vector<Vec2>& uv) {
     const std::vector<Vec3> folded = fold_back(mesh, surface, uv);
     Eigen::Matrix3Xd from(3, folded.size());
     Eigen::Matrix3Xd to(3, folded.size());
@@ -301,10 +304,10 @@ void expect_folds_back(const Mesh& mesh, const ChartSurface& surface, const std:
 TEST(Unfold, DeformedChartsUnfoldWithoutStretchAndFoldBack) {
     const Deformed d(lumpy_torus(), 8);
     Progress progress;
-    const FlattenResult flat =
-        flatten_charts(d.mesh, d.result.charts, FlattenMethod::lscm, progress);
+    const flatten::FlattenResult flat =
+        flatten::flatten_charts(d.mesh, d.result.charts, flatten::FlattenMethod::lscm, progress);
     EXPECT_GE(flat.charts.count, d.result.charts.count);
-    for (const FlatChart& chart : flat.flat) {
+    for (const flatten::FlatChart& chart : flat.flat) {
         EXPECT_TRUE(chart.developed);
         for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
             EXPECT_NEAR(
@@ -316,22 +319,22 @@ TEST(Unfold, DeformedChartsUnfoldWithoutStretchAndFoldBack) {
 }
 
 TEST(Unfold, WhatIsNotDevelopableIsNotUnfolded) {
-    for (const RawMesh& raw : {shapes::hemisphere(16, 6), shapes::sphere(2)}) {
+    for (const mesh::RawMesh& raw : {shapes::hemisphere(16, 6), shapes::sphere(2)}) {
         const checks::Disk disk(raw);
-        EXPECT_FALSE(unfold(disk.problem, disk.surface.twin).has_value());
+        EXPECT_FALSE(flatten::unfold(disk.problem, disk.surface.twin).has_value());
     }
     const checks::Disk strip(shapes::folded_strip(8, 6, 0.7));
-    EXPECT_TRUE(unfold(strip.problem, strip.surface.twin).has_value());
+    EXPECT_TRUE(flatten::unfold(strip.problem, strip.surface.twin).has_value());
 }
 
 // Rays from the origin in a zigzag, each at the same angle from the last: a folded ring sector of
 // so many sectors of `angle`, which may be more than a full turn in the plane.
-RawMesh zigzag_fan(int sectors, double angle, double inner, double outer, int rows) {
+mesh::RawMesh zigzag_fan(int sectors, double angle, double inner, double outer, int rows) {
     const double turn = 0.9 * 2.0 * shapes::pi / sectors; // between rays, seen from above
     // cos(angle) = cos²ψ cos(turn) − sin²ψ
     const double c = (std::cos(angle) + 1.0) / (std::cos(turn) + 1.0);
     const double psi = std::acos(std::sqrt(c));
-    RawMesh raw = shapes::grid(sectors, rows);
+    mesh::RawMesh raw = shapes::grid(sectors, rows);
     for (Index v = 0; v < static_cast<Index>(raw.points.size()); ++v) {
         const int i = static_cast<int>(std::lround(raw.points[at(v)].x() * sectors));
         const double r = inner + (outer - inner) * raw.points[at(v)].y();
@@ -345,12 +348,12 @@ RawMesh zigzag_fan(int sectors, double angle, double inner, double outer, int ro
 TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
     const Mesh mesh = checks::gated(zigzag_fan(24, shapes::pi / 8.0, 1.0, 2.0, 4));
     Progress progress;
-    const FlattenResult flat = flatten_charts(mesh, checks::components(mesh),
-                                              FlattenMethod::symmetric_dirichlet, progress);
+    const flatten::FlattenResult flat = flatten::flatten_charts(
+        mesh, checks::components(mesh), flatten::FlattenMethod::symmetric_dirichlet, progress);
     EXPECT_EQ(flat.cuts, 1);
     EXPECT_EQ(flat.charts.count, 2);
     double area = 0.0;
-    for (const FlatChart& chart : flat.flat) {
+    for (const flatten::FlatChart& chart : flat.flat) {
         EXPECT_TRUE(chart.developed);
         EXPECT_FALSE(chart.pushed);
         for (const Triangle& t : chart.surface.corners) {
@@ -364,7 +367,7 @@ TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
 
 TEST(Unfold, ASmallPartIsHingedToANeighbour) {
     // The same with one sector more than fits, and a sheet at either end.
-    RawMesh raw = zigzag_fan(17, shapes::pi / 8.0, 1.0, 2.0, 1);
+    mesh::RawMesh raw = zigzag_fan(17, shapes::pi / 8.0, 1.0, 2.0, 1);
     const auto add_sheet = [&](Index a, Index b, const Vec3& offset) {
         const Index n = static_cast<Index>(raw.points.size());
         raw.points.push_back(raw.points[at(a)] + offset);
@@ -379,8 +382,9 @@ TEST(Unfold, ASmallPartIsHingedToANeighbour) {
     for (std::size_t i = 1; i <= 4; ++i)
         labels[labels.size() - i] = i <= 2 ? 1 : 2;
     Progress progress;
-    const FlattenResult flat = flatten_charts(mesh, make_chart_map(mesh, labels, {}, false),
-                                              FlattenMethod::symmetric_dirichlet, progress);
+    const flatten::FlattenResult flat =
+        flatten::flatten_charts(mesh, atlas::make_chart_map(mesh, labels, {}, false),
+                                flatten::FlattenMethod::symmetric_dirichlet, progress);
     EXPECT_EQ(flat.cuts, 1);
     EXPECT_EQ(flat.reattached, 1);
     EXPECT_EQ(flat.charts.count, 3);
@@ -392,4 +396,4 @@ TEST(Unfold, ASmallPartIsHingedToANeighbour) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::develop

@@ -11,7 +11,7 @@
 #include "unit/checks.h"
 #include "unit/host_checks.h"
 
-namespace devseg {
+namespace devseg::filters {
 namespace {
 
 using checks::contains;
@@ -24,8 +24,8 @@ bool is_snake_case(const std::string& name) {
 TEST(FilterTable, NamesAreUniqueAndInTheHostsForms) {
     std::set<std::string> menu;
     std::set<std::string> python;
-    EXPECT_GE(plugin_filters().size(), 7U);
-    for (const FilterDeclaration& filter : plugin_filters()) {
+    EXPECT_GE(exporting::plugin_filters().size(), 7U);
+    for (const declare::FilterDeclaration& filter : exporting::plugin_filters()) {
         SCOPED_TRACE(filter.menu_name);
         EXPECT_TRUE(menu.insert(filter.menu_name).second);
         EXPECT_TRUE(python.insert(filter.python_name).second);
@@ -43,7 +43,7 @@ TEST(FilterTable, HelpHasTwoPartsAndMethodsNameTheirSource) {
     const std::regex reference("See:<br>(<i>[^<]+</i><br><b>\"[^<]+\"</b><br>[^<]+, \\d{4}, "
                                // Not every journal has identifiers.
                                "(doi:10\\.\\d{4,}/[^ <]+|pages \\d+-\\d+)(<br>)?)+$");
-    for (const FilterDeclaration& filter : plugin_filters()) {
+    for (const declare::FilterDeclaration& filter : exporting::plugin_filters()) {
         SCOPED_TRACE(filter.menu_name);
         EXPECT_GE(filter.help.size(), 100U);
         EXPECT_TRUE(contains(filter.help, "<br>"));
@@ -69,9 +69,9 @@ TEST(FilterTable, HelpHasTwoPartsAndMethodsNameTheirSource) {
 }
 
 TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
-    for (const FilterDeclaration& filter : plugin_filters()) {
+    for (const declare::FilterDeclaration& filter : exporting::plugin_filters()) {
         std::set<std::string> names;
-        for (const Parameter& p : filter.parameters) {
+        for (const declare::Parameter& p : filter.parameters) {
             SCOPED_TRACE(filter.menu_name + ", " + p.name);
             EXPECT_TRUE(names.insert(p.name).second);
             EXPECT_TRUE(is_snake_case(p.name));
@@ -85,28 +85,28 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
                 EXPECT_LE(number(p.default_value), p.maximum);
             }
             switch (p.kind) {
-            case ParameterKind::boolean:
+            case declare::ParameterKind::boolean:
                 EXPECT_TRUE(std::holds_alternative<bool>(p.default_value));
                 break;
-            case ParameterKind::integer:
+            case declare::ParameterKind::integer:
                 EXPECT_TRUE(std::holds_alternative<int>(p.default_value));
                 EXPECT_LE(p.maximum, std::numeric_limits<int>::max());
                 break;
-            case ParameterKind::real:
+            case declare::ParameterKind::real:
                 EXPECT_TRUE(std::holds_alternative<double>(p.default_value));
                 EXPECT_TRUE(std::regex_search(
                     p.help, std::regex("unit|share|degree|radian|millimet|percent|%")))
                     << "no unit: " << p.help;
                 break;
-            case ParameterKind::choice:
+            case declare::ParameterKind::choice:
                 EXPECT_TRUE(std::holds_alternative<int>(p.default_value));
                 EXPECT_GE(p.choices.size(), 2U);
                 EXPECT_EQ(p.maximum, static_cast<double>(p.choices.size()) - 1.0);
                 for (const std::string& choice : p.choices)
                     EXPECT_TRUE(contains(p.help, choice));
                 break;
-            case ParameterKind::text:
-            case ParameterKind::output_file:
+            case declare::ParameterKind::text:
+            case declare::ParameterKind::output_file:
                 EXPECT_TRUE(std::holds_alternative<std::string>(p.default_value));
                 break;
             }
@@ -120,9 +120,9 @@ TEST(FilterTable, ParametersAreDescribedAndTheirDefaultsInRange) {
 }
 
 TEST(FilterTable, ResultsAreDescribed) {
-    for (const FilterDeclaration& filter : plugin_filters()) {
+    for (const declare::FilterDeclaration& filter : exporting::plugin_filters()) {
         std::set<std::string> names;
-        for (const ResultField& r : filter.results) {
+        for (const declare::ResultField& r : filter.results) {
             SCOPED_TRACE(filter.menu_name + ", " + r.name);
             EXPECT_TRUE(names.insert(r.name).second);
             EXPECT_TRUE(is_snake_case(r.name));
@@ -132,4 +132,4 @@ TEST(FilterTable, ResultsAreDescribed) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::filters

@@ -7,30 +7,32 @@
 #include <gtest/gtest.h>
 
 #include "devseg/atlas/disks.h"
-#include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 #include "devseg/methods/dcharts/dcharts.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 constexpr FlattenMethod methods[] = {FlattenMethod::symmetric_dirichlet, FlattenMethod::lscm};
 
-FlattenResult flatten(const Mesh& mesh, const ChartMap& charts, FlattenMethod method) {
+FlattenResult flatten(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method) {
     Progress progress;
     return flatten_charts(mesh, charts, method, progress);
 }
 
-ChartMap segmented(const Mesh& mesh, int number) {
+atlas::ChartMap segmented(const Mesh& mesh, int number) {
     Progress progress;
-    DChartsOptions options;
+    dcharts::DChartsOptions options;
     options.charts_number = number;
-    const DChartsResult r = segment_dcharts(mesh, options, progress);
-    return cut_charts_to_disks(mesh, make_chart_map(mesh, r.chart, {}, false), progress).charts;
+    const dcharts::DChartsResult r = dcharts::segment_dcharts(mesh, options, progress);
+    return atlas::cut_charts_to_disks(mesh, atlas::make_chart_map(mesh, r.chart, {}, false),
+                                      progress)
+        .charts;
 }
 
 // Pairs of faces of one chart that share more than a sliver of area, by clipping.
@@ -47,7 +49,7 @@ Index overlaps(const FlatChart& chart) {
 }
 
 // What flatten.h promises.
-void expect_promises(const Mesh& mesh, const ChartMap& charts, const FlattenResult& r) {
+void expect_promises(const Mesh& mesh, const atlas::ChartMap& charts, const FlattenResult& r) {
     EXPECT_TRUE(checks::is_valid(mesh, r.charts));
     ASSERT_EQ(static_cast<Index>(r.flat.size()), r.charts.count);
     for (std::size_t h = 0; h < charts.seam.size(); ++h)
@@ -75,23 +77,24 @@ void expect_promises(const Mesh& mesh, const ChartMap& charts, const FlattenResu
 }
 
 TEST(Flatten, KeepsItsPromises) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::sphere(2), shapes::torus(16, 10), shapes::cube(3), shapes::double_torus(),
           shapes::plate_with_handle(), shapes::capped_cylinder(16, 4),
           shapes::with_noise(shapes::sphere(2), 0.05, 3), shapes::moebius_strip(20, 2)}) {
         const Mesh mesh = checks::gated(raw);
-        for (const ChartMap& charts : {checks::components_cut_to_disks(mesh), segmented(mesh, 4)})
+        for (const atlas::ChartMap& charts :
+             {checks::components_cut_to_disks(mesh), segmented(mesh, 4)})
             for (const FlattenMethod method : methods)
                 expect_promises(mesh, charts, flatten(mesh, charts, method));
     }
 }
 
 TEST(Flatten, DevelopableChartsAreIsometric) {
-    const RawMesh raw = shapes::join(
+    const mesh::RawMesh raw = shapes::join(
         shapes::join(shapes::grid(4, 3), shapes::moved(shapes::cylinder_tube(16, 4), 1, {5, 0, 0})),
         shapes::moved(shapes::frustum(16, 3, 1.0, 0.4, 1.0), 1, {10, 0, 0}));
     const Mesh mesh = checks::gated(raw);
-    const ChartMap charts = checks::components_cut_to_disks(mesh);
+    const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
     for (const FlattenMethod method : methods) {
         const FlattenResult r = flatten(mesh, charts, method);
         ASSERT_EQ(r.flat.size(), 3U);
@@ -107,7 +110,7 @@ TEST(Flatten, DevelopableChartsAreIsometric) {
 
 TEST(Flatten, TheMethodDecidesWhatIsKept) {
     const Mesh mesh = checks::gated(shapes::hemisphere(20, 10));
-    const ChartMap charts = checks::components_cut_to_disks(mesh);
+    const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
     const FlatChart isometric =
         flatten(mesh, charts, FlattenMethod::symmetric_dirichlet).flat.at(0);
     const FlatChart conformal = flatten(mesh, charts, FlattenMethod::lscm).flat.at(0);
@@ -124,9 +127,9 @@ TEST(Flatten, ChartsOnWhichLscmFlipsAreMended) {
           {shapes::finger(8, 60, 1.0, 47.0), true}, // shrinks below rounding
           {shapes::hemisphere(20, 8), false}}) {
         const Mesh mesh = checks::gated(raw);
-        const ChartMap charts = checks::components(mesh);
+        const atlas::ChartMap charts = checks::components(mesh);
         const FlatteningProblem problem =
-            make_flattening_problem(mesh, extract_charts(mesh, charts).at(0));
+            make_flattening_problem(mesh, atlas::extract_charts(mesh, charts).at(0));
         ASSERT_EQ(checks::count_flips(problem.faces, flatten_lscm(problem)) > 0, expected);
         const FlattenResult r = flatten(mesh, charts, FlattenMethod::lscm);
         expect_promises(mesh, charts, r);
@@ -138,7 +141,7 @@ TEST(Flatten, ChartsOnWhichLscmFlipsAreMended) {
 TEST(Flatten, PartsThatWouldOverlapComeApart) {
     for (const double turns : {1.3, 2.2}) {
         const Mesh mesh = checks::gated(shapes::helix_strip(120, turns, 1.0, 2.0, 0.3));
-        const ChartMap charts = checks::components(mesh);
+        const atlas::ChartMap charts = checks::components(mesh);
         for (const FlattenMethod method : methods) {
             const FlattenResult r = flatten(mesh, charts, method);
             expect_promises(mesh, charts, r);
@@ -149,7 +152,7 @@ TEST(Flatten, PartsThatWouldOverlapComeApart) {
 
 TEST(Flatten, TheNumberOfThreadsDoesNotMatter) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::torus(30, 16), 0.03, 6));
-    const ChartMap charts = segmented(mesh, 7);
+    const atlas::ChartMap charts = segmented(mesh, 7);
     const auto flat = [&](int threads) {
         set_thread_limit(threads);
         const FlattenResult r = flatten(mesh, charts, FlattenMethod::symmetric_dirichlet);
@@ -165,10 +168,10 @@ TEST(Flatten, TheNumberOfThreadsDoesNotMatter) {
 }
 
 TEST(Flatten, SizeAndPlaceDoNotMatter) {
-    const RawMesh raw = shapes::with_noise(shapes::hemisphere(16, 6), 0.02, 5);
+    const mesh::RawMesh raw = shapes::with_noise(shapes::hemisphere(16, 6), 0.02, 5);
     const auto energy = [&](double scale, const Vec3& place) {
         const Mesh mesh = checks::gated(shapes::moved(raw, scale, place));
-        const ChartMap charts = checks::components_cut_to_disks(mesh);
+        const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
         return flatten(mesh, charts, FlattenMethod::symmetric_dirichlet).flat.at(0).energy;
     };
     const double reference = energy(1.0, Vec3::Zero());
@@ -190,7 +193,7 @@ TEST(Flatten, HardChartsEndInAMapOrAClearFailure) {
     for (const Index rings : {60, 120, 400})
         for (const FlattenMethod method : methods) {
             const Mesh mesh = checks::gated(shapes::finger(6, rings, 1.0, rings));
-            const ChartMap charts = checks::components(mesh);
+            const atlas::ChartMap charts = checks::components(mesh);
             try {
                 expect_promises(mesh, charts, flatten(mesh, charts, method));
             } catch (const NumericalFailure& error) {
@@ -203,13 +206,13 @@ TEST(Flatten, HardChartsEndInAMapOrAClearFailure) {
 // A tube that is closed at one end is a disk, and so it is not cut; it should still be flattened.
 TEST(Flatten, LongClosedTubesAreFlattened) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::finger(6, 60, 1.0, 60.0), 0.02, 3));
-    const ChartMap charts = checks::components_cut_to_disks(mesh);
+    const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
     expect_promises(mesh, charts, flatten(mesh, charts, FlattenMethod::symmetric_dirichlet));
 }
 
 TEST(Flatten, Cancels) {
     const Mesh mesh = checks::gated(shapes::sphere(5));
-    const ChartMap charts = segmented(mesh, 6);
+    const atlas::ChartMap charts = segmented(mesh, 6);
     for (const int stop : {1, 2, 4}) {
         int calls = 0;
         Progress progress([&](double, const char*) { return ++calls < stop; });
@@ -224,4 +227,4 @@ TEST(Flatten, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,20 +5,20 @@
 #include <gtest/gtest.h>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/mesh/input_gate.h"
-#include "devseg/atlas/texture.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 constexpr double tolerance = 1e-9;
 
 // A plate in two charts, and a piece of two squares at its lower edge between them.
 Mesh plate() {
-    return gate_mesh(shapes::grid(20, 20, 20.0, 20.0)).mesh;
+    return mesh::gate_mesh(shapes::grid(20, 20, 20.0, 20.0)).mesh;
 }
 
 FlattenResult flat_with_sliver(const Mesh& mesh) {
@@ -30,7 +30,7 @@ FlattenResult flat_with_sliver(const Mesh& mesh) {
         label.push_back(p.x() > 10.0 && p.x() < 11.0 && p.y() < 2.0 ? 2 : p.x() < 10.0 ? 0 : 1);
     }
     Progress progress;
-    return flatten_charts(mesh, make_chart_map(mesh, label, {}, false),
+    return flatten_charts(mesh, atlas::make_chart_map(mesh, label, {}, false),
                           FlattenMethod::symmetric_dirichlet, progress);
 }
 
@@ -73,15 +73,15 @@ TEST(Slivers, ChartsThatWereGivenStay) {
 
 TEST(Slivers, StayWhereTheJoinedMapWouldOverlap) {
     // A ring but for a gap of one sector, which is its only piece: gluing closes the ring.
-    const RawMesh raw = shapes::annulus(240, 2, 0.97, 1.0);
-    const Mesh mesh = gate_mesh(raw).mesh;
+    const mesh::RawMesh raw = shapes::annulus(240, 2, 0.97, 1.0);
+    const Mesh mesh = mesh::gate_mesh(raw).mesh;
     std::vector<Index> label(mesh.faces.size(), 0);
     for (std::size_t f = 0; f < label.size(); ++f) {
         const Vec3& p = mesh.face_centers[f];
         label[f] = p.x() > 0.0 && std::abs(p.y()) < 0.03 * p.x() ? 1 : 0;
     }
     Progress progress;
-    FlattenResult flat = flatten_charts(mesh, make_chart_map(mesh, label, {}, false),
+    FlattenResult flat = flatten_charts(mesh, atlas::make_chart_map(mesh, label, {}, false),
                                         FlattenMethod::symmetric_dirichlet, progress);
     const Index before = flat.charts.count;
     ASSERT_GE(before, 2);
@@ -105,14 +105,15 @@ Index disks_in_the_plane(const Mesh& mesh, const FlattenResult& flat) {
         shift += 10.0;
     }
     Index disks = 0;
-    for (const ChartSurface& surface : extract_charts(mesh, charts_from_uv(mesh, uv)))
+    for (const atlas::ChartSurface& surface :
+         atlas::extract_charts(mesh, atlas::charts_from_uv(mesh, uv)))
         disks += surface.is_disk() ? 1 : 0;
     return disks;
 }
 
 // The sides of cuts around holes in a flat sheet lie on each other.
 TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
-    const Mesh mesh = gate_mesh(shapes::plate(shapes::mask_with_holes(3))).mesh;
+    const Mesh mesh = mesh::gate_mesh(shapes::plate(shapes::mask_with_holes(3))).mesh;
     double right = -1e9;
     for (const Vec3& center : mesh.face_centers)
         right = std::max(right, center.x());
@@ -121,8 +122,9 @@ TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
     for (const Vec3& center : mesh.face_centers)
         label.push_back(center.x() > right - 0.7 * cell ? 1 : 0);
     Progress progress;
-    const ChartMap cut =
-        cut_charts_to_disks(mesh, make_chart_map(mesh, label, {}, false), progress).charts;
+    const atlas::ChartMap cut =
+        atlas::cut_charts_to_disks(mesh, atlas::make_chart_map(mesh, label, {}, false), progress)
+            .charts;
     FlattenResult flat = flatten_charts(mesh, cut, FlattenMethod::symmetric_dirichlet, progress);
     ASSERT_EQ(flat.charts.count, 2);
     EXPECT_EQ(disks_in_the_plane(mesh, flat), 2);
@@ -137,4 +139,4 @@ TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -12,7 +12,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::mesh {
 namespace {
 
 using shapes::Random;
@@ -262,7 +262,8 @@ TEST(Coarsen, RefinedLabelsAreConnectedAndCoverAll) {
                 EXPECT_EQ(fine[f], label[f]);
             }
         }
-        const ChartMap charts = make_chart_map(mesh, fine, {}, false); // parts become charts
+        const atlas::ChartMap charts =
+            atlas::make_chart_map(mesh, fine, {}, false); // parts become charts
         EXPECT_EQ(charts.count, count);
         EXPECT_LT(border_length(mesh, fine), 1.6 * border_length(coarse.mesh, on_coarse) + 1e-9);
     }
@@ -280,4 +281,4 @@ TEST(Coarsen, RunsAreEqualAndCanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::mesh

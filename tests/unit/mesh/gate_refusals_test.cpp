@@ -7,7 +7,7 @@
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::mesh {
 namespace {
 
 using checks::contains;
@@ -77,4 +77,4 @@ TEST(GateRefusals, NoArea) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::mesh

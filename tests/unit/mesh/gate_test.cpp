@@ -12,7 +12,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::mesh {
 namespace {
 
 using checks::contains;
@@ -302,4 +302,4 @@ TEST(Gate, FacesWithoutAreaTakeTheNormalOfTheirNeighbours) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::mesh

@@ -5,7 +5,7 @@
 
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::mesh {
 namespace {
 
 // Every face with three vertices of its own.
@@ -58,4 +58,4 @@ TEST(Weld, LayersOnEachOtherStayApart) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::mesh

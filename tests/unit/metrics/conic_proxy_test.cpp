@@ -8,7 +8,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::metrics {
 namespace {
 
 using shapes::pi;
@@ -180,7 +180,7 @@ TEST(FitConic, OpposedNormalsHaveAConeOfARightAngle) {
 }
 
 TEST(FitConic, MeshesOfConesFitExactly) {
-    for (const RawMesh& raw : {shapes::cone(24, 5), shapes::cylinder_tube(24, 5)}) {
+    for (const mesh::RawMesh& raw : {shapes::cone(24, 5), shapes::cylinder_tube(24, 5)}) {
         const Mesh mesh = checks::gated(raw);
         NormalMoments moments;
         for (Index f = 0; f < mesh.face_count(); ++f)
@@ -201,4 +201,4 @@ TEST(ConicProxy, FittingErrorIsTheSquaredDifferenceOfCosines) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::metrics

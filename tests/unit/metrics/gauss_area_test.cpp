@@ -9,7 +9,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::metrics {
 namespace {
 
 using shapes::pi;
@@ -28,7 +28,7 @@ double sum(const std::vector<double>& values) {
 }
 
 TEST(GaussArea, ClosedConvexShapesSweepTheSphereOnce) {
-    const std::vector<RawMesh> convex = {
+    const std::vector<mesh::RawMesh> convex = {
         shapes::sphere(0),
         shapes::sphere(4),
         shapes::cube(1),
@@ -76,7 +76,7 @@ TEST(GaussArea, NormalsOfASphereAreExact) {
 
 TEST(GaussArea, ACreaseThatEndsDoesNotSplitTheNormal) {
     // A fold along half of a line only: its inner end has one normal.
-    RawMesh raw = shapes::grid(8, 8);
+    mesh::RawMesh raw = shapes::grid(8, 8);
     for (Vec3& p : raw.points)
         if (p.x() > 0.5 && p.y() > 0.55)
             p.z() = 2.0 * (p.x() - 0.5) * (p.y() - 0.5);
@@ -84,8 +84,8 @@ TEST(GaussArea, ACreaseThatEndsDoesNotSplitTheNormal) {
     std::vector<std::uint8_t> crease(mesh.twin.size(), 0);
     Index end = -1; // an inner vertex with a single crease
     for (Index h = 0; h < mesh.half_edge_count() && end < 0; ++h)
-        if (mesh.twin[at(h)] >= 0 && visit_star(mesh, h, [](Index) {}) &&
-            visit_star(mesh, mesh.twin[at(h)], [](Index) {})) {
+        if (mesh.twin[at(h)] >= 0 && mesh::visit_star(mesh, h, [](Index) {}) &&
+            mesh::visit_star(mesh, mesh.twin[at(h)], [](Index) {})) {
             crease[at(h)] = crease[at(mesh.twin[at(h)])] = 1;
             end = mesh.origin(h);
         }
@@ -138,7 +138,7 @@ TEST(GaussArea, BoundariesHaveNone) {
 }
 
 TEST(GaussArea, SizeDoesNotMatter) {
-    const RawMesh raw = shapes::with_noise(shapes::cube(4), 0.02, 3);
+    const mesh::RawMesh raw = shapes::with_noise(shapes::cube(4), 0.02, 3);
     const double expected = areas_of(checks::gated(raw)).total;
     for (const double scale : {1e-9, 1e9})
         EXPECT_NEAR(areas_of(checks::gated(shapes::moved(raw, scale, Vec3::Zero()))).total,
@@ -164,4 +164,4 @@ TEST(GaussArea, DeviationOfEquationThree) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::metrics

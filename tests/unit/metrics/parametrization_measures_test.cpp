@@ -9,7 +9,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::metrics {
 namespace {
 
 using Map = std::function<Vec2(const Vec2&)>;
@@ -30,7 +30,7 @@ struct Square {
             uv.push_back(f(p));
         return uv;
     }
-    RawMesh raw;
+    mesh::RawMesh raw;
     Mesh mesh;
     CornerUv plane; // the square itself at the corners
 };
@@ -136,7 +136,8 @@ TEST(ParametrizationMeasures, MirroredChartsAreNotFlipped) {
 
 TEST(ParametrizationMeasures, ChartsAreComparedAtTheirOwnScale) {
     Square square;
-    const RawMesh two = shapes::join(square.raw, shapes::moved(square.raw, 1.0, Vec3(3, 0, 0)));
+    const mesh::RawMesh two =
+        shapes::join(square.raw, shapes::moved(square.raw, 1.0, Vec3(3, 0, 0)));
     const Mesh mesh = checks::gated(two);
     CornerUv uv = square.plane;
     for (const Vec2& p : square.plane)
@@ -187,7 +188,7 @@ TEST(ParametrizationMeasures, FlippedFacesAreCountedAgainstMostOfTheirChart) {
         });
         Index expected = 0;
         for (Index f = 0; f < square.mesh.face_count(); ++f)
-            expected += uv_area(uv, f) <= 0.0 ? 1 : 0;
+            expected += plane::uv_area(uv, f) <= 0.0 ? 1 : 0;
         EXPECT_GE(expected, 1);
         EXPECT_EQ(m.flipped_faces_number, expected);
         EXPECT_GT(m.overlapping_faces_number, 0);
@@ -224,7 +225,7 @@ TEST(ParametrizationMeasures, CollapsedFacesAreCountedAndLeftOut) {
 }
 
 TEST(ParametrizationMeasures, FacesWithoutAreaOnTheSurfaceAreLeftOut) {
-    RawMesh raw = shapes::grid(3, 3);
+    mesh::RawMesh raw = shapes::grid(3, 3);
     raw.points[5] = raw.points[6];
     const Mesh mesh = checks::gated(raw);
     CornerUv uv;
@@ -238,7 +239,7 @@ TEST(ParametrizationMeasures, FacesWithoutAreaOnTheSurfaceAreLeftOut) {
 }
 
 TEST(ParametrizationMeasures, AnUnrolledPrism) {
-    const RawMesh raw = shapes::cylinder_tube(24, 3, 1.0, 2.1);
+    const mesh::RawMesh raw = shapes::cylinder_tube(24, 3, 1.0, 2.1);
     const Mesh mesh = checks::gated(raw);
     const double side = 2.0 * std::sin(shapes::pi / 24);
     CornerUv uv;
@@ -260,7 +261,7 @@ TEST(ParametrizationMeasures, AnUnrolledPrism) {
 }
 
 TEST(ParametrizationMeasures, AnAnnulusIsNoDisk) {
-    const RawMesh raw = shapes::annulus(20, 2, 1.0, 2.0);
+    const mesh::RawMesh raw = shapes::annulus(20, 2, 1.0, 2.0);
     CornerUv uv;
     for (const Triangle& t : raw.faces)
         for (const Index v : t)
@@ -272,4 +273,4 @@ TEST(ParametrizationMeasures, AnAnnulusIsNoDisk) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::metrics

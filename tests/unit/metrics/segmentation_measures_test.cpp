@@ -8,13 +8,13 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::metrics {
 namespace {
 
 using shapes::pi;
 
 SegmentationMeasures measure(const Mesh& mesh, const std::vector<Index>& labels) {
-    return measure_segmentation(mesh, make_chart_map(mesh, labels, {}, false));
+    return measure_segmentation(mesh, atlas::make_chart_map(mesh, labels, {}, false));
 }
 
 std::vector<Index> labels_of(const Mesh& mesh, const std::function<Index(const Vec3&)>& label) {
@@ -83,7 +83,7 @@ TEST(SegmentationMeasures, DevelopableChartsHaveNoErrorOfTheirOwn) {
 
 TEST(SegmentationMeasures, DartsAreCutOpenAndCounted) {
     const Mesh mesh = checks::gated(shapes::cylinder_tube(16, 4, 1.0, 2.0));
-    const ChartMap charts = checks::components_cut_to_disks(mesh);
+    const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
     const SegmentationMeasures m = measure_segmentation(mesh, charts);
     EXPECT_EQ(m.charts_number, 1);
     EXPECT_EQ(m.disk_charts_number, 1);
@@ -103,4 +103,4 @@ TEST(SegmentationMeasures, TheLargestErrorIsThatOfTheWorstFace) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::metrics

@@ -12,7 +12,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pack {
 namespace {
 
 using checks::common_area;
@@ -337,4 +337,4 @@ TEST(Pack, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pack

@@ -6,7 +6,7 @@
 #include "devseg/pattern/corners.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 using Points = std::vector<Vec2>;
@@ -74,4 +74,4 @@ TEST(Corners, TheSharperOfTwoNeighboursStays) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

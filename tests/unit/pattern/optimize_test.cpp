@@ -9,27 +9,27 @@
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 using samples::Cloth;
 
 const char* const optimize = "Pattern: Optimize for Fabrication";
 
-HostResult optimized(const Cloth& cloth, const ParameterValues& values = {}) {
+declare::HostResult optimized(const Cloth& cloth, const declare::ParameterValues& values = {}) {
     return checks::run(optimize, cloth.host(), values);
 }
 
-double count(const HostResult& result, const char* name) {
+double count(const declare::HostResult& result, const char* name) {
     return checks::value(result, name);
 }
 
-Index overlapping_faces(const HostMesh& host) {
+Index overlapping_faces(const declare::HostMesh& host) {
     return static_cast<Index>(
         checks::value(checks::run("Charts: Measure Flattening", host), "overlapping_faces_number"));
 }
 
-int seams(const HostResult& result) {
+int seams(const declare::HostResult& result) {
     int edges = 0;
     for (const int bits : result.seam_edges)
         edges += (bits & 1) + (bits >> 1 & 1) + (bits >> 2 & 1);
@@ -39,16 +39,16 @@ int seams(const HostResult& result) {
 TEST(OptimizePattern, NarrowDartsAreGluedAndWideOnesStay) {
     const Cloth narrow = samples::with_dart(2.0);
     EXPECT_EQ(narrow.pattern().seams.size(), 1U);
-    const HostResult glued = optimized(narrow);
+    const declare::HostResult glued = optimized(narrow);
     EXPECT_EQ(count(glued, "glued_darts_number"), 1);
     EXPECT_GE(count(glued, "glued_edges_number"), 1);
     EXPECT_EQ(seams(glued), 4 - count(glued, "glued_edges_number"));
-    const HostResult wide = optimized(samples::with_dart(20.0));
+    const declare::HostResult wide = optimized(samples::with_dart(20.0));
     EXPECT_EQ(count(wide, "glued_darts_number"), 0);
     EXPECT_EQ(seams(wide), 4);
     EXPECT_EQ(wide.wedge_uv, samples::with_dart(20.0).host().wedge_uv);
     // A slit that does not open at all vanishes.
-    const HostResult closed = optimized(samples::with_dart(0.002));
+    const declare::HostResult closed = optimized(samples::with_dart(0.002));
     EXPECT_EQ(count(closed, "glued_edges_number"), 4);
     EXPECT_EQ(seams(closed), 0);
 }
@@ -57,11 +57,11 @@ TEST(OptimizePattern, GluedEdgesAreOneInTheTexture) {
     const Cloth cloth = samples::with_dart(0.5);
     const Mesh mesh = cloth.mesh();
     const CornerUv uv = cloth.uv();
-    const GluedDarts glued = glue_darts(mesh, charts_from_uv(mesh, uv), uv, 0.05);
-    const ChartMap read = charts_from_uv(mesh, glued.uv);
+    const GluedDarts glued = glue_darts(mesh, atlas::charts_from_uv(mesh, uv), uv, 0.05);
+    const atlas::ChartMap read = atlas::charts_from_uv(mesh, glued.uv);
     EXPECT_EQ(read.seam, glued.charts.seam);
     for (Index f = 0; f < mesh.face_count(); ++f)
-        EXPECT_GT(uv_area(glued.uv, f), 0.0);
+        EXPECT_GT(plane::uv_area(glued.uv, f), 0.0);
 }
 
 TEST(OptimizePattern, TheOnlyOutlineOfAChartStays) {
@@ -69,8 +69,8 @@ TEST(OptimizePattern, TheOnlyOutlineOfAChartStays) {
     const Mesh mesh = checks::gated(shapes::sphere(1));
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
     seam[0] = seam[at(mesh.twin[0])] = 1;
-    const ChartMap charts =
-        make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
+    const atlas::ChartMap charts =
+        atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     CornerUv uv;
     for (const Triangle& t : mesh.faces)
         for (const Index v : t)
@@ -83,21 +83,21 @@ TEST(OptimizePattern, PartsThatLieOnOthersAreCutOff) {
     cloth.add(shapes::helix_strip(60, 1.3, 20.0, 30.0, 0.5),
               [](const Vec3& p, const Vec3&) { return samples::flat(p); });
     EXPECT_GT(overlapping_faces(cloth.host()), 0);
-    const HostResult result = optimized(cloth);
+    const declare::HostResult result = optimized(cloth);
     EXPECT_GE(count(result, "overlap_cuts_number"), 1);
     EXPECT_GE(count(result, "charts_number"), 2);
-    HostMesh host = cloth.host();
+    declare::HostMesh host = cloth.host();
     host.wedge_uv = result.wedge_uv;
     EXPECT_EQ(overlapping_faces(host), 0);
     checks::expect_agreement(host.geometry, result);
     // Switched off, the layout stays as it is.
-    const HostResult kept = optimized(cloth, {{"remove_overlaps", false}});
+    const declare::HostResult kept = optimized(cloth, {{"remove_overlaps", false}});
     EXPECT_EQ(kept.wedge_uv, cloth.host().wedge_uv);
 }
 
 // A plate with a small chart in its corner; `bend` is the angle (degrees) that it stands up by.
 Cloth with_corner(double bend) {
-    RawMesh plate = shapes::grid(10, 10, 100.0, 100.0);
+    mesh::RawMesh plate = shapes::grid(10, 10, 100.0, 100.0);
     const double angle = bend * shapes::pi / 180.0;
     for (Vec3& p : plate.points)
         if (p.x() + p.y() > 185.0)
@@ -113,14 +113,14 @@ Cloth with_corner(double bend) {
 TEST(OptimizePattern, SmallChartsAreJoinedWhereThatIsDevelopable) {
     const Cloth cloth = with_corner(0.0);
     EXPECT_EQ(cloth.pattern().pieces.size(), 2U);
-    const ParameterValues small{{"max_gusset_area", 0.05}};
-    const HostResult joined = optimized(cloth, small);
+    const declare::ParameterValues small{{"max_gusset_area", 0.05}};
+    const declare::HostResult joined = optimized(cloth, small);
     EXPECT_EQ(count(joined, "reattached_charts_number"), 1);
     EXPECT_EQ(count(joined, "charts_number"), 1);
     EXPECT_EQ(seams(joined), 0);
     for (const int id : joined.chart_id)
         EXPECT_EQ(id, 0);
-    HostMesh host = cloth.host();
+    declare::HostMesh host = cloth.host();
     host.wedge_uv = joined.wedge_uv;
     EXPECT_EQ(overlapping_faces(host), 0);
     // Not small enough, not developable enough, or not wanted.
@@ -135,7 +135,7 @@ TEST(OptimizePattern, SmallChartsAreJoinedWhereThatIsDevelopable) {
 }
 
 TEST(OptimizePattern, CoordinatesWithoutAreaAreRefused) {
-    HostMesh host = samples::two_pieces().host();
+    declare::HostMesh host = samples::two_pieces().host();
     for (auto& corners : host.wedge_uv)
         corners = {Vec2(1, 1), Vec2(1, 1), Vec2(1, 1)};
     const std::string text = checks::error_of<InvalidMesh>([&] { checks::run(optimize, host); });
@@ -144,10 +144,10 @@ TEST(OptimizePattern, CoordinatesWithoutAreaAreRefused) {
 
 TEST(PatternLayer, LiesFlatInMillimetresAndKnowsItsFaces) {
     const Cloth cloth = samples::two_pieces();
-    const HostResult result =
+    const declare::HostResult result =
         checks::run("Pattern: Generate Pieces", cloth.host(), {{"mm_per_unit", 2.0}});
     ASSERT_TRUE(result.layer.has_value());
-    const LayerMesh& layer = *result.layer;
+    const declare::LayerMesh& layer = *result.layer;
     const std::size_t faces = cloth.host().geometry.faces.size();
     ASSERT_EQ(layer.geometry.faces.size(), faces);
     ASSERT_EQ(layer.face_color.size(), faces);
@@ -165,7 +165,7 @@ TEST(PatternLayer, LiesFlatInMillimetresAndKnowsItsFaces) {
                 .cross(layer.geometry.points[at(t[2])] - layer.geometry.points[at(t[0])]);
         EXPECT_GT(normal.z(), 0.0);
         area += 0.5 * normal.z();
-        EXPECT_EQ(layer.face_color[f], (Color{255, 255, 255})); // no strain
+        EXPECT_EQ(layer.face_color[f], (declare::Color{255, 255, 255})); // no strain
     }
     EXPECT_EQ(seen, std::vector<int>(faces, 1));
     EXPECT_NEAR(area, 4.0 * 6400.0, 1e-3);
@@ -177,10 +177,10 @@ TEST(PatternLayer, StrainIsColoured) {
     cloth.add(shapes::grid(2, 2, 10.0, 10.0), [](const Vec3& p, const Vec3&) {
         return Vec2(p.x() > 5.0 ? 5.0 + 1.2 * (p.x() - 5.0) : p.x(), p.y());
     });
-    const LayerMesh layer = *checks::run("Pattern: Generate Pieces", cloth.host()).layer;
+    const declare::LayerMesh layer = *checks::run("Pattern: Generate Pieces", cloth.host()).layer;
     for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f) {
         const bool right = layer.geometry.points[at(layer.geometry.faces[f][1])].x() > 5.0;
-        const Color& c = layer.face_color[f];
+        const declare::Color& c = layer.face_color[f];
         if (layer.face_quality[f] > 0.0)
             EXPECT_EQ(c[0], 255);
         else
@@ -191,7 +191,8 @@ TEST(PatternLayer, StrainIsColoured) {
 }
 
 TEST(PatternMeasures, AreThoseOfThePattern) {
-    const HostResult result = checks::run("Pattern: Measure", samples::two_pieces().host());
+    const declare::HostResult result =
+        checks::run("Pattern: Measure", samples::two_pieces().host());
     EXPECT_EQ(count(result, "pieces_number"), 2);
     EXPECT_EQ(count(result, "shapes_number"), 1);
     EXPECT_EQ(count(result, "seams_number"), 1);
@@ -204,4 +205,4 @@ TEST(PatternMeasures, AreThoseOfThePattern) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

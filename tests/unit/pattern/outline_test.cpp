@@ -8,7 +8,7 @@
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 using samples::Cloth;
@@ -198,4 +198,4 @@ TEST(Curves, ARingHasItsCorners) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

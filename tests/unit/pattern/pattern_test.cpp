@@ -16,7 +16,7 @@
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 using samples::Cloth;
@@ -62,7 +62,7 @@ void expect_every_side_once(const Pattern& pattern) {
 }
 
 // A letter of unit squares that no mirror or turn maps to itself.
-RawMesh letter() {
+mesh::RawMesh letter() {
     return shapes::plate({"####", "#...", "##.."});
 }
 
@@ -110,15 +110,15 @@ TEST(Seams, DartIsASeamOfAPieceWithItselfAndEndsAtItsTip) {
 
 TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
     for (const char* method : {"tetrahedron", "double torus"}) {
-        HostMesh host =
+        declare::HostMesh host =
             checks::host_of(method[0] == 't' ? shapes::tetrahedron() : shapes::double_torus());
-        const HostResult charts = checks::run("Segmentation: D-Charts", host,
-                                              {{"charts_number", method[0] == 't' ? 4 : 6},
-                                               {"merge_charts", false},
-                                               {"straighten_boundaries", false}});
+        const declare::HostResult charts = checks::run("Segmentation: D-Charts", host,
+                                                       {{"charts_number", method[0] == 't' ? 4 : 6},
+                                                        {"merge_charts", false},
+                                                        {"straighten_boundaries", false}});
         checks::take_charts(host, charts);
         host.wedge_uv = checks::run("Charts: Flatten", host, {{"method", 4}}).wedge_uv;
-        const GatedMesh gated = gate_mesh(host.geometry);
+        const mesh::GatedMesh gated = mesh::gate_mesh(host.geometry);
         CornerUv uv;
         for (Index f = 0; f < gated.mesh.face_count(); ++f)
             for (Index k = 0; k < 3; ++k)
@@ -235,7 +235,7 @@ TEST(Shapes, MirroredAndEqualPiecesAreFound) {
     cloth.add(letter(), moved(Vec2(20, 0), 2.1));
     cloth.add(shapes::plate({"####", "#...", "###."}), moved(Vec2(40, 0)));
     // The mirror image on the model, not only in the texture.
-    RawMesh mirrored = letter();
+    mesh::RawMesh mirrored = letter();
     for (Vec3& p : mirrored.points)
         p.x() = -p.x();
     for (Triangle& t : mirrored.faces)
@@ -328,7 +328,7 @@ TEST(Shapes, StackedPiecesGetPlacesOfTheirOwn) {
 
 // A square whose outline was moved by a linear map: mean value coordinates repeat it inside.
 TEST(MatchedMap, FollowsLinearMovesOfTheOutline) {
-    const Mesh mesh = gate_mesh(shapes::grid(6, 6, 10.0, 10.0)).mesh;
+    const Mesh mesh = mesh::gate_mesh(shapes::grid(6, 6, 10.0, 10.0)).mesh;
     CornerUv uv;
     for (const Triangle& t : mesh.faces)
         for (const Index v : t)
@@ -405,7 +405,7 @@ TEST(Shapes, OptionsOutOfRangeAreRefused) {
 TEST(Shapes, FoldsHaveTheAngleBetweenTheirFaces) {
     for (const double sign : {1.0, -1.0}) {
         Cloth cloth;
-        RawMesh bent = shapes::grid(2, 1, 20.0, 10.0);
+        mesh::RawMesh bent = shapes::grid(2, 1, 20.0, 10.0);
         const double angle = 40.0 * shapes::pi / 180.0;
         for (Vec3& p : bent.points)
             if (p.x() > 15.0)
@@ -424,4 +424,4 @@ TEST(Shapes, FoldsHaveTheAngleBetweenTheirFaces) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

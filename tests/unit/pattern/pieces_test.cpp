@@ -10,14 +10,14 @@
 #include "devseg/base/errors.h"
 #include "devseg/mesh/input_gate.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
 // A mesh as a user would bring it: triangles with texture coordinates at their corners.
 struct Model {
-    RawMesh raw;
+    mesh::RawMesh raw;
     std::vector<std::array<Vec2, 3>> uv;
 
     void add(const Vec3& a, const Vec3& b, const Vec3& c,
@@ -46,7 +46,7 @@ private:
 };
 
 Pattern pattern_of(const Model& model, const PatternOptions& options = {}) {
-    const GatedMesh gated = gate_mesh(model.raw);
+    const mesh::GatedMesh gated = mesh::gate_mesh(model.raw);
     CornerUv uv;
     for (Index f = 0; f < gated.mesh.face_count(); ++f)
         for (Index k = 0; k < 3; ++k)
@@ -347,7 +347,7 @@ TEST(Pieces, UnequalScalesAreReported) {
 }
 
 TEST(Pieces, CancelIsHonoured) {
-    const GatedMesh gated = gate_mesh(letter_l(Vec2::Zero(), flat).raw);
+    const mesh::GatedMesh gated = mesh::gate_mesh(letter_l(Vec2::Zero(), flat).raw);
     const CornerUv uv(3 * gated.mesh.faces.size(), Vec2(0, 0));
     CornerUv spread = uv;
     for (std::size_t i = 0; i < spread.size(); ++i)
@@ -357,4 +357,4 @@ TEST(Pieces, CancelIsHonoured) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

@@ -5,22 +5,22 @@
 #include <gtest/gtest.h>
 
 #include "devseg/flatten/energy/area_balance.h"
+#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/maps/lpfb.h"
 #include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::pattern {
 namespace {
 
 // Every face on its own, with its true shape, far from the others.
 CornerUv loose_faces(const Mesh& mesh, double scale) {
     CornerUv uv;
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        const RestTriangle rest = make_rest_triangle(
+        const flatten::RestTriangle rest = flatten::make_rest_triangle(
             {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
             0.0);
         const Vec2 place(3.0 * (f % 40), 3.0 * (f / 40));
@@ -96,7 +96,7 @@ TEST(SewnPreview, LongFacesTakeLessStuffing) {
 
 TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
     const checks::Disk disk(shapes::grid(12, 12));
-    std::vector<Vec2> uv = flatten_tutte(disk.problem);
+    std::vector<Vec2> uv = flatten::flatten_tutte(disk.problem);
     std::vector<Vec2> square(uv.size());
     for (std::size_t v = 0; v < uv.size(); ++v)
         square[v] = disk.mesh.points[at(disk.surface.vertex[v])].head<2>();
@@ -105,33 +105,33 @@ TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
         const Vec2 p = square[v];
         uv[v] += 0.4 * (0.25 - p.x() * p.x()) * (0.25 - p.y() * p.y()) * 4.0 * p;
     }
-    const double before = measure_area_change(disk.problem, uv).largest();
+    const double before = flatten::measure_area_change(disk.problem, uv).largest();
     ASSERT_GT(before, 0.15);
     std::vector<Vec2> balanced = uv;
-    balance_areas(disk.problem, balanced, Progress{});
-    EXPECT_LT(measure_area_change(disk.problem, balanced).largest(), 0.12);
+    flatten::balance_areas(disk.problem, balanced, Progress{});
+    EXPECT_LT(flatten::measure_area_change(disk.problem, balanced).largest(), 0.12);
     EXPECT_EQ(checks::count_flips(disk.problem.faces, balanced), 0);
     for (const Index v : disk.problem.boundary)
         EXPECT_EQ(balanced[at(v)], uv[at(v)]);
     // What is even already stays.
     std::vector<Vec2> even = square;
-    balance_areas(disk.problem, even, Progress{});
+    flatten::balance_areas(disk.problem, even, Progress{});
     EXPECT_EQ(even, square);
 }
 
 TEST(AreaBalance, ABoundaryThatMayBendTakesMore) {
     // A strip around a ball: its middle is longer than its edges.
-    RawMesh strip = shapes::grid(40, 12, 2.4, 1.0);
+    mesh::RawMesh strip = shapes::grid(40, 12, 2.4, 1.0);
     for (Vec3& p : strip.points)
         p = {std::cos(p.y()) * std::cos(p.x()), std::cos(p.y()) * std::sin(p.x()), std::sin(p.y())};
     const checks::Disk disk(strip);
-    std::vector<Vec2> uv = flatten_lscm(disk.problem);
-    scale_to_area(disk.problem, uv);
+    std::vector<Vec2> uv = flatten::flatten_lscm(disk.problem);
+    flatten::scale_to_area(disk.problem, uv);
     std::vector<Vec2> fixed = uv;
-    balance_areas(disk.problem, fixed, Progress{});
-    const std::vector<Vec2> bent = balance_with_boundary(disk.problem, uv, Progress{});
+    flatten::balance_areas(disk.problem, fixed, Progress{});
+    const std::vector<Vec2> bent = flatten::balance_with_boundary(disk.problem, uv, Progress{});
     const auto change = [&](const std::vector<Vec2>& map) {
-        return measure_area_change(disk.problem, map).largest();
+        return flatten::measure_area_change(disk.problem, map).largest();
     };
     EXPECT_EQ(checks::count_flips(disk.problem.faces, bent), 0);
     EXPECT_LT(change(bent), 0.5 * change(fixed));
@@ -144,4 +144,4 @@ TEST(AreaBalance, ABoundaryThatMayBendTakesMore) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::pattern

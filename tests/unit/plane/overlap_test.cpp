@@ -11,7 +11,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::plane {
 namespace {
 
 using checks::common_area;
@@ -119,7 +119,7 @@ TEST(OverlappingPairs, TrianglesWithoutAreaOverlapNothing) {
 }
 
 TEST(OverlappingPairs, PlaneTriangulationsHaveNone) {
-    for (const RawMesh& raw : {shapes::grid(20, 15), shapes::annulus(40, 6, 1.0, 2.0)}) {
+    for (const mesh::RawMesh& raw : {shapes::grid(20, 15), shapes::annulus(40, 6, 1.0, 2.0)}) {
         CornerUv uv;
         for (const Triangle& t : raw.faces)
             for (const Index v : t)
@@ -147,7 +147,7 @@ TEST(OverlappingFaces, MarksAllFacesOfOverlappingPairs) {
 
 TEST(OverlappingFaces, AStripThatRunsOverItself) {
     // One and a half turns of a ring: the first and the last third of its faces overlap.
-    const RawMesh raw = shapes::helix_strip(90, 1.5, 1.0, 2.0, 1.0);
+    const mesh::RawMesh raw = shapes::helix_strip(90, 1.5, 1.0, 2.0, 1.0);
     CornerUv uv;
     for (const Triangle& t : raw.faces)
         for (const Index v : t)
@@ -158,4 +158,4 @@ TEST(OverlappingFaces, AStripThatRunsOverItself) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::plane

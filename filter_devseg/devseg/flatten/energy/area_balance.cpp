@@ -9,7 +9,7 @@
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/projected_newton.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -265,4 +265,4 @@ std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
     return moved;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// How much the areas of faces change: in the plane over on the surface.
 struct AreaChange {
@@ -34,4 +34,4 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
 std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
                                         const std::vector<Vec2>& uv, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

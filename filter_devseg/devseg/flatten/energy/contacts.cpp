@@ -8,7 +8,7 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -23,14 +23,14 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
     return (p - a - nearest_parameter(p, a, b) * (b - a)).norm();
 }
 
-Index next_on_boundary(const ChartSurface& surface, Index h) {
+Index next_on_boundary(const atlas::ChartSurface& surface, Index h) {
     h = Mesh::next(h);
     while (surface.twin[at(h)] >= 0)
         h = Mesh::next(surface.twin[at(h)]);
     return h;
 }
 
-Index previous_on_boundary(const ChartSurface& surface, Index h) {
+Index previous_on_boundary(const atlas::ChartSurface& surface, Index h) {
     h = Mesh::previous(h);
     while (surface.twin[at(h)] >= 0)
         h = Mesh::previous(surface.twin[at(h)]);
@@ -43,7 +43,7 @@ bool inside(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
 
 // The boundary edge nearest to the vertex that is reached from `start` over faces: other parts of
 // the chart may have nearer edges, but the vertex is not on those.
-Index nearest_exit(const ChartSurface& surface, const std::vector<Vec2>& uv, Index vertex,
+Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv, Index vertex,
                    Index start) {
     const Vec2& p = uv[at(vertex)];
     using Entry = std::pair<double, Index>;
@@ -98,7 +98,7 @@ SignedDistance signed_distance(const Contact& contact, const Eigen::MatrixX2d& x
 // Finds the contacts of overlapping pairs of faces.
 class ContactFinder {
 public:
-    ContactFinder(const ChartSurface& surface, const std::vector<Vec2>& uv)
+    ContactFinder(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv)
         : s_(surface), uv_(uv), leaving_(surface.vertex.size(), -1),
           settled_(surface.vertex.size(), 0) {
         for (const std::vector<Index>& loop : surface.loops)
@@ -151,7 +151,7 @@ private:
             contacts_.insert({v, s_.origin(h), s_.target(h)});
     }
 
-    const ChartSurface& s_;
+    const atlas::ChartSurface& s_;
     const std::vector<Vec2>& uv_;
     std::vector<Index> leaving_;        // #v: boundary half-edge from the vertex, −1 = inside
     std::vector<std::uint8_t> settled_; // #v: 1 where a full turn says which way to go
@@ -161,7 +161,7 @@ private:
 
 } // namespace
 
-std::vector<Contact> find_contacts(const ChartSurface& surface, const std::vector<Vec2>& uv,
+std::vector<Contact> find_contacts(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                                    const std::vector<std::pair<Index, Index>>& pairs) {
     ContactFinder finder(surface, uv);
     for (const auto& [f, g] : pairs)
@@ -195,4 +195,4 @@ void ContactPenalty::add_gradient(const Eigen::MatrixX2d& x, Eigen::MatrixX2d& g
     }
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

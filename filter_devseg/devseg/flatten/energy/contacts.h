@@ -14,7 +14,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// A boundary vertex that lies on another part of the chart, and the boundary edge from → to (the
 /// chart on its left) across which it leaves that part on the shortest way.
@@ -29,7 +29,7 @@ struct Contact {
 };
 
 /// Contacts of the given overlapping pairs of faces.
-std::vector<Contact> find_contacts(const ChartSurface& surface, const std::vector<Vec2>& uv,
+std::vector<Contact> find_contacts(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                                    const std::vector<std::pair<Index, Index>>& pairs);
 
 /// ½ stiffness Σ max(0, d + gap)² with d the distance of the vertex to the left of its edge: zero
@@ -43,4 +43,4 @@ struct ContactPenalty {
     void add_gradient(const Eigen::MatrixX2d& x, Eigen::MatrixX2d& gradient) const;
 };
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -14,10 +14,9 @@
 
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
-
 
 // Smallest t > 0 with a t² + b t + c = 0; infinite if there is none. c > 0.
 double first_root(double a, double b, double c) {
@@ -105,9 +104,11 @@ double collapse_step(const FlatteningProblem& problem, const Positions& x, const
         const Eigen::Vector2d q = (x.row(t[2]) - x.row(t[0])).transpose();
         const Eigen::Vector2d dp = (d.row(t[1]) - d.row(t[0])).transpose();
         const Eigen::Vector2d dq = (d.row(t[2]) - d.row(t[0])).transpose();
-        step = std::min(step, first_root(cross(dp, dq), cross(p, dq) + cross(dp, q), cross(p, q)));
+        step = std::min(step,
+                        first_root(plane::cross(dp, dq), plane::cross(p, dq) + plane::cross(dp, q),
+                                   plane::cross(p, q)));
     }
     return step;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,7 +5,7 @@
 
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 using Positions = Eigen::MatrixX2d; // #v by 2
 
@@ -32,4 +32,4 @@ Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& jacobian);
 /// The step along direction d at which the first triangle has no area left.
 double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -125,4 +125,4 @@ void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
         p = scale * (p - centre);
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

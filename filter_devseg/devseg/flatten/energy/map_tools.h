@@ -5,7 +5,7 @@
 
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Jacobian of the map from the rest triangle of face f to the plane.
 inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
@@ -41,4 +41,4 @@ double least_area_ratio(const FlatteningProblem& problem, const std::vector<Vec2
 /// Scales the map so that its area is the chart's own, and moves its centre to the origin.
 void scale_to_area(const FlatteningProblem& problem, std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -9,7 +9,7 @@
 #include "devseg/flatten/energy/vertex_relaxation.h"
 #include "devseg/mesh/coarsen.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr double full_turn = 2.0 * pi;
 
 class Refinement {
 public:
-    Refinement(const Mesh& mesh, CoarseSurface coarse, std::vector<Vec2> uv)
+    Refinement(const Mesh& mesh, mesh::CoarseSurface coarse, std::vector<Vec2> uv)
         : mesh_(mesh), s_(std::move(coarse)), uv_(std::move(uv)), leaving_(mesh.points.size(), -1) {
         for (Index h = 0; h < mesh.half_edge_count(); ++h)
             if (s_.alive[at(h / 3)] != 0)
@@ -41,14 +41,14 @@ public:
         const std::size_t wanted =
             static_cast<std::size_t>(growth * static_cast<double>(alive_.size()));
         while (!done() && alive_.size() < wanted) {
-            insert(undo_collapse(s_));
+            insert(mesh::undo_collapse(s_));
             if (alive_.size() % check_every == 0)
                 progress.check();
         }
         // A level that would add little more is joined to this one.
         if (s_.collapses.size() < alive_.size() / 4)
             while (!done())
-                insert(undo_collapse(s_));
+                insert(mesh::undo_collapse(s_));
     }
 
     // `rest` has the areas and cotangents of the full chart; other levels measure their own faces.
@@ -71,7 +71,7 @@ private:
     void insert(Index h) {
         const Index v = origin(h);
         alive_.push_back(v);
-        visit_star(s_.twin, h, [&](Index k) {
+        mesh::visit_star(s_.twin, h, [&](Index k) {
             for (const Index side : {k, Mesh::next(k), Mesh::previous(k)})
                 leaving_[at(origin(side))] = side;
         });
@@ -205,7 +205,7 @@ private:
     };
 
     const Mesh& mesh_; // of the chart alone
-    CoarseSurface s_;
+    mesh::CoarseSurface s_;
     std::vector<Vec2> uv_;
     std::vector<Index> leaving_; // #v: a half-edge that leaves the vertex, −1 while it is removed
     std::vector<Index> alive_;
@@ -218,16 +218,18 @@ private:
 } // namespace
 
 std::vector<Vec2> flatten_multilevel(
-    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Mesh& mesh, const atlas::ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
+        solve,
     const Progress& progress) {
-    const Mesh local = mesh_of(mesh, surface);
-    CoarseSurface coarse = coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
-    const CoarseMesh small = extract_coarse_mesh(local, coarse);
+    const Mesh local = atlas::mesh_of(mesh, surface);
+    mesh::CoarseSurface coarse =
+        mesh::coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
+    const mesh::CoarseMesh small = mesh::extract_coarse_mesh(local, coarse);
     std::vector<Index> all(small.mesh.faces.size());
     std::iota(all.begin(), all.end(), 0);
-    const ChartSurface disk = extract_surface(small.mesh, std::move(all),
-                                              std::vector<std::uint8_t>(small.mesh.twin.size(), 0));
+    const atlas::ChartSurface disk = atlas::extract_surface(
+        small.mesh, std::move(all), std::vector<std::uint8_t>(small.mesh.twin.size(), 0));
     const std::vector<Vec2> found = solve(make_flattening_problem(small.mesh, disk), disk);
     std::vector<Vec2> uv(local.points.size(), Vec2::Zero());
     for (Index v = 0; v < disk.vertex_count(); ++v)
@@ -241,4 +243,4 @@ std::vector<Vec2> flatten_multilevel(
     return refinement.take();
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -8,10 +8,10 @@
 #include <functional>
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Charts with fewer faces are flattened at once.
 constexpr Index multilevel_threshold = 6000;
@@ -21,8 +21,9 @@ constexpr Index multilevel_threshold = 6000;
 /// vertices after each doubling of their number. uv is #v of `surface`. Throws what `solve` throws,
 /// and NumericalFailure where rounding left no valid place for a vertex.
 std::vector<Vec2> flatten_multilevel(
-    const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-    const std::function<std::vector<Vec2>(const FlatteningProblem&, const ChartSurface&)>& solve,
+    const Mesh& mesh, const atlas::ChartSurface& surface, const FlatteningProblem& problem,
+    const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
+        solve,
     const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -2,15 +2,16 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
 constexpr double widened = 1.02; // area as flattened over that on the surface
 
-bool is_flipped_around(const ChartSurface& surface, const std::vector<Vec2>& uv, Index leaving) {
+bool is_flipped_around(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                       Index leaving) {
     bool flipped = false;
-    visit_star(surface.twin, leaving, [&](Index h) {
+    mesh::visit_star(surface.twin, leaving, [&](Index h) {
         const Triangle& t = surface.corners[at(h / 3)];
         flipped = flipped || !(orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0);
     });
@@ -19,7 +20,7 @@ bool is_flipped_around(const ChartSurface& surface, const std::vector<Vec2>& uv,
 
 } // namespace
 
-void restore_needles(const Mesh& mesh, const ChartSurface& surface,
+void restore_needles(const Mesh& mesh, const atlas::ChartSurface& surface,
                      const FlatteningProblem& problem, std::vector<Vec2>& uv) {
     for (Index f = 0; f < surface.face_count(); ++f) {
         const double area = mesh.face_areas[at(surface.face[at(f)])];
@@ -46,4 +47,4 @@ void restore_needles(const Mesh& mesh, const ChartSurface& surface,
     }
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

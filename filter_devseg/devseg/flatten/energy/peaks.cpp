@@ -7,7 +7,7 @@
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/energy/vertex_relaxation.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -101,7 +101,7 @@ std::vector<Index> with_rings(const std::vector<Index>& twin, std::vector<Index>
         std::vector<Index> next;
         for (const Index f : ring)
             for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                visit_star(twin, h, [&](Index k) {
+                mesh::visit_star(twin, h, [&](Index k) {
                     if (seen[at(k / 3)]++ == 0)
                         next.push_back(k / 3);
                     seen[at(k / 3)] = 1;
@@ -167,7 +167,8 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
     if (hold_boundary)
         vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
                                       [&](const auto& entry) {
-                                          return !visit_star(twin, entry.second, [](Index) {});
+                                          return !mesh::visit_star(twin, entry.second,
+                                                                   [](Index) {});
                                       }),
                        vertices.end());
     if (vertices.empty())
@@ -197,4 +198,4 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
     }
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

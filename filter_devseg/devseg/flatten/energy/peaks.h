@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Lowers the largest stretch where few faces stand out: the vertices around them are relaxed under
 /// Σ A exp(s (ψ − 1)), with ψ the symmetric Dirichlet density, which shares the stretch out among
@@ -22,4 +22,4 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
 void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
                   std::vector<Vec2>& uv, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -7,7 +7,7 @@
 
 #include "devseg/base/errors.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 // Rigid motions do not change the energy: this share of the mean diagonal keeps H definite.
@@ -145,4 +145,4 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
     return d;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

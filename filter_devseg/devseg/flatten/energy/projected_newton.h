@@ -8,7 +8,7 @@
 
 #include "devseg/flatten/energy/distortion.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Of a face, by its number and det J: the second derivative, at least 0, of a further term of its
 /// energy; as all of ψ it is weighted by the face's area.
@@ -32,4 +32,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-} // namespace devseg
+} // namespace devseg::flatten

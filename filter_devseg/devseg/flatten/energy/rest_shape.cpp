@@ -8,7 +8,7 @@
 
 #include "devseg/base/errors.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -54,7 +54,7 @@ RestTriangle make_rest_triangle(std::array<double, 3> length, double floor) {
     return triangle;
 }
 
-FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& surface) {
+FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSurface& surface) {
     if (!surface.is_disk())
         throw NumericalFailure("expected a chart that is a disk, found one with " +
                                std::to_string(surface.loops.size()) +
@@ -120,4 +120,4 @@ PartialProblem part_of(const FlatteningProblem& whole, const std::vector<Index>&
     return part;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

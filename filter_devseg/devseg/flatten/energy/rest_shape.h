@@ -10,7 +10,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// A chart that is ready to be flattened. Positions are in internal units of the mesh.
 struct FlatteningProblem {
@@ -40,7 +40,7 @@ RestTriangle make_rest_triangle(std::array<double, 3> length, double floor);
 /// shape of their own in double precision are given the least extra width that makes them solid
 /// (all three lengths grow by the same amount, as in intrinsic mollification), so that every
 /// energy and angle stays finite.
-FlatteningProblem make_flattening_problem(const Mesh& mesh, const ChartSurface& surface);
+FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSurface& surface);
 
 /// Some faces of a chart as a problem of its own, without a boundary.
 struct PartialProblem {
@@ -50,4 +50,4 @@ struct PartialProblem {
 };
 PartialProblem part_of(const FlatteningProblem& whole, const std::vector<Index>& faces);
 
-} // namespace devseg
+} // namespace devseg::flatten

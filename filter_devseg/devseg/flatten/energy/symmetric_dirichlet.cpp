@@ -16,7 +16,7 @@
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/projected_newton.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -276,4 +276,4 @@ double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::v
     return distortion(problem, x);
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

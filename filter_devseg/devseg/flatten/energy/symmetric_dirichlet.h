@@ -5,11 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "devseg/base/progress.h"
 #include "devseg/flatten/energy/contacts.h"
 #include "devseg/flatten/energy/rest_shape.h"
-#include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 struct SymmetricDirichletOptions {
     int max_iterations = 300;         // quasi-Newton steps at most
@@ -39,4 +39,4 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
 /// The energy of any map; infinite where a face is flipped or has no area.
 double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -6,7 +6,7 @@
 
 #include "devseg/plane/plane.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -26,7 +26,7 @@ double squared_norm(const VertexStar::Face& f, const Vec2& p) {
 double VertexStar::energy(const Vec2& p) const {
     double sum = 0.0;
     for (const Face& f : faces) {
-        const double d = cross(f.from - p, f.to - p) / (2.0 * f.area);
+        const double d = plane::cross(f.from - p, f.to - p) / (2.0 * f.area);
         if (!(d > 0.0))
             return infinite;
         const double inverse = 1.0 / d; // as in relax_vertex, to the last bit
@@ -39,7 +39,7 @@ double VertexStar::energy(const Vec2& p) const {
 void gather_star(const StarSource& source, const std::vector<Vec2>& uv, Index leaving,
                  VertexStar& star) {
     star.faces.clear();
-    visit_star(source.twin, leaving, [&](Index k) {
+    mesh::visit_star(source.twin, leaving, [&](Index k) {
         const std::size_t f = at(k / 3);
         const std::size_t e = at(k % 3);
         VertexStar::Face face;
@@ -60,7 +60,7 @@ Vec2 relax_vertex(const VertexStar& star, const Vec2& start) {
     double yy = 0.0;
     double energy = 0.0;
     for (const VertexStar::Face& f : star.faces) {
-        const double d = cross(f.from - start, f.to - start) / (2.0 * f.area);
+        const double d = plane::cross(f.from - start, f.to - start) / (2.0 * f.area);
         if (!(d > 0.0))
             return start; // rounding left no room: nothing can be gained here
         const double q = squared_norm(f, start);
@@ -122,8 +122,8 @@ Vec2 kernel_point(const VertexStar& star, const Vec2& hint) {
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const Vec2& a = polygon[i];
             const Vec2& b = polygon[(i + 1) % polygon.size()];
-            const double side_a = cross(f.from - a, f.to - a);
-            const double side_b = cross(f.from - b, f.to - b);
+            const double side_a = plane::cross(f.from - a, f.to - a);
+            const double side_b = plane::cross(f.from - b, f.to - b);
             if (side_a >= 0.0)
                 clipped.push_back(a);
             if ((side_a > 0.0 && side_b < 0.0) || (side_a < 0.0 && side_b > 0.0))
@@ -136,11 +136,11 @@ Vec2 kernel_point(const VertexStar& star, const Vec2& hint) {
     double area = 0.0;
     Vec2 centre = Vec2::Zero();
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-        const double a = cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+        const double a = plane::cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
         area += a;
         centre += a / 3.0 * (polygon[0] + polygon[i] + polygon[i + 1]);
     }
     return area > 0.0 ? Vec2(centre / area) : polygon.front();
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

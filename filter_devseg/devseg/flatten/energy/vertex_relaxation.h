@@ -6,7 +6,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// The faces around one vertex p of a map: of face i the corners are p, from[i] and to[i].
 struct VertexStar {
@@ -46,4 +46,4 @@ Vec2 relax_vertex(const VertexStar& star, const Vec2& start);
 /// stays within the bounds of the star. Falls back to `hint` where rounding leaves nothing.
 Vec2 kernel_point(const VertexStar& star, const Vec2& hint);
 
-} // namespace devseg
+} // namespace devseg::flatten

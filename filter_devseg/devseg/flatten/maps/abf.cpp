@@ -15,10 +15,10 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -295,4 +295,4 @@ AbfResult flatten_abf(const FlatteningProblem& problem, const AbfOptions& option
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 struct AbfOptions {
     int max_iterations = 10;                // Newton steps at most
@@ -75,4 +75,4 @@ private:
     std::unique_ptr<Reduced> reduced_;
 };
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -13,7 +13,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -115,4 +115,4 @@ ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

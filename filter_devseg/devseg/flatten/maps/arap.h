@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 struct ArapOptions {
     int max_rounds = 100;             // local and global steps at most
@@ -29,4 +29,4 @@ ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec
 /// The energy of any map.
 double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

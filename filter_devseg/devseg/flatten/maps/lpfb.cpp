@@ -15,7 +15,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -295,4 +295,4 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& opt
     return flatten_lpfb(problem, boundary_angles(problem), options, progress);
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

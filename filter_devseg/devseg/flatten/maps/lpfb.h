@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 struct LpfbOptions {
     int max_rounds = 50;     // steps of each boundary solver at most
@@ -60,4 +60,4 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& opt
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<double>& targets,
                         const LpfbOptions& options, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -4,16 +4,16 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
-#include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/energy/area_balance.h"
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/repair/overlaps.h"
-#include "devseg/flatten/maps/seam_lengths.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/maps/arap.h"
+#include "devseg/flatten/maps/lscm.h"
+#include "devseg/flatten/maps/seam_lengths.h"
 #include "devseg/flatten/maps/tutte.h"
+#include "devseg/flatten/repair/overlaps.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -37,7 +37,7 @@ bool keeps_area(const FlatteningProblem& problem, double area) {
 }
 
 // The map, if it keeps the conditions.
-std::optional<LpfbMap> keeping(const ChartSurface& surface, std::optional<LpfbMap> map,
+std::optional<LpfbMap> keeping(const atlas::ChartSurface& surface, std::optional<LpfbMap> map,
                                double tolerance) {
     if (map &&
         (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
@@ -46,7 +46,8 @@ std::optional<LpfbMap> keeping(const ChartSurface& surface, std::optional<LpfbMa
 }
 
 // The map with angles near to the targets, if it keeps the conditions.
-std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSurface& surface,
+std::optional<LpfbMap> map_near(const FlatteningProblem& problem,
+                                const atlas::ChartSurface& surface,
                                 const std::vector<double>& targets, double tolerance,
                                 const Progress& progress) {
     const LpfbOptions options;
@@ -59,7 +60,7 @@ std::optional<LpfbMap> map_near(const FlatteningProblem& problem, const ChartSur
         tolerance);
 }
 
-double overlapping_share(const ChartSurface& surface, const std::vector<Vec2>& uv,
+double overlapping_share(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                          double tolerance) {
     return static_cast<double>(overlapping_pairs(surface, uv, tolerance).size()) /
            static_cast<double>(surface.face.size());
@@ -70,7 +71,8 @@ std::optional<LpfbMap> smaller_change(std::optional<LpfbMap> a, std::optional<Lp
 }
 
 // The map with the boundary's lengths nearest to a given one, if it keeps the conditions.
-std::optional<LpfbMap> map_beside(const FlatteningProblem& problem, const ChartSurface& surface,
+std::optional<LpfbMap> map_beside(const FlatteningProblem& problem,
+                                  const atlas::ChartSurface& surface,
                                   const std::vector<Vec2>& start, double tolerance,
                                   const Progress& progress) {
     auto uv = restore_seam_lengths(problem, start, progress);
@@ -119,9 +121,9 @@ std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult 
     return map;
 }
 
-std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
-                                  double tolerance, const SewingMapOptions& options,
-                                  const Progress& progress) {
+std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
+                                  const atlas::ChartSurface& surface, double tolerance,
+                                  const SewingMapOptions& options, const Progress& progress) {
     std::optional<LpfbMap> best;
     try {
         best = map_near(problem, surface, boundary_angles(problem), tolerance, progress);
@@ -154,4 +156,4 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartS
     return best;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -12,7 +12,7 @@
 
 #include "devseg/flatten/maps/lpfb.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// A map whose boundary has the lengths that it has on the surface.
 struct LpfbMap {
@@ -47,12 +47,12 @@ std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double 
 /// moved towards one, and then so that areas change evenly. Nothing where neither keeps [Wan08]'s
 /// conditions: no flips, the area changes by at most 10 %, the L2 stretch is at most 2, and no
 /// parts lie on each other by more than `tolerance`.
-std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem, const ChartSurface& surface,
-                                  double tolerance, const SewingMapOptions& options,
-                                  const Progress& progress);
+std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
+                                  const atlas::ChartSurface& surface, double tolerance,
+                                  const SewingMapOptions& options, const Progress& progress);
 
 /// An LPFB map without flips, with its inside moved as above; nothing where it has flips.
 std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,
                                    const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

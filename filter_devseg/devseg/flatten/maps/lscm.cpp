@@ -10,7 +10,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -100,4 +100,4 @@ double conformal_energy(const FlatteningProblem& problem, const std::vector<Vec2
     return energy;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

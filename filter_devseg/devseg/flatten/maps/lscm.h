@@ -5,7 +5,7 @@
 
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// The map with the least conformal energy ½ Σ A (σ₁ − σ₂)² with two far boundary vertices pinned
 /// at their distance in the boundary's plane; scaled so that its area is the chart's own.
@@ -16,4 +16,4 @@ std::vector<Vec2> flatten_lscm(const FlatteningProblem& problem);
 /// ½ Σ A (σ₁ − σ₂)² of any map: the energy that flatten_lscm minimises. uv is #v.
 double conformal_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

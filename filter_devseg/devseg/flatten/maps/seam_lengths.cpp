@@ -5,7 +5,7 @@
 
 #include <Eigen/SparseCholesky>
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& p
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

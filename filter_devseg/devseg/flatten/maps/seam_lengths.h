@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// The closed polygon near `points` with edge i of length lengths[i], from point i to i + 1, by
 /// Newton steps on the lengths, each the shortest move of the points. Nothing where the steps do
@@ -27,4 +27,4 @@ std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& p
                                                       const std::vector<Vec2>& uv,
                                                       const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::flatten

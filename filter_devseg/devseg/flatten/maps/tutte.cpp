@@ -12,7 +12,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -20,7 +20,6 @@ namespace {
 // could be negative, and so break the guarantee, or drown all other weights.
 constexpr double smallest_weight = 0.05;
 constexpr double largest_weight = 20.0;
-
 
 std::vector<Vec2> place_boundary(const FlatteningProblem& problem) {
     std::vector<Vec2> uv(at(problem.vertex_count), Vec2::Zero());
@@ -100,4 +99,4 @@ std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem) {
     return uv;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,7 +5,7 @@
 
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Tutte's embedding: boundary vertices on a circle in proportion to their edge lengths, each inner
 /// vertex at a positively weighted mean of its neighbours, so that no face flips in exact
@@ -13,4 +13,4 @@ namespace devseg {
 /// equal weights are tried as well. The caller checks the result with count_flips.
 std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem);
 
-} // namespace devseg
+} // namespace devseg::flatten

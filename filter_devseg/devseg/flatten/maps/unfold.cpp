@@ -8,7 +8,7 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem,
     return uv;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -6,7 +6,7 @@
 
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Lays the faces of a disk into the plane one by one, each beside one that lies there already, as
 /// paper unfolds. Returns the positions (#v, internal units) where that is an isometry: every edge
@@ -15,4 +15,4 @@ namespace devseg {
 std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem,
                                         const std::vector<Index>& twin, double tolerance = 1e-6);
 
-} // namespace devseg
+} // namespace devseg::flatten

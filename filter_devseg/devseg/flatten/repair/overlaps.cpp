@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <queue>
 
-#include "devseg/graph/min_cut.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/graph/min_cut.h"
 #include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -16,7 +16,8 @@ struct Segment {
     Index from, to; // vertices
 };
 
-std::vector<Segment> boundary_segments(const ChartSurface& surface, const std::vector<Vec2>& uv) {
+std::vector<Segment> boundary_segments(const atlas::ChartSurface& surface,
+                                       const std::vector<Vec2>& uv) {
     std::vector<Segment> segments;
     for (const std::vector<Index>& loop : surface.loops)
         for (const Index h : loop)
@@ -73,15 +74,15 @@ bool any_crossing(std::vector<Segment> segments) {
 
 // Faces that take part in an overlap, split between the two faces of the first pair: each goes to
 // the one from which it is reached first through such faces.
-std::vector<CutSide> two_sides(const ChartSurface& surface,
-                               const std::vector<std::pair<Index, Index>>& pairs) {
-    std::vector<CutSide> side(surface.face.size(), CutSide::open);
+std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface,
+                                      const std::vector<std::pair<Index, Index>>& pairs) {
+    std::vector<graph::CutSide> side(surface.face.size(), graph::CutSide::open);
     std::vector<std::uint8_t> takes_part(surface.face.size(), 0);
     for (const auto& [f, g] : pairs)
         takes_part[at(f)] = takes_part[at(g)] = 1;
     std::queue<Index> queue;
-    side[at(pairs.front().first)] = CutSide::source;
-    side[at(pairs.front().second)] = CutSide::sink;
+    side[at(pairs.front().first)] = graph::CutSide::source;
+    side[at(pairs.front().second)] = graph::CutSide::sink;
     queue.push(pairs.front().first);
     queue.push(pairs.front().second);
     while (!queue.empty()) {
@@ -89,7 +90,8 @@ std::vector<CutSide> two_sides(const ChartSurface& surface,
         queue.pop();
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
             const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && takes_part[at(twin / 3)] != 0 && side[at(twin / 3)] == CutSide::open) {
+            if (twin >= 0 && takes_part[at(twin / 3)] != 0 &&
+                side[at(twin / 3)] == graph::CutSide::open) {
                 side[at(twin / 3)] = side[at(f)];
                 queue.push(twin / 3);
             }
@@ -100,12 +102,13 @@ std::vector<CutSide> two_sides(const ChartSurface& surface,
 
 } // namespace
 
-bool boundary_crosses_itself(const ChartSurface& surface, const std::vector<Vec2>& uv) {
+bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
     return any_crossing(boundary_segments(surface, uv));
 }
 
-std::vector<std::pair<Index, Index>>
-overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, double tolerance) {
+std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface& surface,
+                                                       const std::vector<Vec2>& uv,
+                                                       double tolerance) {
     if (!boundary_crosses_itself(surface, uv))
         return {};
     CornerUv corners;
@@ -113,25 +116,25 @@ overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, doub
     for (const Triangle& t : surface.corners)
         for (const Index v : t)
             corners.push_back(uv[at(v)]);
-    return find_overlapping_pairs(corners, tolerance);
+    return plane::find_overlapping_pairs(corners, tolerance);
 }
 
-std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
+std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
                                    const std::vector<std::pair<Index, Index>>& pairs,
                                    const Progress& progress) {
     // In a disk, the least border between two connected sets of faces is one path from boundary to
     // boundary: the cut makes two disks.
-    MinCut cut(two_sides(surface, pairs));
+    graph::MinCut cut(two_sides(surface, pairs));
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
         if (surface.twin[at(h)] > h)
             cut.link(h / 3, surface.twin[at(h)] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
-    const std::vector<CutSide> side = cut.solve(progress);
+    const std::vector<graph::CutSide> side = cut.solve(progress);
     std::vector<Index> path;
     for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        if (surface.twin[at(h)] >= 0 && side[at(h / 3)] == CutSide::source &&
-            side[at(surface.twin[at(h)] / 3)] == CutSide::sink)
+        if (surface.twin[at(h)] >= 0 && side[at(h / 3)] == graph::CutSide::source &&
+            side[at(surface.twin[at(h)] / 3)] == graph::CutSide::sink)
             path.push_back(h);
     return path;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -11,23 +11,24 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Whether the boundary of a map without flips crosses itself: exact orientation tests of boundary
 /// edges against boundary edges over a grid. A map of a disk without flips whose boundary does not
 /// cross itself is one-to-one.
-bool boundary_crosses_itself(const ChartSurface& surface, const std::vector<Vec2>& uv);
+bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv);
 
 /// Pairs of faces that overlap by more than `tolerance` (a length in the plane); empty when the
 /// boundary does not cross itself.
-std::vector<std::pair<Index, Index>>
-overlapping_pairs(const ChartSurface& surface, const std::vector<Vec2>& uv, double tolerance);
+std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface& surface,
+                                                       const std::vector<Vec2>& uv,
+                                                       double tolerance);
 
 /// Half-edges of the surface that cut it in two along a short path, such that the two faces of the
 /// first overlapping pair, with as many of the faces around them that take part in the overlap as
 /// possible, come apart. Half-edges are local, one for each edge.
-std::vector<Index> separating_path(const Mesh& mesh, const ChartSurface& surface,
+std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
                                    const std::vector<std::pair<Index, Index>>& pairs,
                                    const Progress& progress = Progress());
 
-} // namespace devseg
+} // namespace devseg::flatten

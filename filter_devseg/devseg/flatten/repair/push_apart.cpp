@@ -6,10 +6,10 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/contacts.h"
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/repair/overlaps.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -35,11 +35,10 @@ std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
 
 } // namespace
 
-std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
-                                            const ChartSurface& surface, std::vector<Vec2> uv,
-                                            std::vector<std::pair<Index, Index>> pairs,
-                                            double tolerance, const Progress& progress,
-                                            double gap_share) {
+std::optional<std::vector<Vec2>>
+push_apart(const FlatteningProblem& problem, const atlas::ChartSurface& surface,
+           std::vector<Vec2> uv, std::vector<std::pair<Index, Index>> pairs, double tolerance,
+           const Progress& progress, double gap_share) {
     const double before = symmetric_dirichlet_energy(problem, uv);
     ContactPenalty penalty;
     penalty.stiffness = first_stiffness / problem.total_area;
@@ -64,4 +63,4 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
     return std::nullopt;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

@@ -6,13 +6,14 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
 // Local number of the other side of each boundary half-edge that lies on a cut inside the chart,
 // as pairs of local half-edges.
-std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh, const ChartSurface& surface) {
+std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh,
+                                                const atlas::ChartSurface& surface) {
     std::vector<std::pair<Index, Index>> by_mesh; // (mesh half-edge, local half-edge)
     for (const std::vector<Index>& loop : surface.loops)
         for (const Index h : loop)
@@ -30,7 +31,7 @@ std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh, const ChartSur
 
 class SlitOpener {
 public:
-    SlitOpener(const ChartSurface& surface, double gap, std::vector<Vec2>& uv)
+    SlitOpener(const atlas::ChartSurface& surface, double gap, std::vector<Vec2>& uv)
         : s_(surface), gap_(gap), uv_(uv), home_(uv), done_(surface.vertex.size(), 0) {}
 
     // Vertices v and w are the same point of the surface on the sides h and g of a slit.
@@ -72,7 +73,7 @@ private:
         return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]) > 0.0;
     }
 
-    const ChartSurface& s_;
+    const atlas::ChartSurface& s_;
     double gap_;
     std::vector<Vec2>& uv_;
     std::vector<Vec2> home_;
@@ -81,7 +82,7 @@ private:
 
 } // namespace
 
-void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap,
+void open_closed_slits(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                        std::vector<Vec2>& uv) {
     SlitOpener opener(surface, gap, uv);
     for (const auto& [h, g] : slit_sides(mesh, surface)) {
@@ -90,7 +91,7 @@ void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap
     }
 }
 
-bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, double gap,
+bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                             const std::vector<Vec2>& uv) {
     std::vector<Index> same(surface.vertex.size());
     std::iota(same.begin(), same.end(), 0);
@@ -121,4 +122,4 @@ bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, doubl
     return euler != 1;
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

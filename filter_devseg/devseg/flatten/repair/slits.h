@@ -5,7 +5,7 @@
 
 #include "devseg/atlas/charts.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Least distance of the two sides of a cut, as a share of the root of the model's area: far above
 /// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
@@ -16,12 +16,12 @@ constexpr double slit_gap = 5e-5;
 /// plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture coordinates
 /// tell a cut only by a difference: without one, readers would see a chart with a hole instead of
 /// the disk that was flattened. A vertex stays where it is if moving it would flip a face.
-void open_closed_slits(const Mesh& mesh, const ChartSurface& surface, double gap,
+void open_closed_slits(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                        std::vector<Vec2>& uv);
 
 /// Whether a reader that takes points closer than `gap` for one would find something else than a
 /// disk: cuts between two holes, say, that close over their whole length.
-bool closed_slits_hide_disk(const Mesh& mesh, const ChartSurface& surface, double gap,
+bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                             const std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

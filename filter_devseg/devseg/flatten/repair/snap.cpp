@@ -7,7 +7,7 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 namespace {
 
@@ -186,4 +186,4 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     return static_cast<Index>(lost);
 }
 
-} // namespace devseg
+} // namespace devseg::flatten

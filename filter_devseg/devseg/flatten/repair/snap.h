@@ -5,7 +5,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::flatten {
 
 /// Rounds uv (#v) to single precision. Where rounding would flip or flatten a face of positive
 /// orientation, one of its vertices is moved by a few units in the last place until all faces
@@ -13,4 +13,4 @@ namespace devseg {
 /// positive.
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv);
 
-} // namespace devseg
+} // namespace devseg::flatten

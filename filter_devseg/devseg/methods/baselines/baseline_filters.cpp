@@ -1,11 +1,11 @@
 // The methods that others are compared with.
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/declare/segmentation_output.h"
+#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/baselines/mcgim.h"
 #include "devseg/methods/baselines/vsa.h"
 
-namespace devseg {
+namespace devseg::baselines {
 
 namespace {
 
@@ -34,8 +34,8 @@ constexpr const char* mcgim_help =
     "Symposium on Geometry Processing, 2003, doi:10.2312/SGP/SGP03/146-155";
 
 template <class O>
-Declare<O> baseline(const char* menu_name, const char* python_name, const char* help) {
-    Declare<O> filter(menu_name, python_name, FilterCategory::remeshing, help);
+declare::Declare<O> baseline(const char* menu_name, const char* python_name, const char* help) {
+    declare::Declare<O> filter(menu_name, python_name, declare::FilterCategory::remeshing, help);
     filter
         .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                  "From 1 to the number of faces. A mesh of more components gets one chart for each "
@@ -45,7 +45,7 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
-        .writes(writes_charts | writes_quality | writes_color)
+        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
         .result("charts_number", "charts, each a disk")
         .result("cut_length", "length of the cuts inside of charts, model units")
         .result("seam_length", "length of all cut edges, model units")
@@ -54,10 +54,11 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
     return filter;
 }
 
-FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progress& progress) {
+declare::FilterOutput run_vsa(const declare::FilterInput& input, const VsaOptions& options,
+                              Progress& progress) {
     VsaResult result = segment_vsa(input.mesh, options, progress);
-    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_error),
-                                              {false, {}}, progress);
+    declare::FilterOutput output = declare::segmentation_output(
+        input, result.chart, std::move(result.face_error), {false, {}}, progress);
     output.values.insert(
         output.values.end(),
         {{"rounds_number", result.rounds},
@@ -67,12 +68,13 @@ FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progre
     return output;
 }
 
-FilterOutput run_mcgim(const FilterInput& input, const McgimOptions& options, Progress& progress) {
+declare::FilterOutput run_mcgim(const declare::FilterInput& input, const McgimOptions& options,
+                                Progress& progress) {
     McgimResult result = segment_mcgim(input.mesh, options, progress);
     for (double& cost : result.face_cost)
         cost *= input.mesh.unit_length;
-    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_cost),
-                                              {false, {}}, progress);
+    declare::FilterOutput output = declare::segmentation_output(
+        input, result.chart, std::move(result.face_cost), {false, {}}, progress);
     output.values.insert(output.values.end(),
                          {{"rounds_number", result.rounds}, {"converged", result.converged}});
     return output;
@@ -80,7 +82,7 @@ FilterOutput run_mcgim(const FilterInput& input, const McgimOptions& options, Pr
 
 } // namespace
 
-std::vector<FilterDeclaration> baseline_filters() {
+std::vector<declare::FilterDeclaration> baseline_filters() {
     return {baseline<VsaOptions>("Segmentation: Variational Shape Approximation",
                                  "compute_segmentation_variational_shape_approximation_per_face",
                                  vsa_help)
@@ -97,4 +99,4 @@ std::vector<FilterDeclaration> baseline_filters() {
                 .runs(run_mcgim)};
 }
 
-} // namespace devseg
+} // namespace devseg::baselines

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <set>
 
-#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/base/option_checks.h"
+#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/reseed.h"
 #include "devseg/methods/growth/seeds.h"
 
-namespace devseg {
+namespace devseg::baselines {
 
 namespace {
 
@@ -33,11 +33,13 @@ public:
         normal_.assign(charts, Vec3::UnitZ());
     }
 
-    CandidateHeap::Entry candidate(Index h, Index c) const {
+    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
         const float cost = cost_[at(h / 3)] + step(h, c);
         return {cost, cost, mesh_.twin[at(h)] / 3};
     }
-    GrowthKey key(Index, const CandidateHeap::Entry& entry) const { return {0, 0.0, entry.key}; }
+    growth::GrowthKey key(Index, const growth::CandidateHeap::Entry& entry) const {
+        return {0, 0.0, entry.key};
+    }
     void take(Index f, Index c, float cost) {
         cost_[at(f)] = cost;
         last_ = f;
@@ -71,16 +73,16 @@ private:
 McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progress& progress) {
     check_charts_number(mesh.face_count(), options.charts_number);
     check_rounds(options.max_iterations, options.random_seed);
-    const Index count = at_least_one_per_component(mesh, options.charts_number);
-    const Index components = face_components(mesh, [](Index) { return true; }).count;
+    const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
+    const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
 
     // One chart more at a time, from the face that was reached last [SWGSH03, section 4.1].
     progress.begin_phase("placing seeds", 0.3);
-    std::vector<Index> seeds = farthest_point_seeds(
+    std::vector<Index> seeds = growth::farthest_point_seeds(
         mesh, components, static_cast<std::uint32_t>(options.random_seed), progress);
     McgimResult result;
     PathCost cost(mesh);
-    MultiHeap heaps(mesh);
+    growth::MultiHeap heaps(mesh);
     const auto grow = [&] {
         cost.start_over(seeds.size());
         heaps.grow(seeds, cost, result.chart, progress);
@@ -92,7 +94,7 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
     }
 
     progress.begin_phase("growing charts", 0.6);
-    BorderDistance border(mesh);
+    growth::BorderDistance border(mesh);
     std::set<std::vector<Index>> seen{seeds};
     while (true) {
         grow();
@@ -111,4 +113,4 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::baselines

@@ -11,10 +11,10 @@
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::baselines {
 
 struct McgimOptions {
     int charts_number = 20;
@@ -33,4 +33,4 @@ struct McgimResult {
 /// InvalidParameter (1 ≤ charts_number ≤ #F, max_iterations ≥ 1) and Cancelled.
 McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::baselines

@@ -5,11 +5,11 @@
 #include <map>
 #include <utility>
 
-#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/base/option_checks.h"
+#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/seeds.h"
 
-namespace devseg {
+namespace devseg::baselines {
 
 namespace {
 
@@ -44,7 +44,7 @@ public:
     }
 
     // The error of [CSAD04, section 2.3]: |t| · |n − N|².
-    CandidateHeap::Entry candidate(Index h, Index c) const {
+    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
         const Index f = mesh_.twin[at(h)] / 3;
         const FaceNormal& n = faces_[at(f)];
         const Eigen::Vector3f& proxy = proxies_[at(c)];
@@ -54,7 +54,9 @@ public:
         const float error = n.area * (dx * dx + dy * dy + dz * dz);
         return {error, error, f};
     }
-    GrowthKey key(Index, const CandidateHeap::Entry& entry) const { return {0, 0.0, entry.key}; }
+    growth::GrowthKey key(Index, const growth::CandidateHeap::Entry& entry) const {
+        return {0, 0.0, entry.key};
+    }
     void take(Index, Index, float) const {}
 
 private:
@@ -218,7 +220,7 @@ private:
     const Mesh& mesh_;
     Progress& progress_;
     ProxyCost cost_;
-    MultiHeap heaps_;
+    growth::MultiHeap heaps_;
     std::vector<Index> seeds_;
     std::vector<Vec3> proxies_;
     Partition now_;
@@ -229,9 +231,9 @@ private:
 // everywhere.
 void start(const Mesh& mesh, Index count, int random_seed, Approximation& approximation,
            Progress& progress) {
-    const Index components = face_components(mesh, [](Index) { return true; }).count;
-    const std::vector<Index> far =
-        farthest_point_seeds(mesh, count, static_cast<std::uint32_t>(random_seed), progress);
+    const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
+    const std::vector<Index> far = growth::farthest_point_seeds(
+        mesh, count, static_cast<std::uint32_t>(random_seed), progress);
     Index charts = 0;
     for (; charts < (random_seed != 0 ? count : components); ++charts)
         approximation.add(far[at(charts)]);
@@ -284,7 +286,7 @@ VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& pro
     check_rounds(options.max_iterations, options.random_seed);
     Approximation approximation(mesh, progress);
     progress.begin_phase("placing seeds", 0.3);
-    const Index count = at_least_one_per_component(mesh, options.charts_number);
+    const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
     start(mesh, count, options.random_seed, approximation, progress);
 
     progress.begin_phase("fitting planes", 0.6);
@@ -302,4 +304,4 @@ VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& pro
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::baselines

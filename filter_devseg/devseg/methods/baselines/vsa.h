@@ -7,10 +7,10 @@
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::baselines {
 
 struct VsaOptions {
     int charts_number = 20;
@@ -33,4 +33,4 @@ struct VsaResult {
 /// InvalidParameter (1 ≤ charts_number ≤ #F, max_iterations ≥ 1) and Cancelled.
 VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::baselines

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/fragments.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/methods/dcharts/splitting.h"
 #include "devseg/methods/growth/borders.h"
-#include "devseg/atlas/fragments.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -21,11 +21,11 @@ constexpr int most_split_rounds = 24;
 constexpr double worth_coarsening = 2.0; // faces over those of the coarse surface
 
 // What faces fit in each chart: the proxies of all patches that it was joined from.
-ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
-                               const std::vector<Index>& patch) {
+growth::ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
+                                       const std::vector<Index>& patch) {
     const Index patches = 1 + *std::max_element(patch.begin(), patch.end());
-    const std::vector<ConicProxy> proxies = fit_conics(mesh, patch, patches);
-    ChartProxies result(draft.faces.size());
+    const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, patch, patches);
+    growth::ChartProxies result(draft.faces.size());
     std::vector<std::uint8_t> seen(proxies.size() * draft.faces.size(), 0);
     for (std::size_t f = 0; f < patch.size(); ++f) {
         std::uint8_t& known = seen[at(patch[f]) * draft.faces.size() + at(draft.chart[f])];
@@ -44,8 +44,9 @@ WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Pro
         std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
     if (full.face_count() <= worth_coarsening * wanted)
         return;
-    surface_ = std::make_unique<CoarseSurface>(coarsen_in_parallel(full, wanted, progress));
-    coarse_ = std::make_unique<CoarseMesh>(extract_coarse_mesh(full, *surface_));
+    surface_ =
+        std::make_unique<mesh::CoarseSurface>(mesh::coarsen_in_parallel(full, wanted, progress));
+    coarse_ = std::make_unique<mesh::CoarseMesh>(mesh::extract_coarse_mesh(full, *surface_));
 }
 
 FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Index>& patch,
@@ -58,19 +59,19 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
         std::vector<Index> label(full_.faces.size(), -1);
         for (std::size_t f = 0; f < coarse_->face.size(); ++f)
             label[at(coarse_->face[f])] = draft.chart[f];
-        result.chart = refine_labels(full_.points, *surface_, std::move(label), progress);
+        result.chart = mesh::refine_labels(full_.points, *surface_, std::move(label), progress);
     } else {
         result.chart = draft.chart;
     }
     straighten(draft, patch, max_fitting_error, straightening, result.chart, progress);
     if (coarse_ || straightening != Straightening::none) {
-        result.chart = absorb_fragments(full_, result.chart, fragment_share);
+        result.chart = atlas::absorb_fragments(full_, result.chart, fragment_share);
         progress.check();
         result.seam.assign(full_.twin.size(), 0);
         result.darts = cut_darts_to(full_, result.chart, tips_of(draft), result.seam);
     }
     progress.check();
-    result.chart = make_chart_map(full_, result.chart, result.seam, false).chart;
+    result.chart = atlas::make_chart_map(full_, result.chart, result.seam, false).chart;
     progress.check();
     return result;
 }
@@ -84,14 +85,14 @@ void WorkingSurface::straighten(const Draft& draft, const std::vector<Index>& pa
     const bool smooth = straightening == Straightening::smooth && !creased_;
     if (!fitting && !smooth)
         return;
-    const ChartProxies proxies = proxies_of_charts(mesh(), draft, patch);
+    const growth::ChartProxies proxies = proxies_of_charts(mesh(), draft, patch);
     const double ratio = static_cast<double>(full_.face_count()) / mesh().face_count();
     const int edge = static_cast<int>(std::sqrt(ratio)); // of the coarse surface, in faces
     if (fitting)
-        straighten_borders(full_, proxies, max_fitting_error, 2 + 2 * edge, chart, progress);
+        growth::straighten_borders(full_, proxies, max_fitting_error, 2 + 2 * edge, chart,
+                                   progress);
     if (smooth)
-        straighten_borders(full_, proxies, infinite, 1 + edge, chart,
-                           progress);
+        growth::straighten_borders(full_, proxies, infinite, 1 + edge, chart, progress);
 }
 
 std::vector<Index> WorkingSurface::tips_of(const Draft& draft) const {
@@ -115,16 +116,20 @@ FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
                                      const std::vector<std::uint8_t>& seam,
                                      Progress& progress) const {
     progress.begin_phase("measuring the final map", 0.2);
-    const ChartMap charts =
-        cut_charts_to_disks(full_, make_chart_map(full_, chart, seam, false), progress).charts;
+    const atlas::ChartMap charts =
+        atlas::cut_charts_to_disks(full_, atlas::make_chart_map(full_, chart, seam, false),
+                                   progress)
+            .charts;
     FinalStretch reached;
     reached.all = {1.0, 1.0};
     reached.linf.assign(at(1 + *std::max_element(chart.begin(), chart.end())), 1.0);
     double excess = 0.0;
-    for (const FlatChart& flat :
-         flatten_charts(full_, charts, FlattenMethod::symmetric_dirichlet, progress).flat) {
-        TrialMap map;
-        measure_stretch(make_flattening_problem(full_, flat.surface), flat.uv, map);
+    for (const flatten::FlatChart& flat :
+         flatten::flatten_charts(full_, charts, flatten::FlattenMethod::symmetric_dirichlet,
+                                 progress)
+             .flat) {
+        judge::TrialMap map;
+        judge::measure_stretch(flatten::make_flattening_problem(full_, flat.surface), flat.uv, map);
         excess += map.excess();
         reached.all.linf = std::max(reached.all.linf, map.linf);
         double& linf = reached.linf[at(chart[at(flat.surface.face.front())])];
@@ -152,7 +157,7 @@ FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& opti
         if (!changed)
             break;
         seam = draft.seam;
-        chart = make_chart_map(full_, draft.chart, seam, false).chart;
+        chart = atlas::make_chart_map(full_, draft.chart, seam, false).chart;
         reached = measure(chart, seam, progress);
     }
     return reached;
@@ -160,11 +165,11 @@ FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& opti
 
 std::vector<double> WorkingSurface::fitting_errors(const std::vector<Index>& chart) const {
     const Index count = 1 + *std::max_element(chart.begin(), chart.end());
-    const std::vector<ConicProxy> proxies = fit_conics(full_, chart, count);
+    const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(full_, chart, count);
     std::vector<double> errors(full_.faces.size());
     for (std::size_t f = 0; f < errors.size(); ++f)
         errors[f] = proxies[at(chart[f])].fitting_error(full_.face_normals[f]);
     return errors;
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

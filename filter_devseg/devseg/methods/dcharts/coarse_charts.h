@@ -6,10 +6,10 @@
 
 #include "devseg/mesh/coarsen.h"
 #include "devseg/methods/dcharts/darts.h"
-#include "devseg/methods/dcharts/draft.h"
 #include "devseg/methods/dcharts/dcharts.h"
+#include "devseg/methods/dcharts/draft.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 /// Of the surface: smaller pieces are slivers that nobody wants to cut out.
 constexpr double fragment_share = 0.002;
@@ -67,8 +67,8 @@ private:
 
     const Mesh& full_;
     bool creased_;
-    std::unique_ptr<CoarseSurface> surface_;
-    std::unique_ptr<CoarseMesh> coarse_;
+    std::unique_ptr<mesh::CoarseSurface> surface_;
+    std::unique_ptr<mesh::CoarseMesh> coarse_;
 };
 
-} // namespace devseg
+} // namespace devseg::dcharts

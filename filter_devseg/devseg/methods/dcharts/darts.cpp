@@ -9,7 +9,7 @@
 #include "devseg/atlas/border_path.h"
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr double worst_spot_gain = 0.1; // share of the excess over the bound th
 struct Dart {
     std::vector<Index> path; // half-edges of the mesh
     Index tip = -1;          // vertex of the mesh
-    TrialMap map;            // of the chart with the dart
+    judge::TrialMap map;     // of the chart with the dart
     double length = 0.0;
 };
 
@@ -29,7 +29,7 @@ Index sharpest_corner(const Mesh& mesh, Index face) {
     double largest = -1.0;
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
         double angles = 0.0;
-        const bool inner = visit_star(mesh, h, [&](Index k) {
+        const bool inner = mesh::visit_star(mesh, h, [&](Index k) {
             const Vec3 a = mesh.points[at(mesh.target(k))] - mesh.points[at(mesh.origin(k))];
             const Vec3 b =
                 mesh.points[at(mesh.origin(Mesh::previous(k)))] - mesh.points[at(mesh.origin(k))];
@@ -48,7 +48,7 @@ Index sharpest_corner(const Mesh& mesh, Index face) {
 class DartCutter {
 public:
     DartCutter(const Mesh& mesh, const DartOptions& options, const std::vector<Index>& faces,
-               std::vector<std::uint8_t> seam, TrialMap map, const Progress& progress)
+               std::vector<std::uint8_t> seam, judge::TrialMap map, const Progress& progress)
         : mesh_(mesh), options_(options), faces_(faces), seam_(std::move(seam)),
           map_(std::move(map)), progress_(progress) {}
 
@@ -60,7 +60,7 @@ public:
             Dart best = find_best();
             if (best.path.empty())
                 break;
-            mark_cuts(mesh_, best.path, seam_);
+            atlas::mark_cuts(mesh_, best.path, seam_);
             map_ = best.map;
             darts.push_back(std::move(best));
         }
@@ -74,16 +74,16 @@ private:
         for (std::size_t i = 0; i < std::min(tried_spots, map_.worst_faces.size()); ++i) {
             Dart dart;
             dart.tip = sharpest_corner(mesh_, map_.worst_faces[i]);
-            dart.path = path_to_border(mesh_, faces_, seam_, dart.tip);
+            dart.path = atlas::path_to_border(mesh_, faces_, seam_, dart.tip);
             if (dart.path.empty())
                 continue;
             for (const Index h : dart.path)
                 dart.length += mesh_.edge_length(h);
             std::vector<std::uint8_t> seam = seam_;
-            mark_cuts(mesh_, dart.path, seam);
-            TrialEffort effort;
+            atlas::mark_cuts(mesh_, dart.path, seam);
+            judge::TrialEffort effort;
             effort.wanted_l2 = options_.chart.l2;
-            dart.map = try_chart(mesh_, faces_, seam, effort, progress_);
+            dart.map = judge::try_chart(mesh_, faces_, seam, effort, progress_);
             const double value = worth(dart);
             if (value > highest) {
                 highest = value;
@@ -113,7 +113,7 @@ private:
     const DartOptions& options_;
     const std::vector<Index>& faces_;
     std::vector<std::uint8_t> seam_;
-    TrialMap map_;
+    judge::TrialMap map_;
     const Progress& progress_;
 };
 
@@ -134,7 +134,7 @@ Index cut_darts(const Mesh& mesh, const DartOptions& options, Draft& draft, Prog
     Index count = 0;
     for (std::size_t c = 0; c < darts.size(); ++c)
         for (const Dart& dart : darts[c]) {
-            mark_cuts(mesh, dart.path, draft.seam);
+            atlas::mark_cuts(mesh, dart.path, draft.seam);
             draft.tips.push_back(dart.tip);
             draft.map[c] = dart.map;
             ++count;
@@ -156,11 +156,11 @@ Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
         for (Index f = 0; f < mesh.face_count(); ++f)
             if (chart[at(f)] == label)
                 faces.push_back(f);
-        const std::vector<Index> path = path_to_border(mesh, faces, seam, tip);
-        mark_cuts(mesh, path, seam);
+        const std::vector<Index> path = atlas::path_to_border(mesh, faces, seam, tip);
+        atlas::mark_cuts(mesh, path, seam);
         cuts += path.empty() ? 0 : 1;
     }
     return cuts;
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

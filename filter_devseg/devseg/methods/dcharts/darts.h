@@ -7,7 +7,7 @@
 
 #include "devseg/methods/dcharts/draft.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 struct DartOptions {
     StretchBounds chart; // darts are cut while a chart is above them
@@ -26,4 +26,4 @@ Index cut_darts(const Mesh& mesh, const DartOptions& options, Draft& draft, Prog
 Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
                    const std::vector<Index>& tips, std::vector<std::uint8_t>& seam);
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "devseg/base/errors.h"
 #include "devseg/atlas/charts.h"
+#include "devseg/base/errors.h"
 #include "devseg/methods/growth/growth.h"
 #include "devseg/methods/growth/seeds.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -42,7 +42,7 @@ template <class T>
 
 struct Seed {
     Index face = -1;
-    ConicProxy proxy;
+    metrics::ConicProxy proxy;
 };
 
 // Grows charts from seeds over unassigned faces. Costs are compared as base-2 logarithms, so that
@@ -71,10 +71,10 @@ public:
              const std::vector<Index>& front, const std::vector<Index>& planted,
              std::vector<Index>& chart, Progress& progress) {
         heaps_.resize(charts.size());
-        for (CandidateHeap& heap : heaps_)
+        for (growth::CandidateHeap& heap : heaps_)
             heap.clear();
         area_.resize(charts.size(), 0.0);
-        Tournament tournament(static_cast<Index>(charts.size()));
+        growth::Tournament tournament(static_cast<Index>(charts.size()));
         max_fitting_error_ = max_fitting_error;
         for (const Index f : planted)
             distance_[at(f)] = 0.0F;
@@ -88,7 +88,7 @@ public:
         Index added = 0;
         while (tournament.key(tournament.winner()) < std::numeric_limits<float>::infinity()) {
             const Index c = tournament.winner();
-            const CandidateHeap::Entry entry = heaps_[at(c)].top();
+            const growth::CandidateHeap::Entry entry = heaps_[at(c)].top();
             heaps_[at(c)].pop();
             if (chart[at(entry.face)] < 0) {
                 chart[at(entry.face)] = c;
@@ -105,7 +105,7 @@ public:
 private:
     // Key of the chart's best candidate; candidates that other charts took meanwhile are dropped.
     float key_of(Index c, const std::vector<Index>& chart) {
-        CandidateHeap& heap = heaps_[at(c)];
+        growth::CandidateHeap& heap = heaps_[at(c)];
         while (!heap.empty() && chart[at(heap.top().face)] >= 0)
             heap.pop();
         if (heap.empty())
@@ -124,7 +124,8 @@ private:
         }
     }
 
-    void offer(Index f, Index c, const ConicProxy& proxy, const std::vector<Index>& chart) {
+    void offer(Index f, Index c, const metrics::ConicProxy& proxy,
+               const std::vector<Index>& chart) {
         const double error = proxy.fitting_error(mesh_.face_normals[at(f)]);
         if (!(error < max_fitting_error_))
             return;
@@ -159,14 +160,14 @@ private:
     std::vector<float> edge_length_; // 3 #F
     std::vector<float> center_step_; // 3 #F: distance of the centroids on both sides
     std::vector<float> distance_;    // #F: D(S_C, t) of [JKS05, section 2.1.2]
-    std::vector<CandidateHeap> heaps_;
+    std::vector<growth::CandidateHeap> heaps_;
     std::vector<double> area_;
 };
 
 // The faces around a corner's vertex.
-NormalMoments vertex_star(const Mesh& mesh, Index corner) {
-    NormalMoments moments;
-    visit_star(mesh, corner, [&](Index h) {
+metrics::NormalMoments vertex_star(const Mesh& mesh, Index corner) {
+    metrics::NormalMoments moments;
+    mesh::visit_star(mesh, corner, [&](Index h) {
         moments.add(mesh.face_areas[at(h / 3)], mesh.face_normals[at(h / 3)]);
     });
     return moments;
@@ -178,7 +179,7 @@ Seed initial_seed(const Mesh& mesh, Index face) {
     best.face = face;
     double best_error = unbounded;
     for (Index h = 3 * face; h < 3 * face + 3; ++h) {
-        const ConicProxy proxy = fit_conic(vertex_star(mesh, h));
+        const metrics::ConicProxy proxy = metrics::fit_conic(vertex_star(mesh, h));
         const double error = proxy.fitting_error(mesh.face_normals[at(face)]);
         if (error < best_error) {
             best_error = error;
@@ -190,7 +191,7 @@ Seed initial_seed(const Mesh& mesh, Index face) {
 
 // Of the faces that fit best, the one nearest to the chart's centre [JKS05, section 3.1]. Faces
 // below the error floor count as equally good: on a plane or a cylinder all faces compete.
-Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const ConicProxy& proxy,
+Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const metrics::ConicProxy& proxy,
                 std::vector<double>& errors) {
     Vec3 centre = Vec3::Zero();
     double area = 0.0;
@@ -221,7 +222,7 @@ Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const ConicPr
 
 void reseed(const Mesh& mesh, const std::vector<Index>& chart, std::vector<Seed>& seeds) {
     const Index count = static_cast<Index>(seeds.size());
-    const std::vector<ConicProxy> proxies = fit_conics(mesh, chart, count);
+    const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, chart, count);
     std::vector<std::vector<Index>> faces(at(count));
     for (Index f = 0; f < mesh.face_count(); ++f)
         if (chart[at(f)] >= 0)
@@ -275,7 +276,7 @@ struct Hole {
 
 std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) {
     const auto is_open = [&](Index f) { return chart[at(f)] < 0; };
-    const FaceComponents parts = face_components(
+    const mesh::FaceComponents parts = mesh::face_components(
         mesh, [&](Index h) { return is_open(h / 3) && is_open(mesh.twin[at(h)] / 3); });
     std::vector<Index> hole_of(at(parts.count), -1);
     std::vector<Hole> holes;
@@ -302,11 +303,11 @@ std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) 
 void add_hole_chart(const Mesh& mesh, const DChartsOptions& options, const Hole& hole,
                     Growth& growth, std::vector<Seed>& seeds, DChartsResult& result,
                     Progress& progress) {
-    NormalMoments moments;
+    metrics::NormalMoments moments;
     for (const Index f : hole.faces)
         moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
     Seed seed;
-    seed.proxy = fit_conic(moments);
+    seed.proxy = metrics::fit_conic(moments);
     std::vector<double> errors;
     seed.face = next_seed(mesh, hole.faces, seed.proxy, errors);
     const Index label = static_cast<Index>(seeds.size());
@@ -377,8 +378,8 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     progress.begin_phase("placing seeds", 0.1);
     std::vector<Seed> seeds;
     for (const Index face :
-         farthest_point_seeds(mesh, options.charts_number,
-                              static_cast<std::uint32_t>(options.random_seed), progress))
+         growth::farthest_point_seeds(mesh, options.charts_number,
+                                      static_cast<std::uint32_t>(options.random_seed), progress))
         seeds.push_back(initial_seed(mesh, face));
 
     progress.begin_phase("growing charts", 0.6);
@@ -388,7 +389,7 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     progress.begin_phase("filling holes", 0.1);
     fill_holes(mesh, options, growth, seeds, result, progress);
 
-    result.proxies = fit_conics(mesh, result.chart, static_cast<Index>(seeds.size()));
+    result.proxies = metrics::fit_conics(mesh, result.chart, static_cast<Index>(seeds.size()));
     result.fitting_error.resize(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         result.fitting_error[f] =
@@ -396,4 +397,4 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 #include "devseg/metrics/conic_proxy.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 struct DChartsOptions {
     int charts_number = 10;         // initial estimate; hole filling may add charts
@@ -26,10 +26,10 @@ struct DChartsOptions {
 struct DChartsResult {
     std::vector<Index> chart;          // #F, 0 … proxies − 1; every chart is edge-connected
     std::vector<double> fitting_error; // #F, F(C, t) with the chart's final proxy
-    std::vector<ConicProxy> proxies;   // one for each chart
-    int rounds = 0;                    // Lloyd rounds that were run
-    bool converged = false;            // fewer than 5 % of the faces changed in the last round
-    Index hole_charts = 0;             // charts that hole filling added
+    std::vector<metrics::ConicProxy> proxies; // one for each chart
+    int rounds = 0;                           // Lloyd rounds that were run
+    bool converged = false; // fewer than 5 % of the faces changed in the last round
+    Index hole_charts = 0;  // charts that hole filling added
 };
 
 /// Throws InvalidParameter for options that segment_dcharts cannot work with.
@@ -39,4 +39,4 @@ void check_options(const Mesh& mesh, const DChartsOptions& options);
 /// exponents ≥ 0, max_iterations ≥ 1) and Cancelled.
 DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::dcharts

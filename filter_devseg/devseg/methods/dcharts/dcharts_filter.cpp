@@ -4,10 +4,10 @@
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
-#include "devseg/metrics/segmentation.h"
 #include "devseg/methods/dcharts/developable_charts.h"
+#include "devseg/metrics/segmentation.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -46,14 +46,14 @@ constexpr const char* colorize_help =
     "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
     "coordinates, and without those each connected component of the mesh is a chart.";
 
-FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOptions& options,
-                         Progress& progress) {
+declare::FilterOutput run_dcharts(const declare::FilterInput& input,
+                                  const DevelopableChartsOptions& options, Progress& progress) {
     DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, progress);
     progress.begin_phase("cutting charts to disks", 0.1);
-    const ChartMap charts =
-        make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, charts, progress);
-    FilterOutput output;
+    const atlas::ChartMap charts =
+        atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
+    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, progress);
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
@@ -64,18 +64,20 @@ FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOption
         {"linf_stretch", segmentation.linf_stretch},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
-        {"seam_length", seam_length(input.mesh, cuts.charts)},
+        {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
-    output.face_color = face_chart_colors(input.mesh, cuts.charts);
+    output.face_color = declare::face_chart_colors(input.mesh, cuts.charts);
     output.face_quality = std::move(segmentation.fitting_error);
     output.charts = std::move(cuts.charts);
     return output;
 }
 
-FilterOutput run_disks(const FilterInput& input, const DiskOptions& options, Progress& progress) {
+declare::FilterOutput run_disks(const declare::FilterInput& input,
+                                const atlas::DiskOptions& options, Progress& progress) {
     progress.begin_phase("cutting charts to disks", 1.0);
-    DiskCuts cuts = cut_charts_to_disks(input.mesh, find_charts(input), options, progress);
-    FilterOutput output;
+    atlas::DiskCuts cuts =
+        atlas::cut_charts_to_disks(input.mesh, filters::find_charts(input), options, progress);
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
         {"cut_charts_number", cuts.cut_charts},
@@ -86,18 +88,19 @@ FilterOutput run_disks(const FilterInput& input, const DiskOptions& options, Pro
     return output;
 }
 
-FilterOutput run_colorize(const FilterInput& input, const NoOptions&, Progress&) {
-    const ChartMap charts = find_charts(input);
-    FilterOutput output;
+declare::FilterOutput run_colorize(const declare::FilterInput& input, const declare::NoOptions&,
+                                   Progress&) {
+    const atlas::ChartMap charts = filters::find_charts(input);
+    declare::FilterOutput output;
     output.values = {{"charts_number", charts.count}};
-    output.face_color = face_chart_colors(input.mesh, charts);
+    output.face_color = declare::face_chart_colors(input.mesh, charts);
     return output;
 }
 
-FilterDeclaration dcharts() {
+declare::FilterDeclaration dcharts() {
     using O = DevelopableChartsOptions;
-    return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
-                      FilterCategory::remeshing, dcharts_help)
+    return declare::Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
+                               declare::FilterCategory::remeshing, dcharts_help)
         .integer(&O::charts_number, "charts_number", "Number of charts", 0, 1e9,
                  "The initial estimate of the number of charts, from 1 to the number of faces. "
                  "Large regions that fit no chart get charts of their own, and neighbours that "
@@ -139,7 +142,7 @@ FilterDeclaration dcharts() {
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
-        .writes(writes_charts | writes_quality | writes_color)
+        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
         .result("charts_number", "charts, each a disk")
         .result("hole_charts_number", "charts that were added where no other fitted")
         .result("joined_charts_number", "joins of two charts")
@@ -153,13 +156,14 @@ FilterDeclaration dcharts() {
         .runs(run_dcharts);
 }
 
-FilterDeclaration disks() {
-    return Declare<DiskOptions>("Charts: Cut to Disks", "compute_seams_charts_to_disks_per_edge",
-                                FilterCategory::remeshing, disks_help)
-        .boolean(&DiskOptions::cut_tips, "cut_tips", "Cut tips",
+declare::FilterDeclaration disks() {
+    return declare::Declare<atlas::DiskOptions>("Charts: Cut to Disks",
+                                                "compute_seams_charts_to_disks_per_edge",
+                                                declare::FilterCategory::remeshing, disks_help)
+        .boolean(&atlas::DiskOptions::cut_tips, "cut_tips", "Cut tips",
                  "Cut charts open up to tips as well: to vertices at least as far from the border "
                  "as the border is long, and to the ends of horns.")
-        .writes(writes_charts)
+        .writes(declare::writes_charts)
         .result("charts_number", "charts, each a disk")
         .result("cut_charts_number", "charts that were cut")
         .result("cut_tips_number", "cuts up to tips")
@@ -167,18 +171,19 @@ FilterDeclaration disks() {
         .runs(run_disks);
 }
 
-FilterDeclaration colorize() {
-    return Declare<NoOptions>("Charts: Colorize", "compute_color_by_chart_per_face",
-                              FilterCategory::color, colorize_help)
-        .writes(writes_color)
+declare::FilterDeclaration colorize() {
+    return declare::Declare<declare::NoOptions>("Charts: Colorize",
+                                                "compute_color_by_chart_per_face",
+                                                declare::FilterCategory::color, colorize_help)
+        .writes(declare::writes_color)
         .result("charts_number", "charts that were coloured")
         .runs(run_colorize);
 }
 
 } // namespace
 
-std::vector<FilterDeclaration> segmentation_filters() {
+std::vector<declare::FilterDeclaration> segmentation_filters() {
     return {dcharts(), disks(), colorize()};
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

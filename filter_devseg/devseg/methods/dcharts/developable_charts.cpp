@@ -5,15 +5,15 @@
 #include <limits>
 #include <sstream>
 
+#include "devseg/atlas/fragments.h"
 #include "devseg/base/errors.h"
 #include "devseg/methods/dcharts/coarse_charts.h"
 #include "devseg/methods/dcharts/darts.h"
 #include "devseg/methods/dcharts/merging.h"
 #include "devseg/methods/dcharts/splitting.h"
 #include "devseg/methods/growth/expansion.h"
-#include "devseg/atlas/fragments.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -112,12 +112,12 @@ private:
         patch_ = grown.chart;
         progress_.begin_phase("straightening borders", 0.1);
         if (options_.straighten_boundaries) {
-            ExpansionOptions expansion;
+            growth::ExpansionOptions expansion;
             expansion.max_fitting_error = growing_.max_fitting_error;
             expansion.length_weight = creased_ ? creased_length_weight : smooth_length_weight;
-            relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
+            growth::relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
         }
-        patch_ = absorb_fragments(mesh, patch_, fragment_share);
+        patch_ = atlas::absorb_fragments(mesh, patch_, fragment_share);
     }
 
     DevelopableCharts run_with_estimate() {
@@ -303,4 +303,4 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
     return Designer(mesh, options, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -9,7 +9,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/methods/dcharts/dcharts.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 struct DevelopableChartsOptions : DChartsOptions {
     bool straighten_boundaries = true; // borders as short as the fitting error allows
@@ -43,4 +43,4 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
                                              const DevelopableChartsOptions& options,
                                              Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::dcharts

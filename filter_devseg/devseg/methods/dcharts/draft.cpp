@@ -4,7 +4,7 @@
 
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 Index Draft::charts_number() const {
     return static_cast<Index>(
@@ -44,17 +44,17 @@ Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart,
     Draft draft = make_untried_draft(mesh, chart);
     if (!seam.empty())
         draft.seam = seam;
-    TrialEffort effort;
+    judge::TrialEffort effort;
     effort.wanted_l2 = wanted_l2;
     parallel_for(
         static_cast<int>(draft.faces.size()),
         [&](int i) {
             const std::size_t c = static_cast<std::size_t>(i);
             if (!draft.faces[c].empty())
-                draft.map[c] = try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
+                draft.map[c] = judge::try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
         },
         progress);
     return draft;
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

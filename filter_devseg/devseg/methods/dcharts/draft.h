@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
 #include "devseg/judge/trial.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 struct Draft {
     std::vector<Index> chart;       // #F
     std::vector<std::uint8_t> seam; // 3 #F, symmetric: cuts inside charts
     std::vector<Index> tips;        // vertices where darts end, in the order of cutting
     std::vector<std::vector<Index>>
-        faces;                 // of each chart, ascending; empty for charts that are gone
-    std::vector<TrialMap> map; // of each chart
+        faces;                        // of each chart, ascending; empty for charts that are gone
+    std::vector<judge::TrialMap> map; // of each chart
 
     Index charts_number() const;
     double excess() const; // Σ A (l2² − 1) over the charts, internal units squared
@@ -36,7 +36,9 @@ struct StretchBounds {
     double l2 = 1.005;
     double linf = 1.5;
 
-    bool hold(const TrialMap& map) const { return map.l2_squared <= l2 * l2 && map.linf <= linf; }
+    bool hold(const judge::TrialMap& map) const {
+        return map.l2_squared <= l2 * l2 && map.linf <= linf;
+    }
 };
 
-} // namespace devseg
+} // namespace devseg::dcharts

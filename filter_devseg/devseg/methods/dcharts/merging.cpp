@@ -7,7 +7,7 @@
 
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -61,8 +61,8 @@ private:
         for (const Index c : {pair.first, pair.second})
             limit.linf = std::max(limit.linf, draft_.map[at(c)].linf);
         if (is_small(pair.first) || is_small(pair.second)) {
-            const TrialMap& a = draft_.map[at(pair.first)];
-            const TrialMap& b = draft_.map[at(pair.second)];
+            const judge::TrialMap& a = draft_.map[at(pair.first)];
+            const judge::TrialMap& b = draft_.map[at(pair.second)];
             limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
             limit.l2 = 1.0 + small_allowance * (limit.l2 - 1.0);
             limit.linf = 1.0 + small_allowance * (limit.linf - 1.0);
@@ -78,28 +78,28 @@ private:
         for (const auto& [pair, length] : length_)
             if (joined_.count(pair) == 0)
                 open.push_back(pair);
-        std::vector<TrialMap> maps(open.size());
+        std::vector<judge::TrialMap> maps(open.size());
         parallel_for(
             static_cast<int>(open.size()),
             [&](int i) {
                 const Pair& pair = open[static_cast<std::size_t>(i)];
-                TrialEffort effort;
+                judge::TrialEffort effort;
                 effort.wanted_l2 = bounds(pair).l2;
                 effort.give_up = true;
                 maps[static_cast<std::size_t>(i)] =
-                    try_chart(mesh_, united(pair), draft_.seam, effort, progress_);
+                    judge::try_chart(mesh_, united(pair), draft_.seam, effort, progress_);
             },
             progress_);
         for (std::size_t i = 0; i < open.size(); ++i)
             joined_[open[i]] = maps[i];
     }
 
-    double added_excess(const Pair& pair, const TrialMap& map) const {
+    double added_excess(const Pair& pair, const judge::TrialMap& map) const {
         return map.excess() - draft_.map[at(pair.first)].excess() -
                draft_.map[at(pair.second)].excess();
     }
 
-    bool is_allowed(const Pair& pair, const TrialMap& map, double excess) const {
+    bool is_allowed(const Pair& pair, const judge::TrialMap& map, double excess) const {
         return map.flat && bounds(pair).hold(map) &&
                excess + added_excess(pair, map) <= options_.max_excess;
     }
@@ -117,7 +117,7 @@ private:
             Pair best(-1, -1);
             double lowest = infinite;
             for (const auto& [pair, length] : length_) {
-                const TrialMap& map = joined_[pair];
+                const judge::TrialMap& map = joined_[pair];
                 const double saved = length - map.cut_length +
                                      draft_.map[at(pair.first)].cut_length +
                                      draft_.map[at(pair.second)].cut_length;
@@ -133,11 +133,11 @@ private:
             }
             if (best.first < 0 || !joined_[best].overlaps)
                 return best;
-            TrialEffort effort;
+            judge::TrialEffort effort;
             effort.wanted_l2 = bounds(best).l2;
             effort.push_apart = true;
-            TrialMap& map = joined_[best];
-            map = try_chart(mesh_, united(best), draft_.seam, effort, progress_);
+            judge::TrialMap& map = joined_[best];
+            map = judge::try_chart(mesh_, united(best), draft_.seam, effort, progress_);
             map.flat = map.flat && !map.overlaps;
         }
     }
@@ -162,8 +162,8 @@ private:
     const MergeOptions& options_;
     Draft& draft_;
     Progress& progress_;
-    std::map<Pair, double> length_;   // of the border between two charts
-    std::map<Pair, TrialMap> joined_; // what the two would be as one chart
+    std::map<Pair, double> length_;          // of the border between two charts
+    std::map<Pair, judge::TrialMap> joined_; // what the two would be as one chart
 };
 
 } // namespace
@@ -173,4 +173,4 @@ Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft,
     return Merger(mesh, options, draft, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

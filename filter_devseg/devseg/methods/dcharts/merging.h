@@ -9,10 +9,10 @@
 
 #include "devseg/methods/dcharts/draft.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 struct MergeOptions {
-    StretchBounds chart;                                         // of each joined chart
+    StretchBounds chart;          // of each joined chart
     double max_excess = infinite; // of the draft, see Draft::excess
     // Least length of border that a join saves, over the root of the smaller chart's area: charts
     // that touch along a short border would hang together by a narrow neck.
@@ -24,4 +24,4 @@ struct MergeOptions {
 /// little stretch; neighbours are tried again after each. Returns the number of joins.
 Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/methods/growth/expansion.h"
 #include "devseg/atlas/fragments.h"
 #include "devseg/methods/baselines/vsa.h"
+#include "devseg/methods/growth/expansion.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 namespace {
 
@@ -20,7 +20,8 @@ Index count_labels(const std::vector<Index>& label) {
 
 Mesh mesh_of_chart(const Mesh& mesh, const std::vector<Index>& faces) {
     const std::vector<std::uint8_t> no_cuts(mesh.twin.size(), 0);
-    return mesh_of(mesh, extract_surface(mesh, faces, enclose(mesh, faces, no_cuts)));
+    return atlas::mesh_of(
+        mesh, atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, no_cuts)));
 }
 
 // Label 0 keeps the chart's number. False where there is just one.
@@ -41,11 +42,11 @@ bool take_apart(const Mesh& mesh, const std::vector<Index>& label, double wanted
         for (Index h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
             draft.seam[at(h)] = 0;
     }
-    TrialEffort effort;
+    judge::TrialEffort effort;
     effort.wanted_l2 = wanted_l2;
     for (Index l = 0; l < count; ++l) {
         const std::size_t c = at(l == 0 ? chart : first_new + l - 1);
-        draft.map[c] = try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
+        draft.map[c] = judge::try_chart(mesh, draft.faces[c], draft.seam, effort, progress);
     }
     return true;
 }
@@ -61,12 +62,12 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
     two.charts_number = 2;
     const DChartsResult grown = segment_dcharts(part, two, progress);
     std::vector<Index> label = grown.chart;
-    ExpansionOptions expansion;
+    growth::ExpansionOptions expansion;
     expansion.max_fitting_error = options.max_fitting_error;
-    relabel_by_expansion(part, grown.proxies, expansion, label, progress);
-    label = absorb_fragments(part, label, fragment_share);
+    growth::relabel_by_expansion(part, grown.proxies, expansion, label, progress);
+    label = atlas::absorb_fragments(part, label, fragment_share);
     if (count_labels(label) < 2) // the shortest border is none: take the charts as they grew
-        label = absorb_fragments(part, grown.chart, fragment_share);
+        label = atlas::absorb_fragments(part, grown.chart, fragment_share);
     return take_apart(mesh, label, wanted_l2, chart, draft, progress);
 }
 
@@ -74,11 +75,11 @@ bool halve_chart(const Mesh& mesh, double wanted_l2, Index chart, Draft& draft,
                  Progress& progress) {
     if (draft.faces[at(chart)].size() < 2)
         return false;
-    VsaOptions planes;
+    baselines::VsaOptions planes;
     planes.charts_number = 2;
     const Mesh part = mesh_of_chart(mesh, draft.faces[at(chart)]);
-    return take_apart(mesh, segment_vsa(part, planes, progress).chart, wanted_l2, chart, draft,
-                      progress);
+    return take_apart(mesh, baselines::segment_vsa(part, planes, progress).chart, wanted_l2, chart,
+                      draft, progress);
 }
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -1,10 +1,10 @@
 // Splitting a chart that is stretched too much.
 #pragma once
 
-#include "devseg/methods/dcharts/draft.h"
 #include "devseg/methods/dcharts/dcharts.h"
+#include "devseg/methods/dcharts/draft.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 
 /// Grows two D-Charts within the chart, far from each other, and gives the second and what it left
 /// over labels of their own. Cuts inside the chart are healed. Returns whether the chart is in
@@ -16,4 +16,4 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
 /// for a few faces.
 bool halve_chart(const Mesh& mesh, double wanted_l2, Index chart, Draft& draft, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -6,10 +6,10 @@
 #include <queue>
 #include <utility>
 
-#include "devseg/graph/min_cut.h"
 #include "devseg/atlas/charts.h"
+#include "devseg/graph/min_cut.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 namespace {
 
@@ -111,10 +111,10 @@ public:
         : mesh_(mesh), normals_(smooth_normals(mesh, progress)), proxies_(proxies),
           max_fitting_error_(max_fitting_error), rings_(rings), chart_(chart),
           fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
-          distance_(mesh.points.size(), infinite),
-          arrival_(mesh.points.size(), -1), new_border_(mesh.twin.size(), 0),
-          outgoing_(mesh.points.size(), -1), valence_(mesh.points.size(), 0),
-          corners_(mesh.points.size(), 0), in_flood_(mesh.faces.size(), 0) {
+          distance_(mesh.points.size(), infinite), arrival_(mesh.points.size(), -1),
+          new_border_(mesh.twin.size(), 0), outgoing_(mesh.points.size(), -1),
+          valence_(mesh.points.size(), 0), corners_(mesh.points.size(), 0),
+          in_flood_(mesh.faces.size(), 0) {
         for (Index h = 0; h < mesh.half_edge_count(); ++h) {
             // On a boundary, prefer the half-edge from which the whole fan is reached one way.
             Index& first = outgoing_[at(mesh.origin(h))];
@@ -171,7 +171,7 @@ private:
         }
     }
     bool fits(Index f, Index c) const {
-        for (const ConicProxy& proxy : proxies_[at(c)])
+        for (const metrics::ConicProxy& proxy : proxies_[at(c)])
             if (proxy.fitting_error(normals_[at(f)]) < max_fitting_error_)
                 return true;
         return false;
@@ -181,7 +181,7 @@ private:
     // two charts comes there.
     bool is_free(Index v, const BorderSegment& segment) const {
         bool allowed = true;
-        const bool whole = visit_star(mesh_, outgoing_[at(v)], [&](Index h) {
+        const bool whole = mesh::visit_star(mesh_, outgoing_[at(v)], [&](Index h) {
             const Index c = chart_[at(h / 3)];
             allowed = allowed && (c == segment.chart_a || c == segment.chart_b);
             if (is_border(mesh_, chart_, h) && blocked_[at(v)] == 0)
@@ -233,7 +233,7 @@ private:
                 break;
             if (d > distance_[at(v)])
                 continue;
-            visit_star(mesh_, outgoing_[at(v)], [&, d = d](Index h) {
+            mesh::visit_star(mesh_, outgoing_[at(v)], [&, d = d](Index h) {
                 const Index twin = mesh_.twin[at(h)];
                 if (twin < 0 || (fuzzy_[at(h / 3)] == 0 && fuzzy_[at(twin / 3)] == 0 &&
                                  new_border_[at(h)] != passable))
@@ -315,11 +315,11 @@ private:
                 ->second;
         };
         // Two more nodes stand for all that lies outside of the area.
-        std::vector<CutSide> sides(area_.size() + 2, CutSide::open);
+        std::vector<graph::CutSide> sides(area_.size() + 2, graph::CutSide::open);
         const Index core_a = static_cast<Index>(area_.size());
-        sides[at(core_a)] = CutSide::source;
-        sides[at(core_a + 1)] = CutSide::sink;
-        MinCut cut(std::move(sides));
+        sides[at(core_a)] = graph::CutSide::source;
+        sides[at(core_a + 1)] = graph::CutSide::sink;
+        graph::MinCut cut(std::move(sides));
         bool has_core[2] = {false, false};
         for (const Index f : area_)
             for (Index h = 3 * f; h < 3 * f + 3; ++h) {
@@ -338,11 +338,11 @@ private:
             }
         if (!has_core[0] || !has_core[1])
             return false;
-        const std::vector<CutSide> result = cut.solve();
+        const std::vector<graph::CutSide> result = cut.solve();
         std::vector<std::pair<Index, Index>> labels;
         for (std::size_t i = 0; i < area_.size(); ++i)
-            labels.emplace_back(area_[i],
-                                result[i] == CutSide::source ? segment.chart_a : segment.chart_b);
+            labels.emplace_back(area_[i], result[i] == graph::CutSide::source ? segment.chart_a
+                                                                              : segment.chart_b);
         return apply(segment, labels);
     }
 
@@ -468,4 +468,4 @@ Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double m
     return replaced;
 }
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -7,11 +7,11 @@
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 #include "devseg/metrics/conic_proxy.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 /// A piece of the border between two charts: from one junction to the next, or a whole loop. A
 /// junction is a vertex where three charts meet, or where the border reaches the mesh's boundary.
@@ -25,7 +25,7 @@ struct BorderSegment {
 std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vector<Index>& chart);
 
 /// What faces may fit in each chart: one proxy, or several for charts that were joined.
-using ChartProxies = std::vector<std::vector<ConicProxy>>;
+using ChartProxies = std::vector<std::vector<metrics::ConicProxy>>;
 
 /// Replaces each border by the shortest path between its ends, or the shortest loop around it,
 /// within the fuzzy area of its two charts: the faces near the border that fit both proxies better
@@ -35,4 +35,4 @@ using ChartProxies = std::vector<std::vector<ConicProxy>>;
 Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double max_fitting_error,
                          int rings, std::vector<Index>& chart, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::growth

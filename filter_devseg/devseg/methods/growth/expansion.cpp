@@ -6,7 +6,7 @@
 #include "devseg/atlas/border_path.h"
 #include "devseg/graph/min_cut.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 namespace {
 
@@ -19,14 +19,14 @@ constexpr double settled_share = 2e-3; // of the faces: fewer changes in a round
 
 class Expansion {
 public:
-    Expansion(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
+    Expansion(const Mesh& mesh, const std::vector<metrics::ConicProxy>& proxies,
               const ExpansionOptions& options, std::vector<Index>& chart)
         : mesh_(mesh), proxies_(proxies), options_(options), chart_(chart),
           node_(mesh.faces.size(), -1), weight_(mesh.twin.size(), 0.0) {
         const double scale = options.length_weight * std::sqrt(mesh.total_area);
         for (Index h = 0; h < mesh.half_edge_count(); ++h)
             if (mesh.twin[at(h)] >= 0)
-                weight_[at(h)] = scale * crease_factor(mesh, h) * mesh.edge_length(h);
+                weight_[at(h)] = scale * atlas::crease_factor(mesh, h) * mesh.edge_length(h);
     }
 
     // Lets one chart take what lowers the sum; returns the number of faces that it took.
@@ -75,9 +75,9 @@ private:
         const Index count = static_cast<Index>(faces_.size());
         const Index source = count;
         const Index sink = count + 1;
-        std::vector<CutSide> sides(faces_.size() + 2, CutSide::open);
-        sides[at(source)] = CutSide::source;
-        sides[at(sink)] = CutSide::sink;
+        std::vector<graph::CutSide> sides(faces_.size() + 2, graph::CutSide::open);
+        sides[at(source)] = graph::CutSide::source;
+        sides[at(sink)] = graph::CutSide::sink;
         std::vector<double> take(faces_.size());
         std::vector<double> keep(faces_.size());
         links_.clear();
@@ -107,7 +107,7 @@ private:
                 }
             }
         }
-        MinCut cut(std::move(sides));
+        graph::MinCut cut(std::move(sides));
         for (Index i = 0; i < count; ++i) {
             const double difference = keep[at(i)] - take[at(i)];
             if (difference > 0.0)
@@ -117,10 +117,10 @@ private:
         }
         for (const Link& link : links_)
             cut.link(link.a, link.b, link.weight);
-        const std::vector<CutSide> side = cut.solve();
+        const std::vector<graph::CutSide> side = cut.solve();
         Index taken = 0;
         for (Index i = 0; i < count; ++i)
-            if (side[at(i)] == CutSide::source) {
+            if (side[at(i)] == graph::CutSide::source) {
                 chart_[at(faces_[at(i)])] = label;
                 ++taken;
             }
@@ -128,9 +128,10 @@ private:
     }
 
     // An edge on a border costs w unless both faces take the label: one more node [BVZ01, fig. 5].
-    void link_across_border(Index a, Index b, Index source, double w, std::vector<CutSide>& sides) {
+    void link_across_border(Index a, Index b, Index source, double w,
+                            std::vector<graph::CutSide>& sides) {
         const Index extra = static_cast<Index>(sides.size());
-        sides.push_back(CutSide::open);
+        sides.push_back(graph::CutSide::open);
         links_.push_back({extra, a, w});
         links_.push_back({extra, b, w});
         links_.push_back({extra, source, w});
@@ -142,7 +143,7 @@ private:
     };
 
     const Mesh& mesh_;
-    const std::vector<ConicProxy>& proxies_;
+    const std::vector<metrics::ConicProxy>& proxies_;
     const ExpansionOptions& options_;
     std::vector<Index>& chart_;
     std::vector<Index> faces_;   // candidates of the current move
@@ -153,7 +154,7 @@ private:
 
 } // namespace
 
-void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
+void relabel_by_expansion(const Mesh& mesh, std::vector<metrics::ConicProxy> proxies,
                           const ExpansionOptions& options, std::vector<Index>& chart,
                           Progress& progress) {
     Expansion expansion(mesh, proxies, options, chart);
@@ -167,8 +168,8 @@ void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
         }
         if (changed < settled_share * static_cast<double>(mesh.faces.size()))
             return;
-        proxies = fit_conics(mesh, chart, static_cast<Index>(count));
+        proxies = metrics::fit_conics(mesh, chart, static_cast<Index>(count));
     }
 }
 
-} // namespace devseg
+} // namespace devseg::growth

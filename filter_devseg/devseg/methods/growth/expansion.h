@@ -10,11 +10,11 @@
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 #include "devseg/metrics/conic_proxy.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 struct ExpansionOptions {
     double max_fitting_error = 0.2; // F_max: faces above it pay many times over
@@ -25,8 +25,8 @@ struct ExpansionOptions {
 /// Lowers Σ A_f F(C_f, f) + w √A Σ l_e over the labels, with l_e the lengths of border edges, those
 /// along creases counting less, by expansion moves [BVZ01]: each chart in turn takes all the faces
 /// that lower the sum. `chart` is #F, 0 … proxies − 1; charts may fall apart or vanish.
-void relabel_by_expansion(const Mesh& mesh, std::vector<ConicProxy> proxies,
+void relabel_by_expansion(const Mesh& mesh, std::vector<metrics::ConicProxy> proxies,
                           const ExpansionOptions& options, std::vector<Index>& chart,
                           Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace devseg {
+namespace devseg::growth {
 
 void CandidateHeap::push(const Entry& entry) {
     std::size_t hole = entries_.size();
@@ -40,4 +40,4 @@ void CandidateHeap::pop() {
     entries_[hole] = last;
 }
 
-} // namespace devseg
+} // namespace devseg::growth

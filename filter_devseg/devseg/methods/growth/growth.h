@@ -8,7 +8,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 /// A 4-ary min-heap of candidate faces; flatter than a binary one, so fewer cache misses.
 class CandidateHeap {
@@ -64,4 +64,4 @@ private:
     std::vector<Index> winner_;
 };
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -8,7 +8,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/methods/growth/growth.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 /// Rank of a chart's best candidate among those of all charts, compared from first to last.
 struct GrowthKey {
@@ -103,4 +103,4 @@ private:
     std::vector<CandidateHeap> heaps_;
 };
 
-} // namespace devseg
+} // namespace devseg::growth

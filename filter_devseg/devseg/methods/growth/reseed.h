@@ -7,7 +7,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/methods/growth/growth.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 class BorderDistance {
 public:
@@ -73,4 +73,4 @@ private:
     CandidateHeap heap_;
 };
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -5,13 +5,12 @@
 #include <queue>
 #include <random>
 
-namespace devseg {
+namespace devseg::growth {
 
 namespace {
 
 using QueueEntry = std::pair<double, Index>;
 using MinQueue = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>>;
-
 
 // Lowers `distance` to the distance from `source` where that is less (Dijkstra over centroids).
 void relax_from(const Mesh& mesh, Index source, std::vector<double>& distance, MinQueue& queue) {
@@ -96,4 +95,4 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
     }
 }
 
-} // namespace devseg
+} // namespace devseg::growth

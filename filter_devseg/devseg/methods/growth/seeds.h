@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 /// `count` distinct faces; each next one is farthest from those before, along paths over face
 /// centroids; other connected components count as infinitely far. Seed value 0 starts at the face
@@ -19,7 +19,7 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
 /// Charts never join components: as many charts as asked for, and at least one for each component.
 inline Index at_least_one_per_component(const Mesh& mesh, int charts_number) {
     return std::max(static_cast<Index>(charts_number),
-                    face_components(mesh, [](Index) { return true; }).count);
+                    mesh::face_components(mesh, [](Index) { return true; }).count);
 }
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -10,7 +10,7 @@
 
 #include "devseg/mesh/angle_defects.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 namespace {
 
@@ -19,8 +19,8 @@ constexpr Index update_every = 4096; // vertices between two looks at the progre
 } // namespace
 
 VertexGrowth::VertexGrowth(const Mesh& mesh, std::vector<double> cost)
-    : mesh_(mesh), cost_(std::move(cost)), leaving_(leaving_half_edges(mesh)),
-      boundary_(boundary_vertices(mesh)) {}
+    : mesh_(mesh), cost_(std::move(cost)), leaving_(mesh::leaving_half_edges(mesh)),
+      boundary_(mesh::boundary_vertices(mesh)) {}
 
 void VertexGrowth::start(std::size_t charts) {
     state_.inside.assign(mesh_.points.size(), -1);
@@ -35,8 +35,8 @@ void VertexGrowth::start(std::size_t charts) {
 bool VertexGrowth::is_free(Index v) const {
     bool free = leaving_[at(v)] >= 0;
     if (free)
-        visit_star(mesh_, leaving_[at(v)],
-                   [&](Index h) { free = free && state_.chart[at(h / 3)] < 0; });
+        mesh::visit_star(mesh_, leaving_[at(v)],
+                         [&](Index h) { free = free && state_.chart[at(h / 3)] < 0; });
     return free;
 }
 
@@ -71,7 +71,7 @@ bool VertexGrowth::can_take(Index v, Index c) const {
         if (boundary_[at(v)] != 0 && mesh_.twin[at(Mesh::previous(h))] < 0)
             visit_edge(to);
     };
-    visit_star(mesh_, leaving_[at(v)], visit);
+    mesh::visit_star(mesh_, leaving_[at(v)], visit);
     // Around an inner vertex the first edge comes after the last one; on the boundary, after none.
     if (first_glued && (boundary_[at(v)] != 0 || !before || fans == 0))
         ++fans;
@@ -81,7 +81,7 @@ bool VertexGrowth::can_take(Index v, Index c) const {
 void VertexGrowth::take(Index v, Index c, float distance) {
     state_.inside[at(v)] = c;
     state_.cost[at(c)] += cost_[at(v)];
-    visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+    mesh::visit_star(mesh_, leaving_[at(v)], [&](Index h) {
         if (state_.chart[at(h / 3)] < 0) {
             state_.chart[at(h / 3)] = c;
             ++state_.face_count[at(c)];
@@ -92,7 +92,7 @@ void VertexGrowth::take(Index v, Index c, float distance) {
         if (state_.inside[at(u)] < 0)
             heaps_[at(c)].push({static_cast<float>(cost_[at(u)]), d, u});
     };
-    visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+    mesh::visit_star(mesh_, leaving_[at(v)], [&](Index h) {
         offer(mesh_.target(h), mesh_.edge_length(h));
         if (mesh_.twin[at(Mesh::previous(h))] < 0)
             offer(mesh_.origin(Mesh::previous(h)), mesh_.edge_length(Mesh::previous(h)));
@@ -150,13 +150,11 @@ VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progr
         take(seeds[at(c)], c, 0.0F);
     Tournament<double> tournament(count);
     const auto rank = [&](Index c) {
-        tournament.set(c,
-                       best(c) < 0 ? infinite : state_.cost[at(c)]);
+        tournament.set(c, best(c) < 0 ? infinite : state_.cost[at(c)]);
     };
     for (Index c = 0; c < count; ++c)
         rank(c);
-    for (Index taken = 0;
-         tournament.key(tournament.winner()) < infinite;) {
+    for (Index taken = 0; tournament.key(tournament.winner()) < infinite;) {
         const Index c = tournament.winner();
         const Index v = best(c); // another chart may have come in between
         if (v >= 0) {
@@ -171,8 +169,8 @@ VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progr
     return state_;
 }
 
-ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
-    ChartMap charts;
+atlas::ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
+    atlas::ChartMap charts;
     charts.chart = grown.chart;
     charts.count = static_cast<Index>(grown.face_count.size());
     charts.seam.assign(mesh.twin.size(), 1);
@@ -217,4 +215,4 @@ ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
     return charts;
 }
 
-} // namespace devseg
+} // namespace devseg::growth

@@ -14,7 +14,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/methods/growth/growth.h"
 
-namespace devseg {
+namespace devseg::growth {
 
 /// What a growth leaves: `inside` (#V) is the chart that a vertex is inside of, `chart` (#F) that
 /// of a face; −1 for none. Edges of a chart hang together where one of their vertices is inside of
@@ -56,6 +56,6 @@ private:
 /// Faces that no chart took go to a neighbour, one by one, across one edge: to the one with which
 /// the border stays smoothest, which is the longest way round that it shortens most. Returns the
 /// charts with their slits.
-ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown);
+atlas::ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown);
 
-} // namespace devseg
+} // namespace devseg::growth

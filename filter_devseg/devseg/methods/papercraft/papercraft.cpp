@@ -6,13 +6,13 @@
 #include <numeric>
 #include <random>
 
-#include "devseg/mesh/angle_defects.h"
-#include "devseg/base/option_checks.h"
 #include "devseg/atlas/slit_closing.h"
+#include "devseg/base/option_checks.h"
+#include "devseg/mesh/angle_defects.h"
 #include "devseg/methods/growth/seeds.h"
 #include "devseg/methods/growth/vertex_growth.h"
 
-namespace devseg {
+namespace devseg::papercraft {
 
 namespace {
 
@@ -46,7 +46,7 @@ std::vector<Index> valences(const Mesh& mesh) {
 // Every vertex keeps half of its value and gives the rest to its neighbours, `rounds` times: sums
 // stay, and values of opposite sign cancel out. Nothing leaves across the mesh's boundary.
 std::vector<double> spread(const Mesh& mesh, std::vector<double> value, int rounds) {
-    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
+    const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh);
     const std::vector<Index> valence = valences(mesh);
     for (int round = 0; round < rounds; ++round) {
         std::vector<double> next(value.size(), 0.0);
@@ -94,8 +94,8 @@ void vary(std::vector<double>& cost, int random_seed) {
 
 // Removes seeds of the smallest charts, but never the last one of a component.
 std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
-                        const VertexCharts& grown, Index number) {
-    const FaceComponents components = face_components(mesh, [](Index) { return true; });
+                        const growth::VertexCharts& grown, Index number) {
+    const mesh::FaceComponents components = mesh::face_components(mesh, [](Index) { return true; });
     std::vector<Index> component(mesh.points.size(), 0);
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         component[at(mesh.origin(h))] = components.label[at(h / 3)];
@@ -123,7 +123,7 @@ std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
     return kept;
 }
 
-double slit_length(const Mesh& mesh, const ChartMap& charts) {
+double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     double length = 0.0;
     for (Index h = 0; h < mesh.half_edge_count(); ++h)
         if (mesh.twin[at(h)] > h && charts.seam[at(h)] != 0 &&
@@ -147,12 +147,12 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
                                     Progress& progress) {
     check_options(mesh, options);
     const double diagonal = diagonal_of(mesh);
-    const std::vector<double> defect = angle_defects(mesh);
+    const std::vector<double> defect = mesh::angle_defects(mesh);
     std::vector<double> cost = vertex_costs(mesh, defect, diagonal);
     if (options.random_seed > 0)
         vary(cost, options.random_seed);
-    const Index wanted = at_least_one_per_component(mesh, options.charts_number);
-    VertexGrowth growth(mesh, cost);
+    const Index wanted = growth::at_least_one_per_component(mesh, options.charts_number);
+    growth::VertexGrowth growth(mesh, cost);
     PapercraftResult result;
 
     progress.begin_phase("growing charts", 0.2);
@@ -163,7 +163,7 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     result.initial_charts = static_cast<Index>(seeds.size());
 
     progress.begin_phase("selecting charts", 0.7);
-    VertexCharts grown = growth.grow(seeds, progress);
+    growth::VertexCharts grown = growth.grow(seeds, progress);
     while (static_cast<Index>(seeds.size()) > wanted) {
         ++result.rounds;
         const Index surplus = static_cast<Index>(seeds.size()) - wanted;
@@ -174,10 +174,10 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     }
 
     progress.begin_phase("closing slits", 0.1);
-    ChartMap charts = adopt_orphans(mesh, grown);
+    atlas::ChartMap charts = growth::adopt_orphans(mesh, grown);
     result.closed_edges =
-        close_slits(mesh, cost, options.slit_threshold * diagonal, charts.seam).closed_edges;
-    result.charts = make_chart_map(mesh, charts.chart, charts.seam, false);
+        atlas::close_slits(mesh, cost, options.slit_threshold * diagonal, charts.seam).closed_edges;
+    result.charts = atlas::make_chart_map(mesh, charts.chart, charts.seam, false);
     result.slit_length = slit_length(mesh, result.charts);
     const std::vector<Index> valence = valences(mesh);
     result.defect_share.assign(mesh.faces.size(), 0.0);
@@ -187,4 +187,4 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::papercraft

@@ -12,7 +12,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::papercraft {
 
 struct PapercraftOptions {
     int charts_number = 20;
@@ -23,7 +23,7 @@ struct PapercraftOptions {
 };
 
 struct PapercraftResult {
-    ChartMap charts;                  // disks; slits are seams inside of charts
+    atlas::ChartMap charts;           // disks; slits are seams inside of charts
     std::vector<double> defect_share; // #F: angle defects of its vertices, each split among its
                                       // faces, radians
     Index initial_charts = 0;
@@ -41,4 +41,4 @@ struct PapercraftResult {
 PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& options,
                                     Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::papercraft

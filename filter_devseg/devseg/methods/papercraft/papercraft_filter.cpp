@@ -1,10 +1,10 @@
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
-#include "devseg/metrics/segmentation.h"
 #include "devseg/methods/papercraft/papercraft.h"
+#include "devseg/metrics/segmentation.h"
 
-namespace devseg {
+namespace devseg::papercraft {
 
 namespace {
 
@@ -23,19 +23,19 @@ constexpr const char* papercraft_help =
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
     "Journal for Geometry and Graphics 19(1), 2015, pages 119-129";
 
-FilterOutput run_papercraft(const FilterInput& input, const PapercraftOptions& options,
-                            Progress& progress) {
+declare::FilterOutput run_papercraft(const declare::FilterInput& input,
+                                     const PapercraftOptions& options, Progress& progress) {
     PapercraftResult result = segment_papercraft(input.mesh, options, progress);
-    FilterOutput output;
+    declare::FilterOutput output;
     output.values = {
         {"charts_number", result.charts.count},
         {"initial_charts_number", result.initial_charts},
         {"rounds_number", result.rounds},
         {"closed_edges_number", result.closed_edges},
         {"slit_length", result.slit_length * input.mesh.unit_length},
-        {"seam_length", seam_length(input.mesh, result.charts)},
+        {"seam_length", metrics::seam_length(input.mesh, result.charts)},
     };
-    output.face_color = face_chart_colors(input.mesh, result.charts);
+    output.face_color = declare::face_chart_colors(input.mesh, result.charts);
     output.face_quality = std::move(result.defect_share);
     output.charts = std::move(result.charts);
     return output;
@@ -43,12 +43,12 @@ FilterOutput run_papercraft(const FilterInput& input, const PapercraftOptions& o
 
 } // namespace
 
-std::vector<FilterDeclaration> papercraft_filters() {
+std::vector<declare::FilterDeclaration> papercraft_filters() {
     using O = PapercraftOptions;
     return {
-        Declare<O>("Segmentation: Papercraft with Creases and Slits",
-                   "compute_segmentation_papercraft_per_face", FilterCategory::remeshing,
-                   papercraft_help)
+        declare::Declare<O>("Segmentation: Papercraft with Creases and Slits",
+                            "compute_segmentation_papercraft_per_face",
+                            declare::FilterCategory::remeshing, papercraft_help)
             .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                      "From 1 to the number of faces. Fewer charts have more and longer slits. A "
                      "mesh of more components gets one chart for each of them.")
@@ -66,7 +66,7 @@ std::vector<FilterDeclaration> papercraft_filters() {
             .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                      "0 takes angles as they are; other numbers vary them a little, for other "
                      "charts. The same number always gives the same charts.")
-            .writes(writes_charts | writes_quality | writes_color)
+            .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
             .result("charts_number", "charts, each a disk")
             .result("initial_charts_number", "charts of the initial segmentation")
             .result("rounds_number", "rounds of removing charts and growing the others")
@@ -76,4 +76,4 @@ std::vector<FilterDeclaration> papercraft_filters() {
             .runs(run_papercraft)};
 }
 
-} // namespace devseg
+} // namespace devseg::papercraft

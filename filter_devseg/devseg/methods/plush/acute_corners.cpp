@@ -8,7 +8,7 @@
 
 #include "devseg/methods/plush/seam_paths.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -266,4 +266,4 @@ Index blunt_acute_corners(const SeamSetting& setting, SeamMarks& seam, Progress&
     return CornerBlunter(setting, seam, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -3,7 +3,7 @@
 
 #include "devseg/methods/plush/seam_removal.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Two seams that leave one place nearly side by side, with nothing but a thin tip of a patch
 /// between them: there cloth bunches up, and a small change of the boundary moves the map much.
@@ -24,4 +24,4 @@ std::vector<AcuteCorner> find_acute_corners(const Mesh& mesh, const SeamMarks& s
 /// where they are not needed. Returns how many changes were tried.
 Index blunt_acute_corners(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -8,7 +8,7 @@
 #include "devseg/mesh/surface_search.h"
 #include "devseg/methods/plush/seam_curves.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -35,8 +35,8 @@ public:
     Carrier(const Mesh& from, const Mesh& to, const VertexGraph& graph,
             const std::vector<double>& stray)
         : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
-          normal_(vertex_normals(from)), on_border_(boundary_vertices(from)),
-          may_border_(boundary_vertices(to)), reach_(reach * mean_edge_length(from)),
+          normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
+          may_border_(mesh::boundary_vertices(to)), reach_(reach * mean_edge_length(from)),
           leaning_(leaning * mean_edge_length(to) *
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
                               least_leaning, 1.0)),
@@ -166,7 +166,7 @@ private:
     const Mesh& to_;
     const VertexGraph& graph_;
     const std::vector<double>& stray_; // 3 #F of to
-    const SurfaceSearch search_;
+    const mesh::SurfaceSearch search_;
     std::vector<Vec3> points_;                   // #V of from: on smooth seams
     const std::vector<Vec3> normal_;             // #V of from
     const std::vector<std::uint8_t> on_border_;  // #V of from
@@ -217,4 +217,4 @@ void cut_corners(const Mesh& mesh, SeamMarks& seam) {
     }
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -3,7 +3,7 @@
 
 #include "devseg/methods/plush/seam_paths.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// The seams of `from` (3 #F of it) as paths on `to`: the ends of their segments go to the nearest
 /// vertices, and a path follows each segment closely; it leans to edges where seams look natural
@@ -17,4 +17,4 @@ SeamMarks carry_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
 /// shorter.
 void cut_corners(const Mesh& mesh, SeamMarks& seam);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -13,7 +13,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/mesh/coarsen.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 // CGAL keeps elements of its meshes in sets ordered by their addresses. They come from one block
 // and are never given back before its end, so that their order is that of their making, and the
@@ -64,21 +64,21 @@ struct SkeletonAllocator {
     }
 };
 
-} // namespace devseg
+} // namespace devseg::plush
 
 // CGAL checks itself in every build, and failed checks become exceptions: a host must never be
 // aborted.
 #define CGAL_DEBUG
 #define CGAL_DISABLE_GMP 1 // nothing here needs exact numbers: no library to link
 #define CGAL_EIGEN3_ENABLED
-#define CGAL_ALLOCATOR(T) devseg::SkeletonAllocator<T>
+#define CGAL_ALLOCATOR(T) devseg::plush::SkeletonAllocator<T>
 #include <CGAL/Mean_curvature_flow_skeletonization.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/assertions_behaviour.h>
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -224,9 +224,10 @@ double diagonal(const Mesh& mesh) {
 Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
     Skeleton skeleton;
     const double size = diagonal(mesh);
-    const CoarseMesh coarse = extract_coarse_mesh(
-        mesh, coarsen(mesh.points, mesh.faces, mesh.twin, enough_faces, progress));
-    const FaceComponents parts = face_components(coarse.mesh, [](Index) { return true; });
+    const mesh::CoarseMesh coarse = mesh::extract_coarse_mesh(
+        mesh, mesh::coarsen(mesh.points, mesh.faces, mesh.twin, enough_faces, progress));
+    const mesh::FaceComponents parts =
+        mesh::face_components(coarse.mesh, [](Index) { return true; });
     std::vector<Index> faces(at(parts.count), 0);
     std::vector<std::uint8_t> is_open(at(parts.count), 0);
     for (Index h = 0; h < coarse.mesh.half_edge_count(); ++h) {
@@ -250,4 +251,4 @@ Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
     return skeleton;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -5,7 +5,7 @@
 
 #include "devseg/graph/min_cut.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -94,27 +94,27 @@ private:
     }
 
     std::vector<Index> cut_off(Index tip, const std::vector<double>& distance, double root) const {
-        std::vector<CutSide> start(mesh_.faces.size(), CutSide::open);
+        std::vector<graph::CutSide> start(mesh_.faces.size(), graph::CutSide::open);
         for (std::size_t f = 0; f < start.size(); ++f) {
             if (distance[f] < inner_band * root)
-                start[f] = CutSide::source;
+                start[f] = graph::CutSide::source;
             else if (!(distance[f] < outer_band * root))
-                start[f] = CutSide::sink;
+                start[f] = graph::CutSide::sink;
         }
-        MinCut cut(start);
+        graph::MinCut cut(start);
         for (Index h = 0; h < mesh_.half_edge_count(); ++h)
             if (mesh_.twin[at(h)] > h)
                 cut.link(h / 3, mesh_.twin[at(h)] / 3, concavity_cost(h));
-        const std::vector<CutSide> side = cut.solve();
+        const std::vector<graph::CutSide> side = cut.solve();
         return component(tip, side);
     }
 
-    std::vector<Index> component(Index tip, const std::vector<CutSide>& side) const {
+    std::vector<Index> component(Index tip, const std::vector<graph::CutSide>& side) const {
         std::vector<std::uint8_t> seen(mesh_.faces.size(), 0);
         std::vector<Index> faces;
         double area = 0.0;
         const auto take = [&](Index f) {
-            if (seen[at(f)] != 0 || side[at(f)] != CutSide::source)
+            if (seen[at(f)] != 0 || side[at(f)] != graph::CutSide::source)
                 return;
             seen[at(f)] = 1;
             faces.push_back(f);
@@ -189,4 +189,4 @@ std::vector<Index> limb_border(const Mesh& mesh, const Limb& limb) {
     return border;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -7,7 +7,7 @@
 
 #include "devseg/methods/plush/seam_paths.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// One limb: the faces from its tip to its root.
 struct Limb {
@@ -25,4 +25,4 @@ std::vector<Limb> find_limbs(const Mesh& mesh, const VertexGraph& graph,
 /// The half-edges of its faces on the border of a limb.
 std::vector<Index> limb_border(const Mesh& mesh, const Limb& limb);
 
-} // namespace devseg
+} // namespace devseg::plush

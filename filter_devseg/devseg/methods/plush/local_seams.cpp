@@ -8,7 +8,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/methods/plush/patch_trial.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -37,7 +37,7 @@ public:
         split.is_needed = true;
         if (!trial.is_disk) {
             SeamMarks marks = seam_;
-            cut_to_disk(mesh_, extract_surface(mesh_, faces, marks), marks, progress);
+            atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces, marks), marks, progress);
             for (const Index f : faces)
                 for (Index h = 3 * f; h < 3 * f + 3; ++h)
                     if (marks[at(h)] != seam_[at(h)])
@@ -121,7 +121,7 @@ private:
 
     // From the worst spot to the nearest place on the border, and to the nearest on its far side.
     std::vector<Index> path_through(const PatchTrial& trial, const Progress& progress) const {
-        const ChartSurface surface = extract_surface(mesh_, trial.face, seam_);
+        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
         std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
         for (const Index v : surface.vertex)
             may_enter[at(v)] = 1;
@@ -221,7 +221,7 @@ private:
 // The patches that are not settled yet, one of each two mirror images.
 std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, const SeamMarks& seam,
                                              const std::vector<std::uint8_t>& settled) {
-    const FaceComponents patches = find_patches(surface.mesh, seam);
+    const mesh::FaceComponents patches = find_patches(surface.mesh, seam);
     std::vector<std::vector<Index>> faces(at(patches.count));
     for (Index f = 0; f < surface.mesh.face_count(); ++f) {
         const Index own = patches.label[at(f)];
@@ -277,4 +277,4 @@ LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& gra
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

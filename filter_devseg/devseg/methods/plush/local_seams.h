@@ -5,7 +5,7 @@
 #include "devseg/methods/plush/seam_paths.h"
 #include "devseg/methods/plush/working_surface.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 struct LocalSeams {
     Index splits = 0; // patches that were split
@@ -20,4 +20,4 @@ LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& gra
                            const std::vector<double>& weight, const PatchLimits& limits,
                            std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

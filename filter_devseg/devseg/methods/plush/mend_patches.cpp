@@ -6,12 +6,12 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/area_balance.h"
-#include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -51,12 +51,12 @@ public:
 
 private:
     std::vector<Index> between_sheets(const std::vector<Index>& patch, bool has_map) const {
-        const ChartSurface surface = extract_surface(mesh_, patch, marks_);
+        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, patch, marks_);
         std::vector<Index> cut;
         try {
             const auto pairs = overlaps(surface, has_map);
             if (!pairs.empty())
-                for (const Index h : separating_path(mesh_, surface, pairs, progress_))
+                for (const Index h : flatten::separating_path(mesh_, surface, pairs, progress_))
                     cut.push_back(surface.mesh_half_edge(h));
         } catch (const NumericalFailure&) { // needles: nothing to learn from
         }
@@ -65,17 +65,17 @@ private:
 
     // Of a nearly isometric map; where the patch has a map, it does not lie on itself once its
     // areas are even.
-    std::vector<std::pair<Index, Index>> overlaps(const ChartSurface& surface, bool has_map) const {
-        const FlatteningProblem problem = make_flattening_problem(mesh_, surface);
-        const std::vector<Vec2> uv =
-            nearly_isometric_map(problem, infinite, progress_);
+    std::vector<std::pair<Index, Index>> overlaps(const atlas::ChartSurface& surface,
+                                                  bool has_map) const {
+        const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh_, surface);
+        const std::vector<Vec2> uv = flatten::nearly_isometric_map(problem, infinite, progress_);
         if (uv.empty())
             return {};
-        const double tolerance = layout_tolerance(std::sqrt(mesh_.total_area));
-        auto pairs = overlapping_pairs(surface, uv, tolerance);
+        const double tolerance = plane::layout_tolerance(std::sqrt(mesh_.total_area));
+        auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
         if (pairs.empty() && !has_map)
-            pairs = overlapping_pairs(surface, balance_with_boundary(problem, uv, progress_),
-                                      tolerance);
+            pairs = flatten::overlapping_pairs(
+                surface, flatten::balance_with_boundary(problem, uv, progress_), tolerance);
         return pairs;
     }
 
@@ -137,4 +137,4 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
     return Mender(mesh, graph, cost, seam, limits, progress).mend(faces);
 }
 
-} // namespace devseg
+} // namespace devseg::plush

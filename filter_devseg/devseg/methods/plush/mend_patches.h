@@ -7,7 +7,7 @@
 #include "devseg/methods/plush/patch_trial.h"
 #include "devseg/methods/plush/seam_paths.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Cuts that make a patch keep the limits: half-edges, none where it keeps them already. While its
 /// map lies on itself, it is cut in two between the sheets; else it gets darts, each from the
@@ -19,4 +19,4 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
                                              const std::vector<Index>& faces, const SeamMarks& seam,
                                              const PatchLimits& limits, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

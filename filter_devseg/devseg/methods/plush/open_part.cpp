@@ -4,11 +4,11 @@
 #include <optional>
 #include <utility>
 
-#include "devseg/mesh/surface_search.h"
 #include "devseg/base/parallel.h"
+#include "devseg/mesh/surface_search.h"
 #include "devseg/methods/plush/mend_patches.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 bool OpenPart::has_open_faces() const {
     return std::find(faces.begin(), faces.end(), 1) != faces.end();
@@ -21,7 +21,7 @@ bool OpenPart::is_inside(const Mesh& mesh, Index h) const {
 
 OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
                       SeamMarks seam, const PatchLimits& limits, Progress& progress) {
-    const FaceComponents patches = find_patches(mesh, seam);
+    const mesh::FaceComponents patches = find_patches(mesh, seam);
     std::vector<std::vector<Index>> faces(at(patches.count));
     for (Index f = 0; f < mesh.face_count(); ++f)
         faces[at(patches.label[at(f)])].push_back(f);
@@ -52,9 +52,9 @@ SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part) {
 
 OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
                    const OpenPart& on_model) {
-    const SurfaceSearch search(model);
-    const std::vector<Vec3> normals = vertex_normals(surface.mesh);
-    const FaceComponents patches = find_patches(surface.mesh, seam);
+    const mesh::SurfaceSearch search(model);
+    const std::vector<Vec3> normals = mesh::vertex_normals(surface.mesh);
+    const mesh::FaceComponents patches = find_patches(surface.mesh, seam);
     std::vector<double> balance(at(patches.count), 0.0);
     for (Index f = 0; f < surface.mesh.face_count(); ++f) {
         const Index v = surface.mesh.faces[at(f)][0];
@@ -75,4 +75,4 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
     return part;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -7,7 +7,7 @@
 #include "devseg/methods/plush/patch_trial.h"
 #include "devseg/methods/plush/seam_paths.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 struct OpenPart {
     std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
@@ -32,4 +32,4 @@ SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
                    const OpenPart& on_model);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -6,15 +6,15 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/area_balance.h"
+#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/repair/slits.h"
-#include "devseg/flatten/maps/tutte.h"
 #include "devseg/plane/overlap.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -29,40 +29,40 @@ constexpr double hopeless_overlap = 0.03; // pairs of faces over faces, in such 
 constexpr double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
 // Nothing where there is no map.
-void describe(const ChartSurface& surface, const FlatteningProblem& problem,
+void describe(const atlas::ChartSurface& surface, const flatten::FlatteningProblem& problem,
               const std::vector<Vec2>& uv, PatchTrial& trial) {
     if (uv.empty())
         return;
     trial.face = surface.face;
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        trial.change.push_back(jacobian(problem, uv, f).determinant() - 1.0);
+        trial.change.push_back(flatten::jacobian(problem, uv, f).determinant() - 1.0);
 }
 
 // A map of a patch that LPFB cannot map, good enough to see where its area changes; empty where
 // needles leave none.
-std::vector<Vec2> any_map(const FlatteningProblem& problem) {
+std::vector<Vec2> any_map(const flatten::FlatteningProblem& problem) {
     std::vector<Vec2> uv;
     try {
-        uv = flatten_lscm(problem);
+        uv = flatten::flatten_lscm(problem);
     } catch (const NumericalFailure&) { // needles
     }
     try {
-        if (uv.empty() || count_flips(problem, uv) > 0)
-            uv = flatten_tutte(problem);
+        if (uv.empty() || flatten::count_flips(problem, uv) > 0)
+            uv = flatten::flatten_tutte(problem);
     } catch (const NumericalFailure&) {
         return {};
     }
-    scale_to_area(problem, uv);
+    flatten::scale_to_area(problem, uv);
     return uv;
 }
 
 // What is asked of a map once its closed slits are open, as when charts are flattened.
-bool lies_flat(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-               std::vector<Vec2> uv, double bound) {
+bool lies_flat(const Mesh& mesh, const atlas::ChartSurface& surface,
+               const flatten::FlatteningProblem& problem, std::vector<Vec2> uv, double bound) {
     const double size = std::sqrt(mesh.total_area);
-    open_closed_slits(mesh, surface, slit_gap * size, uv);
-    return measure_area_change(problem, uv).largest() <= bound &&
-           overlapping_pairs(surface, uv, layout_tolerance(size)).empty();
+    flatten::open_closed_slits(mesh, surface, flatten::slit_gap * size, uv);
+    return flatten::measure_area_change(problem, uv).largest() <= bound &&
+           flatten::overlapping_pairs(surface, uv, plane::layout_tolerance(size)).empty();
 }
 
 } // namespace
@@ -70,29 +70,29 @@ bool lies_flat(const Mesh& mesh, const ChartSurface& surface, const FlatteningPr
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, const PatchLimits& limits, bool details,
                      const Progress& progress) {
-    const ChartSurface surface = extract_surface(mesh, faces, seam);
+    const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, seam);
     PatchTrial trial;
     trial.is_disk = surface.is_disk();
     if (!trial.is_disk)
         return trial;
-    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+    const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
     const double bound = kept * limits.max_area_change;
     const double strictness = std::min(1.0, limits.max_area_change / usual_change);
     const double stretch = limits.is_search ? search_stretch : most_stretch;
-    SewingMapOptions options;
+    flatten::SewingMapOptions options;
     options.enough = bound;
     options.enough_stretch = stretch;
     if (limits.is_search) {
         options.give_up_energy = hopeless_energy * strictness * strictness;
         options.give_up_overlap = hopeless_overlap;
     }
-    const auto map = sewing_map(problem, surface, layout_tolerance(std::sqrt(mesh.total_area)),
-                                options, progress);
+    const auto map = flatten::sewing_map(
+        problem, surface, plane::layout_tolerance(std::sqrt(mesh.total_area)), options, progress);
     if (map) {
         trial.area_change = map->area_change;
         // At the scale at which the map has the patch's area.
         const double l2 =
-            map->l2_stretch * std::sqrt(map_area(problem, map->uv) / problem.total_area);
+            map->l2_stretch * std::sqrt(flatten::map_area(problem, map->uv) / problem.total_area);
         trial.accepted = map->area_change <= bound && l2 <= stretch &&
                          lies_flat(mesh, surface, problem, map->uv, bound);
     }
@@ -103,10 +103,10 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
 
 PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
                             const std::vector<std::uint8_t>& seam) {
-    const ChartSurface surface = extract_surface(mesh, faces, seam);
+    const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, seam);
     PatchTrial trial;
     if ((trial.is_disk = surface.is_disk())) {
-        const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+        const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
         describe(surface, problem, any_map(problem), trial);
     }
     return trial;
@@ -144,4 +144,4 @@ bool PatchTester::accepts_all(const std::vector<std::vector<Index>>& patches,
                        [&](const auto& faces) { return accepts(faces, seam, progress); });
 }
 
-} // namespace devseg
+} // namespace devseg::plush

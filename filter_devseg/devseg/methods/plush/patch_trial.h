@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "devseg/atlas/charts.h"
-#include "devseg/methods/plush/working_surface.h"
 #include "devseg/base/progress.h"
+#include "devseg/methods/plush/working_surface.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 struct PatchTrial {
     bool accepted = false;
@@ -67,4 +67,4 @@ private:
     std::map<std::vector<Index>, bool> known_; // 8 f + marks of its edges
 };
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -4,10 +4,10 @@
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
 #include "devseg/filters/filter_groups.h"
-#include "devseg/metrics/segmentation.h"
 #include "devseg/methods/plush/plush_seams.h"
+#include "devseg/metrics/segmentation.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -43,7 +43,8 @@ struct Options : PlushOptions {
 };
 
 // 1 on the edges between faces of different materials; empty without materials.
-std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBorders borders) {
+std::vector<std::uint8_t> find_hard_seams(const declare::FilterInput& input,
+                                          MaterialBorders borders) {
     std::vector<std::uint8_t> hard;
     if (borders == MaterialBorders::none)
         return hard;
@@ -67,7 +68,8 @@ std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBord
     return hard;
 }
 
-FilterOutput run_plush(const FilterInput& input, const Options& options, Progress& progress) {
+declare::FilterOutput run_plush(const declare::FilterInput& input, const Options& options,
+                                Progress& progress) {
     const Mesh& mesh = input.mesh;
     const std::vector<std::uint8_t> hard = find_hard_seams(input, options.material_borders);
     Skeleton skeleton;
@@ -75,7 +77,7 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
         skeleton = read_skeleton(options.skeleton_file,
                                  [&](const Vec3& p) { return input.from_model(p); });
     PlushSeams seams = segment_plush_seams(mesh, options, std::move(skeleton), hard, progress);
-    FilterOutput output;
+    declare::FilterOutput output;
     output.values = {{"charts_number", seams.charts.count},
                      {"darts_number", seams.darts},
                      {"limbs_number", seams.limbs},
@@ -88,20 +90,21 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
                      {"is_symmetric", seams.is_symmetric},
                      {"mirrored_share", seams.shares.mirrored},
                      {"guided_share", seams.shares.guided},
-                     {"seam_length", seam_length(mesh, seams.charts)}};
+                     {"seam_length", metrics::seam_length(mesh, seams.charts)}};
     if (!seams.all_developable)
         output.notes.push_back("some patches change their area by more than max_area_change; a "
                                "larger bound or a cleaner mesh helps");
-    output.face_color = face_chart_colors(mesh, seams.charts);
+    output.face_color = declare::face_chart_colors(mesh, seams.charts);
     output.face_quality = std::move(seams.area_change);
     output.charts = std::move(seams.charts);
     return output;
 }
 
-FilterDeclaration plush() {
+declare::FilterDeclaration plush() {
     using O = Options;
-    return Declare<O>("Segmentation: Plush Toy Seams", "compute_segmentation_plush_seams_per_face",
-                      FilterCategory::remeshing, plush_help)
+    return declare::Declare<O>("Segmentation: Plush Toy Seams",
+                               "compute_segmentation_plush_seams_per_face",
+                               declare::FilterCategory::remeshing, plush_help)
         .real(&O::max_area_change, "max_area_change", "Largest change of area", 0.01, 1.0,
               "How much the area of a face may change when its patch is flattened, as a share: "
               "0.15 = 15 %. Cotton takes 0.05 to 0.1, plush and fleece 0.15 to 0.2.")
@@ -134,7 +137,7 @@ FilterDeclaration plush() {
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 takes the least natural seams away first; other numbers change that order a "
                  "little at random. The same number always gives the same seams.")
-        .writes(writes_charts | writes_quality | writes_color)
+        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
         .result("charts_number", "patches, each a disk")
         .result("darts_number", "seams that end inside a patch")
         .result("limbs_number", "limbs with a seam around their root, before seams were removed")
@@ -157,8 +160,8 @@ FilterDeclaration plush() {
 
 } // namespace
 
-std::vector<FilterDeclaration> plush_filters() {
+std::vector<declare::FilterDeclaration> plush_filters() {
     return {plush()};
 }
 
-} // namespace devseg
+} // namespace devseg::plush

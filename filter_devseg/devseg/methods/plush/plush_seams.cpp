@@ -5,8 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "devseg/mesh/canonical_frame.h"
+#include "devseg/atlas/fragments.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/parallel.h"
+#include "devseg/mesh/canonical_frame.h"
 #include "devseg/methods/plush/acute_corners.h"
 #include "devseg/methods/plush/carry_seams.h"
 #include "devseg/methods/plush/limbs.h"
@@ -18,10 +20,8 @@
 #include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/tongues.h"
 #include "devseg/methods/plush/working_surface.h"
-#include "devseg/atlas/fragments.h"
-#include "devseg/base/option_checks.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -227,9 +227,9 @@ private:
     void clean_patches() {
         mirror_marks(surface_, seam_);
         std::vector<Index> label =
-            absorb_fragments(mesh_, find_patches(mesh_, seam_).label, fragment);
+            atlas::absorb_fragments(mesh_, find_patches(mesh_, seam_).label, fragment);
         remove_teeth(mesh_, label);
-        seam_ = make_chart_map(mesh_, label, {}, false).seam;
+        seam_ = atlas::make_chart_map(mesh_, label, {}, false).seam;
         for (Index h = 0; h < mesh_.half_edge_count(); ++h)
             if (!hard_.empty() && (hard_[at(h)] != 0 || !open_.is_inside(mesh_, h)))
                 seam_[at(h)] = hard_[at(h)];
@@ -278,8 +278,8 @@ private:
 // The charts, and the change of area in the maps that are accepted.
 void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_change,
                      PlushSeams& result, Progress& progress) {
-    result.charts = make_chart_map(mesh, find_patches(mesh, seam).label, seam, false);
-    const ChartFaces groups = group_faces(result.charts);
+    result.charts = atlas::make_chart_map(mesh, find_patches(mesh, seam).label, seam, false);
+    const atlas::ChartFaces groups = atlas::group_faces(result.charts);
     std::vector<PatchTrial> trials(at(result.charts.count));
     parallel_for(
         result.charts.count,
@@ -406,11 +406,11 @@ PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Sk
     if (options.max_extrema < 0)
         refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
     check_rounds(options.max_iterations, options.random_seed);
-    const CanonicalFrame frame = canonical_frame(mesh, progress);
+    const mesh::CanonicalFrame frame = mesh::canonical_frame(mesh, progress);
     for (Vec3& joint : skeleton.joints)
         joint = frame.to_frame(joint);
-    return segment_in_own_frame(in_frame(mesh, frame, progress), mesh, options, std::move(skeleton),
-                                hard, progress);
+    return segment_in_own_frame(mesh::in_frame(mesh, frame, progress), mesh, options,
+                                std::move(skeleton), hard, progress);
 }
 
-} // namespace devseg
+} // namespace devseg::plush

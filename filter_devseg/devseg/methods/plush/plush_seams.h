@@ -8,11 +8,11 @@
 #include <string>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/base/progress.h"
 #include "devseg/methods/plush/seam_guides.h"
 #include "devseg/methods/plush/skeleton.h"
-#include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 struct PlushOptions {
     double max_area_change = 0.15; // largest change of a face's area, 0.15 = 15 %
@@ -26,7 +26,7 @@ struct PlushOptions {
 };
 
 struct PlushSeams {
-    ChartMap charts;
+    atlas::ChartMap charts;
     std::vector<double> area_change; // #F: of the accepted maps, |area in the plane / own area − 1|
     double max_area_change = 0.0;
     bool is_symmetric = false;
@@ -45,4 +45,4 @@ struct PlushSeams {
 PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
                                const std::vector<std::uint8_t>& hard, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -6,7 +6,7 @@
 
 #include "devseg/methods/plush/mend_patches.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -52,8 +52,8 @@ private:
 
     void join(const std::vector<Index>& patch) {
         const std::vector<Index> label = find_patches(mesh_, seam_).label;
-        const ChartSurface surface = extract_surface(mesh_, patch, seam_);
-        for (const Index neighbour : neighbour_labels(mesh_, label, surface)) {
+        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, patch, seam_);
+        for (const Index neighbour : atlas::neighbour_labels(mesh_, label, surface)) {
             std::vector<Index> border;
             for (const Index f : patch)
                 for (Index h = 3 * f; h < 3 * f + 3; ++h)
@@ -135,4 +135,4 @@ Index absorb_remnants(const SeamSetting& setting, const VertexGraph& graph,
     return RemnantJoiner(setting, graph, cost, limits, seam, progress).run(most_area);
 }
 
-} // namespace devseg
+} // namespace devseg::plush

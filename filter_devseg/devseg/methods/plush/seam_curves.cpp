@@ -3,7 +3,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/mesh/surface_search.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -13,7 +13,7 @@ constexpr int rounds_on_surface = 3; // after so many rounds points go back to t
 // The vertices that pull at each vertex of a seam; none at those that stay.
 std::vector<std::vector<Index>> find_threads(const Mesh& mesh, const SeamMarks& seam) {
     const std::vector<Index> degree = seam_degrees(mesh, seam);
-    const std::vector<std::uint8_t> on_border = boundary_vertices(mesh);
+    const std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh);
     std::vector<std::vector<Index>> threads(mesh.points.size());
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         const Index v = mesh.origin(h);
@@ -28,7 +28,7 @@ std::vector<std::vector<Index>> find_threads(const Mesh& mesh, const SeamMarks& 
 
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
     const std::vector<std::vector<Index>> threads = find_threads(mesh, seam);
-    const SurfaceSearch search(mesh);
+    const mesh::SurfaceSearch search(mesh);
     std::vector<Vec3> points = mesh.points;
     for (int round = 1; round <= rounds; ++round) {
         std::vector<Vec3> next = points;
@@ -51,4 +51,4 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
     return points;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -3,7 +3,7 @@
 
 #include "devseg/methods/plush/seam_network.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Where the vertices on seams go when the seams become shorter, a few edges wide: like threads
 /// that slide on the surface, which makes them straight, takes away teeth, and turns the acute
@@ -11,4 +11,4 @@ namespace devseg {
 /// and vertices on the mesh's boundary stay. #V; the mesh's own points elsewhere.
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -5,18 +5,18 @@
 
 #include <Eigen/Geometry>
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
-constexpr double beside = 0.015;          // of the diagonal: how far beside an edge normals count
-constexpr double window = 0.04;           // of the diagonal: over which a seam has a direction
+constexpr double beside = 0.015;           // of the diagonal: how far beside an edge normals count
+constexpr double window = 0.04;            // of the diagonal: over which a seam has a direction
 constexpr double along = 30.0 * degrees;   // from the skeleton
 constexpr double crease = 30.0 * degrees;  // of bend
 constexpr double concave = 10.0 * degrees; // of bend the other way
-constexpr double near_border = 0.015;     // of the diagonal
-constexpr double near_image = 0.02;       // of the diagonal
-constexpr double sample_distance = 0.005; // of the diagonal
+constexpr double near_border = 0.015;      // of the diagonal
+constexpr double near_image = 0.02;        // of the diagonal
+constexpr double sample_distance = 0.005;  // of the diagonal
 
 double diagonal_of(const Mesh& mesh) {
     Eigen::AlignedBox3d box;
@@ -228,4 +228,4 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

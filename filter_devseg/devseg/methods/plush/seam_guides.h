@@ -7,7 +7,7 @@
 #include "devseg/methods/plush/skeleton.h"
 #include "devseg/methods/plush/symmetry.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// The surface at an edge.
 struct EdgeShape {
@@ -45,4 +45,4 @@ struct SeamShares {
 SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
                        const std::optional<MirrorPlane>& plane, const Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

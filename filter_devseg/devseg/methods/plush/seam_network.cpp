@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -119,8 +119,8 @@ std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& se
     return patches;
 }
 
-FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam) {
-    return face_components(mesh, [&](Index h) { return seam[at(h)] == 0; });
+mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam) {
+    return mesh::face_components(mesh, [&](Index h) { return seam[at(h)] == 0; });
 }
 
-} // namespace devseg
+} // namespace devseg::plush

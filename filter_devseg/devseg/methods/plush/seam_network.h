@@ -6,7 +6,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Marks of half-edges (3 #F), symmetric: a half-edge and its twin agree.
 using SeamMarks = std::vector<std::uint8_t>;
@@ -36,6 +36,6 @@ std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& se
                                            const std::vector<Index>& faces);
 
 /// The labels of the patches, #F: the components of the faces over edges that are no seam.
-FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam);
+mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -8,7 +8,7 @@
 
 #include "devseg/methods/plush/seam_guides.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 constexpr double least_weight = 1e-4; // so that paths stay short where a term vanishes
@@ -112,4 +112,4 @@ void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
     }
 }
 
-} // namespace devseg
+} // namespace devseg::plush

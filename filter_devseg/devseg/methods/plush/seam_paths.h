@@ -5,7 +5,7 @@
 #include "devseg/methods/plush/skeleton.h"
 #include "devseg/methods/plush/surface_fields.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Exponents of the three terms of an edge's weight, no unit.
 struct SeamWeightOptions {
@@ -48,4 +48,4 @@ void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
                           const std::vector<double>& weight, const std::vector<Index>& ends,
                           SeamMarks& seam, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -10,7 +10,7 @@
 
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -358,7 +358,7 @@ private:
     SeamMarks& seam_;
     Progress& progress_;
     std::vector<SeamSegment> segments_;
-    FaceComponents patches_;
+    mesh::FaceComponents patches_;
     std::vector<std::vector<Index>> faces_; // of each patch
     std::vector<double> area_;
     std::vector<std::size_t> segment_of_; // 3 #F, of seam edges
@@ -384,4 +384,4 @@ Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progr
     return Remover(setting, Mode::darts, options, seam, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::plush

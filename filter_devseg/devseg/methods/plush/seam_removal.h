@@ -4,7 +4,7 @@
 #include "devseg/methods/plush/patch_trial.h"
 #include "devseg/methods/plush/seam_network.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// What seams are judged by.
 struct SeamSetting {
@@ -45,4 +45,4 @@ Index join_patches(const SeamSetting& setting, const RemovalOptions& options, Se
 /// Removes darts, or their inner ends, where patches stay developable without them.
 Index shorten_darts(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

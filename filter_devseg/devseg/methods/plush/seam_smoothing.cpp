@@ -6,7 +6,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/methods/plush/patch_trial.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -255,4 +255,4 @@ Index straighten_seams(const SeamSetting& setting, const VertexGraph& graph, Sea
     return Straightener(setting, graph, seam, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -4,7 +4,7 @@
 #include "devseg/methods/plush/seam_paths.h"
 #include "devseg/methods/plush/seam_removal.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Gives faces that stick out of their label, with two edges to one other label, to that one, again
 /// and again.
@@ -17,4 +17,4 @@ void remove_teeth(const Mesh& mesh, std::vector<Index>& label);
 Index straighten_seams(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
                        Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

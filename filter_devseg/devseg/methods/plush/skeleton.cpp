@@ -12,7 +12,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/methods/plush/surface_fields.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -162,4 +162,4 @@ SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Straight bones between joints, in internal units of the mesh.
 struct Skeleton {
@@ -56,4 +56,4 @@ struct SkeletonDirection {
 SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
                                      Index b, const Vec3& normal);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -9,7 +9,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/rest_shape.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -17,8 +17,8 @@ constexpr double shift = 1e-8;      // of the mean diagonal: constants are in th
 constexpr double least_size = 1e-9; // internal units: faces whose corners coincide need a shape
 constexpr double smoothing_edges = 2.0; // radius of the curvature's smoothing, in mean edges
 
-RestTriangle rest_of(const Mesh& mesh, Index f) {
-    return make_rest_triangle(
+flatten::RestTriangle rest_of(const Mesh& mesh, Index f) {
+    return flatten::make_rest_triangle(
         {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
         least_size);
 }
@@ -62,7 +62,7 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(12 * mesh.faces.size());
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        const RestTriangle rest = rest_of(mesh, f);
+        const flatten::RestTriangle rest = rest_of(mesh, f);
         for (Index k = 0; k < 3; ++k) {
             const Index i = mesh.faces[at(f)][at(k)];
             const Index j = mesh.faces[at(f)][at((k + 1) % 3)];
@@ -180,4 +180,4 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     return curvature;
 }
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -12,7 +12,7 @@
 
 #include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Neighbours of all vertices: those of v are vertex[begin[v]] … vertex[begin[v + 1] − 1],
 /// ascending, with a half-edge between the two in either direction.
@@ -43,4 +43,4 @@ std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<doub
 /// radius of a sphere of the mesh's area: 1 on a sphere. #V, no unit.
 std::vector<double> mean_curvature(const Mesh& mesh);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -5,10 +5,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "devseg/mesh/surface_search.h"
 #include "devseg/base/parallel.h"
+#include "devseg/mesh/surface_search.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -28,7 +28,7 @@ struct Pairing {
     double distance = 0.0;
 };
 
-std::vector<Pairing> pair_up(const Mesh& mesh, const SurfaceSearch& search,
+std::vector<Pairing> pair_up(const Mesh& mesh, const mesh::SurfaceSearch& search,
                              const std::vector<Index>& vertices, const MirrorPlane& plane) {
     std::vector<Pairing> pairs;
     for (const Index v : vertices) {
@@ -179,7 +179,7 @@ private:
 
     const Mesh& mesh_;
     Progress& progress_;
-    const SurfaceSearch search_;
+    const mesh::SurfaceSearch search_;
     std::vector<Index> vertices_; // samples
     double diagonal_ = 0.0;
 };
@@ -202,4 +202,4 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
     return planes.front();
 }
 
-} // namespace devseg
+} // namespace devseg::plush

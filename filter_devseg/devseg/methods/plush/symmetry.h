@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 struct MirrorPlane {
     Vec3 normal = Vec3::UnitX(); // unit
@@ -25,4 +25,4 @@ struct MirrorPlane {
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

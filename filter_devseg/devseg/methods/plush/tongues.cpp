@@ -7,13 +7,12 @@
 
 #include "devseg/base/parallel.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
 constexpr double slack = 1.3;       // paths over faces are longer than straight lines
 constexpr double least_reach = 0.8; // of half the width: how far a tongue sticks out at least
-
 
 struct Tongue {
     std::vector<Index> faces;
@@ -94,7 +93,7 @@ private:
                 to_body[f] = 0.0;
         spread(to_body);
         const auto is_thin = [&](Index f) { return to_body[at(f)] > slack * radius_; };
-        const FaceComponents parts = face_components(mesh_, [&](Index h) {
+        const mesh::FaceComponents parts = mesh::face_components(mesh_, [&](Index h) {
             return seam_[at(h)] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[at(h)] / 3);
         });
         std::vector<Tongue> tongues(at(parts.count));
@@ -116,17 +115,17 @@ private:
     }
 
     std::vector<Change> find_changes() const {
-        const FaceComponents patches = find_patches(mesh_, seam_);
+        const mesh::FaceComponents patches = find_patches(mesh_, seam_);
         std::vector<Change> changes;
         for (const Tongue& tongue : find_tongues())
             find_changes(tongue, patches, changes);
         return changes;
     }
 
-    void find_changes(const Tongue& tongue, const FaceComponents& patches,
+    void find_changes(const Tongue& tongue, const mesh::FaceComponents& patches,
                       std::vector<Change>& changes) const {
-        const ChartSurface surface =
-            extract_surface(mesh_, tongue.faces, enclose(mesh_, tongue.faces, seam_));
+        const atlas::ChartSurface surface =
+            atlas::extract_surface(mesh_, tongue.faces, atlas::enclose(mesh_, tongue.faces, seam_));
         if (!surface.is_disk())
             return;
         // Who lies on the other side: −1 the tongue's own body, −2 nobody.
@@ -278,4 +277,4 @@ Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& sea
     return TongueGiver(setting, width, seam, progress).run();
 }
 
-} // namespace devseg
+} // namespace devseg::plush

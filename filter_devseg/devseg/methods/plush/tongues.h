@@ -3,7 +3,7 @@
 
 #include "devseg/methods/plush/seam_removal.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// Gives what hangs on a patch and is narrower than `width` (internal units), the acute corners
 /// where seams meet, teeth and strips, to the patch beside it, where both stay developable disks:
@@ -12,4 +12,4 @@ namespace devseg {
 Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
                         Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -8,7 +8,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/mesh/coarsen.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 namespace {
 
@@ -66,7 +66,7 @@ public:
         for (Index f = 0; f < mesh_.face_count(); ++f)
             add_part(f, half);
         link_twins(half);
-        compute_face_geometry(half);
+        mesh::compute_face_geometry(half);
         return half;
     }
 
@@ -134,7 +134,7 @@ private:
 
 // Without small pieces, and with one fan of faces at each vertex.
 Mesh clean_half(const Mesh& half, double surface_area) {
-    const FaceComponents pieces = face_components(half, [](Index) { return true; });
+    const mesh::FaceComponents pieces = mesh::face_components(half, [](Index) { return true; });
     std::vector<double> area(at(pieces.count), 0.0);
     for (std::size_t f = 0; f < half.faces.size(); ++f)
         area[at(pieces.label[f])] += half.face_areas[f];
@@ -142,7 +142,8 @@ Mesh clean_half(const Mesh& half, double surface_area) {
     for (Index f = 0; f < half.face_count(); ++f)
         if (area[at(pieces.label[at(f)])] > speck * surface_area)
             kept.push_back(f);
-    return mesh_of(half, extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
+    return atlas::mesh_of(
+        half, atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
 }
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
@@ -185,7 +186,7 @@ WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
         if (twin >= 0)
             mesh.twin[at(image)] = twin == image ? h : mirrored(twin, n);
     }
-    compute_face_geometry(mesh);
+    mesh::compute_face_geometry(mesh);
     // To the last bit: what is measured on both sides must agree.
     for (Index f = 0; f < n; ++f)
         mesh.face_areas[at(f + n)] = mesh.face_areas[at(f)];
@@ -197,7 +198,9 @@ WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
 WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progress& progress) {
     if (mesh.face_count() <= most_faces)
         return {mesh, {}};
-    return {extract_coarse_mesh(mesh, coarsen_in_parallel(mesh, most_faces, progress)).mesh, {}};
+    return {
+        mesh::extract_coarse_mesh(mesh, mesh::coarsen_in_parallel(mesh, most_faces, progress)).mesh,
+        {}};
 }
 
 std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
@@ -216,8 +219,8 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
         if (std::abs(std::log(area)) >= least || area < least_area || area > most_area)
             continue;
         if (2 * half.face_count() > most_faces)
-            half = extract_coarse_mesh(
-                       half, coarsen(half.points, half.faces, half.twin, most_faces / 2, progress))
+            half = mesh::extract_coarse_mesh(half, mesh::coarsen(half.points, half.faces, half.twin,
+                                                                 most_faces / 2, progress))
                        .mesh;
         WorkingSurface surface = glue(half, side);
         if (euler_characteristic(surface.mesh) != euler_characteristic(mesh))
@@ -233,4 +236,4 @@ void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& mark
         marks[at(surface.image[h])] = marks[h];
 }
 
-} // namespace devseg
+} // namespace devseg::plush

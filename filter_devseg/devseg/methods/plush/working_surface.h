@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 #include "devseg/methods/plush/symmetry.h"
-#include "devseg/base/progress.h"
 
-namespace devseg {
+namespace devseg::plush {
 
 /// With a mirror plane, faces n … 2n − 1 are the mirror images of faces 0 … n − 1, in their order,
 /// and edges along the plane divide the two.
@@ -39,4 +39,4 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
 /// Marks (3 #F) of the first half on both halves.
 void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& marks);
 
-} // namespace devseg
+} // namespace devseg::plush

@@ -5,11 +5,11 @@
 #include <map>
 #include <utility>
 
-#include "devseg/graph/min_cut.h"
 #include "devseg/atlas/charts.h"
+#include "devseg/graph/min_cut.h"
 #include "devseg/methods/growth/growth.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 
 namespace {
 
@@ -31,10 +31,10 @@ using Pair = std::pair<Index, Index>;
 
 class BorderBalancer {
 public:
-    BorderBalancer(const Mesh& mesh, const GaussAreas& areas, const BorderBalance& options,
+    BorderBalancer(const Mesh& mesh, const metrics::GaussAreas& areas, const BorderBalance& options,
                    Index count, std::vector<Index>& chart)
         : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
-          crease_(long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
+          crease_(metrics::long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
           depth_(mesh.faces.size()), node_(mesh.faces.size(), -1), reached_(mesh.faces.size(), 0),
           corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0), changes_(at(count), 0) {
         for (Index h = 0; h < mesh.half_edge_count(); ++h) {
@@ -68,7 +68,7 @@ public:
     void sweep(Progress& progress) {
         fix_creases();
         measure_depths(progress);
-        gauss_area_ = chart_gauss_areas(mesh_, areas_, chart_, count_);
+        gauss_area_ = metrics::chart_gauss_areas(mesh_, areas_, chart_, count_);
         std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
         for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
             const Index twin = mesh_.twin[at(h)];
@@ -118,7 +118,7 @@ private:
         deepest_.assign(at(count_), 0.0F);
         anchor_.assign(at(count_), -1);
         for (Index settled = 1; !heap_.empty(); ++settled) {
-            const CandidateHeap::Entry entry = heap_.top();
+            const growth::CandidateHeap::Entry entry = heap_.top();
             heap_.pop();
             if (entry.key > depth_[at(entry.face)])
                 continue;
@@ -181,7 +181,7 @@ private:
     // One way to part the strip: its sides, what the border in it costs, and the Gauss area that
     // goes from the first chart to the second.
     struct Parting {
-        std::vector<CutSide> side;
+        std::vector<graph::CutSide> side;
         double length = 0.0;
         double moved = 0.0;
     };
@@ -224,26 +224,26 @@ private:
         });
         for (std::size_t i = 0; i < faces.size(); ++i) {
             const bool was_a = chart_[at(faces[i])] == pair.first;
-            const bool is_a = parting.side[i] == CutSide::source;
+            const bool is_a = parting.side[i] == graph::CutSide::source;
             parting.moved += (was_a ? 1 : 0) * face_area_[at(faces[i])] -
                              (is_a ? 1 : 0) * face_area_[at(faces[i])];
         }
     }
 
-    Parting solve(const Pair& pair, const std::vector<Index>& faces, MinCut& cut) const {
+    Parting solve(const Pair& pair, const std::vector<Index>& faces, graph::MinCut& cut) const {
         Parting result;
         result.side = cut.solve();
-        drop_islands(pair, faces, CutSide::source, result.side);
-        drop_islands(pair, faces, CutSide::sink, result.side);
+        drop_islands(pair, faces, graph::CutSide::source, result.side);
+        drop_islands(pair, faces, graph::CutSide::sink, result.side);
         evaluate(pair, faces, result);
         return result;
     }
 
     // Faces of the strip that hang together with their chart's core only through the other chart
     // go to that one. A price on Gauss area makes islands of single curved faces.
-    void drop_islands(const Pair& pair, const std::vector<Index>& faces, CutSide which,
-                      std::vector<CutSide>& side) const {
-        const Index own = which == CutSide::source ? pair.first : pair.second;
+    void drop_islands(const Pair& pair, const std::vector<Index>& faces, graph::CutSide which,
+                      std::vector<graph::CutSide>& side) const {
+        const Index own = which == graph::CutSide::source ? pair.first : pair.second;
         std::vector<std::uint8_t> held(faces.size(), 0);
         std::vector<Index> stack;
         const auto hold = [&](std::size_t i) {
@@ -272,17 +272,18 @@ private:
         }
         for (std::size_t i = 0; i < faces.size(); ++i)
             if (held[i] == 0 && side[i] == which)
-                side[i] = which == CutSide::source ? CutSide::sink : CutSide::source;
+                side[i] =
+                    which == graph::CutSide::source ? graph::CutSide::sink : graph::CutSide::source;
     }
 
     // The least cut for growing prices of Gauss area, from none to one that agrees with the
     // difference of the charts that is left.
     Parting best_parting(const Pair& pair, const std::vector<Index>& faces) {
         const Index core_a = static_cast<Index>(faces.size());
-        std::vector<CutSide> sides(faces.size() + 2, CutSide::open);
-        sides[at(core_a)] = CutSide::source;
-        sides[at(core_a) + 1] = CutSide::sink;
-        MinCut cut(std::move(sides));
+        std::vector<graph::CutSide> sides(faces.size() + 2, graph::CutSide::open);
+        sides[at(core_a)] = graph::CutSide::source;
+        sides[at(core_a) + 1] = graph::CutSide::sink;
+        graph::MinCut cut(std::move(sides));
         visit_links(pair, faces, [&](Index a, Index b, float cost) { cut.link(a, b, cost); });
         Parting best = solve(pair, faces, cut);
         double due = stiffness_ * difference(pair, best);
@@ -317,11 +318,11 @@ private:
         for (double share = 1.0; improves && share > narrowest; share *= 0.5) {
             const std::vector<Index> faces = strip(pair, edges, share);
             Parting now;
-            now.side.assign(faces.size() + 2, CutSide::source);
-            now.side.back() = CutSide::sink;
+            now.side.assign(faces.size() + 2, graph::CutSide::source);
+            now.side.back() = graph::CutSide::sink;
             for (std::size_t i = 0; i < faces.size(); ++i)
                 if (chart_[at(faces[i])] == pair.second)
-                    now.side[i] = CutSide::sink;
+                    now.side[i] = graph::CutSide::sink;
             evaluate(pair, faces, now);
             const Parting best = best_parting(pair, faces);
             improves = energy(pair, best) < energy(pair, now) * worthwhile;
@@ -376,7 +377,7 @@ private:
         std::size_t size_a = before_a.faces;
         std::size_t size_b = before_b.faces;
         for (std::size_t i = 0; i < faces.size(); ++i) {
-            const bool to_a = parting.side[i] == CutSide::source;
+            const bool to_a = parting.side[i] == graph::CutSide::source;
             Index& c = chart_[at(faces[i])];
             if (c == (to_a ? pair.first : pair.second))
                 continue;
@@ -407,7 +408,7 @@ private:
     }
 
     const Mesh& mesh_;
-    const GaussAreas& areas_;
+    const metrics::GaussAreas& areas_;
     const BorderBalance& options_;
     std::vector<Index>& chart_;
     Index count_;
@@ -430,13 +431,14 @@ private:
     std::map<Pair, int> settled_;       // changes of both charts when nothing could be gained
     std::map<Pair, double> last_price_;
     std::vector<Index> stack_;
-    CandidateHeap heap_;
+    growth::CandidateHeap heap_;
 };
 
 } // namespace
 
-void balance_borders(const Mesh& mesh, const GaussAreas& areas, const BorderBalance& options,
-                     Index count, std::vector<Index>& chart, Progress& progress) {
+void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas,
+                     const BorderBalance& options, Index count, std::vector<Index>& chart,
+                     Progress& progress) {
     BorderBalancer balancer(mesh, areas, options, count, chart);
     for (int sweep = 0; sweep < options.sweeps; ++sweep) {
         progress.update(static_cast<double>(sweep) / options.sweeps);
@@ -444,4 +446,4 @@ void balance_borders(const Mesh& mesh, const GaussAreas& areas, const BorderBala
     }
 }
 
-} // namespace devseg
+} // namespace devseg::t_flooding

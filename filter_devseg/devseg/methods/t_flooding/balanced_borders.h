@@ -6,7 +6,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/metrics/gauss_area.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 
 struct BorderBalance {
     int sweeps = 6;            // over all pairs of neighbours
@@ -20,7 +20,8 @@ struct BorderBalance {
 /// neighbours in turn: the least cut within a strip along their border, with a price on Gauss area
 /// that agrees with the difference that is left. Charts stay connected and keep their topology.
 /// `chart` (#F) holds labels 0 … count − 1.
-void balance_borders(const Mesh& mesh, const GaussAreas& areas, const BorderBalance& options,
-                     Index count, std::vector<Index>& chart, Progress& progress);
+void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas,
+                     const BorderBalance& options, Index count, std::vector<Index>& chart,
+                     Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::t_flooding

@@ -5,14 +5,14 @@
 #include <set>
 #include <utility>
 
-#include "devseg/methods/t_flooding/balanced_borders.h"
-#include "devseg/metrics/gauss_area.h"
-#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/base/option_checks.h"
+#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/reseed.h"
 #include "devseg/methods/growth/seeds.h"
+#include "devseg/methods/t_flooding/balanced_borders.h"
+#include "devseg/metrics/gauss_area.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 
 namespace {
 
@@ -45,7 +45,8 @@ class FloodingCost {
 public:
     static constexpr bool keeps_first_offer = true;
 
-    FloodingCost(const Mesh& mesh, const GaussAreas& areas, const TFloodingOptions& options)
+    FloodingCost(const Mesh& mesh, const metrics::GaussAreas& areas,
+                 const TFloodingOptions& options)
         : mesh_(mesh), areas_(areas), power_(options.speed_power), epsilon_(options.speed_epsilon),
           valence_(mesh.points.size(), 0), has_corner_(mesh.faces.size(), 0),
           time_(mesh.faces.size(), 0.0F) {
@@ -56,7 +57,7 @@ public:
             if (areas.edge[at(h)] > 0.0 || areas.vertex[at(mesh.origin(h))] > 0.0)
                 has_corner_[at(h / 3)] = 1;
         find_largest_curvature();
-        wall_ = long_creases(mesh, areas.crease, options.charts_number);
+        wall_ = metrics::long_creases(mesh, areas.crease, options.charts_number);
         step_.resize(mesh.twin.size(), 0.0F);
         for (Index h = 0; h < mesh.half_edge_count(); ++h)
             if (mesh.twin[at(h)] >= 0)
@@ -72,7 +73,7 @@ public:
     }
 
     // Δt of a step across h into the face behind it, with the corners that it would complete.
-    CandidateHeap::Entry candidate(Index h, Index c) const {
+    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
         const Index f = mesh_.twin[at(h)] / 3;
         const float step = has_corner_[at(f)] == 0
                                ? step_[at(h)]
@@ -82,7 +83,7 @@ public:
     }
 
     // The look-ahead of [YGZS05, section 3.3]: the area that the chart would have.
-    GrowthKey key(Index c, const CandidateHeap::Entry& entry) const {
+    growth::GrowthKey key(Index c, const growth::CandidateHeap::Entry& entry) const {
         const int tier = entry.key >= behind_crease ? 1 : 0;
         return {tier, area_[at(c)] + offset_[at(c)] + gain(entry.face, c), entry.distance};
     }
@@ -157,7 +158,7 @@ private:
     }
 
     const Mesh& mesh_;
-    const GaussAreas& areas_;
+    const metrics::GaussAreas& areas_;
     double power_;
     double epsilon_;
     double largest_curvature_ = 0.0;
@@ -183,7 +184,7 @@ void raise_offsets(const std::vector<double>& area, double damping, std::vector<
 // The rounds of flooding, reseeding and offsets; keeps the best.
 class Rounds {
 public:
-    Rounds(const Mesh& mesh, const GaussAreas& areas, const TFloodingOptions& options,
+    Rounds(const Mesh& mesh, const metrics::GaussAreas& areas, const TFloodingOptions& options,
            Progress& progress)
         : cost_(mesh, areas, options), heaps_(mesh), border_(mesh), options_(options),
           scale_(areas.total / options.charts_number), progress_(progress) {}
@@ -243,7 +244,7 @@ private:
         cost_.start_over(offsets);
         heaps_.grow(seeds, cost_, chart_, progress_);
         progress_.update(static_cast<double>(++count_) / options_.max_iterations);
-        Round round{seeds, offsets, cost_.area(), standard_deviation(cost_.area())};
+        Round round{seeds, offsets, cost_.area(), metrics::standard_deviation(cost_.area())};
         if (round.deviation < deviation_) {
             deviation_ = round.deviation;
             best_chart_ = chart_;
@@ -252,8 +253,8 @@ private:
     }
 
     FloodingCost cost_;
-    MultiHeap heaps_;
-    BorderDistance border_;
+    growth::MultiHeap heaps_;
+    growth::BorderDistance border_;
     const TFloodingOptions& options_;
     double scale_; // Gauss area of an average chart
     Progress& progress_;
@@ -269,12 +270,12 @@ TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& opt
                                    Progress& progress) {
     check_options(mesh, options);
     progress.begin_phase("measuring Gauss areas", 0.05);
-    GaussAreas areas = compute_gauss_areas(mesh, options.crease_angle * degrees);
+    metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, options.crease_angle * degrees);
 
     progress.begin_phase("placing seeds", 0.05);
-    const std::vector<Index> seeds =
-        farthest_point_seeds(mesh, at_least_one_per_component(mesh, options.charts_number),
-                             static_cast<std::uint32_t>(options.random_seed), progress);
+    const std::vector<Index> seeds = growth::farthest_point_seeds(
+        mesh, growth::at_least_one_per_component(mesh, options.charts_number),
+        static_cast<std::uint32_t>(options.random_seed), progress);
     const Index count = static_cast<Index>(seeds.size());
 
     progress.begin_phase("flooding", 0.6);
@@ -291,11 +292,11 @@ TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& opt
         progress.begin_phase("straightening borders", 0.2);
         balance_borders(mesh, areas, {}, count, result.chart, progress);
     }
-    result.chart_gauss_area = chart_gauss_areas(mesh, areas, result.chart, count);
-    result.gauss_area_std = standard_deviation(result.chart_gauss_area);
+    result.chart_gauss_area = metrics::chart_gauss_areas(mesh, areas, result.chart, count);
+    result.gauss_area_std = metrics::standard_deviation(result.chart_gauss_area);
     result.total_gauss_area = areas.total;
     result.face_gauss_area = std::move(areas.face);
     return result;
 }
 
-} // namespace devseg
+} // namespace devseg::t_flooding

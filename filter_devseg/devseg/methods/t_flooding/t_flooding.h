@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
 #include "devseg/base/progress.h"
+#include "devseg/mesh/mesh.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 
 struct TFloodingOptions {
     int charts_number = 20;
@@ -43,4 +43,4 @@ struct TFloodingResult {
 TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& options,
                                    Progress& progress);
 
-} // namespace devseg
+} // namespace devseg::t_flooding

@@ -1,9 +1,9 @@
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/declare/segmentation_output.h"
+#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/t_flooding/t_flooding.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 
 namespace {
 
@@ -27,11 +27,12 @@ struct Options : TFloodingOptions {
     bool cut_tips = true;
 };
 
-FilterOutput run_t_flooding(const FilterInput& input, const Options& options, Progress& progress) {
+declare::FilterOutput run_t_flooding(const declare::FilterInput& input, const Options& options,
+                                     Progress& progress) {
     TFloodingResult result = segment_t_flooding(input.mesh, options, progress);
-    FilterOutput output =
-        segmentation_output(input, result.chart, std::move(result.face_gauss_area),
-                            {options.cut_tips, {all_horns}}, progress);
+    declare::FilterOutput output =
+        declare::segmentation_output(input, result.chart, std::move(result.face_gauss_area),
+                                     {options.cut_tips, {all_horns}}, progress);
     // Charts are numbered anew by their first face: the values follow.
     std::vector<double> gauss_area(result.chart_gauss_area.size());
     for (std::size_t f = 0; f < result.chart.size(); ++f)
@@ -46,11 +47,11 @@ FilterOutput run_t_flooding(const FilterInput& input, const Options& options, Pr
 
 } // namespace
 
-std::vector<FilterDeclaration> t_flooding_filters() {
+std::vector<declare::FilterDeclaration> t_flooding_filters() {
     using O = Options;
     return {
-        Declare<O>("Segmentation: t-flooding", "compute_segmentation_t_flooding_per_face",
-                   FilterCategory::remeshing, t_flooding_help)
+        declare::Declare<O>("Segmentation: t-flooding", "compute_segmentation_t_flooding_per_face",
+                            declare::FilterCategory::remeshing, t_flooding_help)
             .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                      "From 1 to the number of faces. A mesh of more components gets one chart for "
                      "each of them.")
@@ -78,7 +79,7 @@ std::vector<FilterDeclaration> t_flooding_filters() {
             .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                      "0 starts at the face farthest from the centre; other numbers at a random "
                      "face. The same number always gives the same charts.")
-            .writes(writes_charts | writes_quality | writes_color)
+            .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
             .result("charts_number", "charts, each a disk")
             .result("cut_length", "length of the cuts inside of charts, model units")
             .result("seam_length", "length of all cut edges, model units")
@@ -90,4 +91,4 @@ std::vector<FilterDeclaration> t_flooding_filters() {
             .runs(run_t_flooding)};
 }
 
-} // namespace devseg
+} // namespace devseg::t_flooding

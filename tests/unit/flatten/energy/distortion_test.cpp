@@ -11,7 +11,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -47,7 +47,8 @@ Eigen::Matrix4d hessian_by_differences(const Eigen::Matrix2d& j) {
 }
 
 TEST(Distortion, TheGradientIsThatOfTheEnergy) {
-    for (const RawMesh& raw : {shapes::hemisphere(10, 4), shapes::torus(9, 6), shapes::sphere(1)}) {
+    for (const mesh::RawMesh& raw :
+         {shapes::hemisphere(10, 4), shapes::torus(9, 6), shapes::sphere(1)}) {
         const Disk disk(raw);
         Positions x = positions(flatten_tutte(disk.problem));
         const Positions gradient = distortion_gradient(disk.problem, x);
@@ -122,4 +123,4 @@ TEST(Distortion, TheCollapseStepIsWhereTheFirstTriangleHasNoArea) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

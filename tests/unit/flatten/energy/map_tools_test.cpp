@@ -8,7 +8,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -207,7 +207,7 @@ TEST(RestShape, TheBoundaryRunsCounterclockwiseOnceAround) {
 }
 
 TEST(RestShape, FacesWithoutAreaStayFinite) {
-    RawMesh raw = shapes::grid(4, 4);
+    mesh::RawMesh raw = shapes::grid(4, 4);
     raw.points[6] = raw.points[7];                            // two corners coincide
     raw.points[11] = 0.5 * (raw.points[10] + raw.points[12]); // already so: on a line
     raw.points[16] = raw.points[17] = raw.points[18];         // three do
@@ -222,7 +222,7 @@ TEST(RestShape, FacesWithoutAreaStayFinite) {
 
 TEST(RestShape, ChartsThatAreNoDisksAreRefused) {
     const Mesh mesh = checks::gated(shapes::cylinder_tube(8, 2));
-    const ChartSurface tube = extract_charts(mesh, checks::components(mesh)).at(0);
+    const atlas::ChartSurface tube = atlas::extract_charts(mesh, checks::components(mesh)).at(0);
     const std::string text =
         checks::error_of<NumericalFailure>([&] { make_flattening_problem(mesh, tube); });
     EXPECT_TRUE(checks::contains(text, "2 boundary loops"));
@@ -230,4 +230,4 @@ TEST(RestShape, ChartsThatAreNoDisksAreRefused) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

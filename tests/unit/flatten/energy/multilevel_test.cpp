@@ -5,15 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/parallel.h"
+#include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/energy/symmetric_dirichlet.h"
-#include "devseg/base/parallel.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -26,7 +26,7 @@ std::vector<Vec2> minimised_lscm(const FlatteningProblem& problem, double tolera
 }
 
 std::vector<Vec2> flatten(const Disk& disk, const Progress& progress = Progress{}) {
-    const auto solve = [](const FlatteningProblem& coarse, const ChartSurface&) {
+    const auto solve = [](const FlatteningProblem& coarse, const atlas::ChartSurface&) {
         return minimised_lscm(coarse, SymmetricDirichletOptions{}.relative_tolerance);
     };
     return flatten_multilevel(disk.mesh, disk.surface, disk.problem, solve, progress);
@@ -37,16 +37,16 @@ bool on_ruling(const Vec3& p) {
 }
 
 // A cone with waves around it.
-RawMesh wavy_cone() {
-    RawMesh mesh = shapes::cone(80, 42);
+mesh::RawMesh wavy_cone() {
+    mesh::RawMesh mesh = shapes::cone(80, 42);
     for (Vec3& p : mesh.points)
         p.z() += 0.05 * std::sin(6.0 * p.x()) * std::sin(5.0 * p.y() + 1.0);
     return mesh;
 }
 
 // Bent along its length, so that it is not developable.
-RawMesh long_strip() {
-    RawMesh mesh = shapes::grid(800, 4, 200.0, 1.0);
+mesh::RawMesh long_strip() {
+    mesh::RawMesh mesh = shapes::grid(800, 4, 200.0, 1.0);
     for (Vec3& p : mesh.points)
         p.z() = 0.2 * std::sin(0.7 * p.x()) * std::sin(2.0 * p.y());
     return mesh;
@@ -80,7 +80,7 @@ TEST(Multilevel, MapsAreAsGoodAsThoseOfTheWholeChart) {
 TEST(Multilevel, TheNumberOfThreadsDoesNotMatter) {
     const Mesh mesh = checks::gated(
         shapes::join(shapes::hemisphere(80, 42), shapes::moved(long_strip(), 1.0, {0, 3, 0})));
-    const ChartMap charts = checks::components_cut_to_disks(mesh);
+    const atlas::ChartMap charts = checks::components_cut_to_disks(mesh);
     const auto flat = [&](int threads) {
         set_thread_limit(threads);
         Progress progress;
@@ -102,7 +102,7 @@ TEST(Multilevel, TheNumberOfThreadsDoesNotMatter) {
 // Vertices that lie on each other leave no room for a shape; then the whole chart is solved.
 TEST(Multilevel, FacesWithoutAreaAndNeedlesAreFlattened) {
     for (const double stretch : {1.0, 1e-5}) {
-        RawMesh raw = shapes::hemisphere(80, 42);
+        mesh::RawMesh raw = shapes::hemisphere(80, 42);
         for (std::size_t i = 100; i < raw.points.size(); i += 311)
             raw.points[i] = raw.points[i - 1] + stretch * (raw.points[i] - raw.points[i - 1]);
         const Disk disk(raw);
@@ -117,7 +117,8 @@ TEST(Multilevel, FacesWithoutAreaAndNeedlesAreFlattened) {
 
 TEST(Multilevel, ErrorsOfTheSolverComeThrough) {
     const Disk disk(shapes::hemisphere(80, 42));
-    const auto fails = [](const FlatteningProblem&, const ChartSurface&) -> std::vector<Vec2> {
+    const auto fails = [](const FlatteningProblem&,
+                          const atlas::ChartSurface&) -> std::vector<Vec2> {
         throw NumericalFailure("no solution");
     };
     EXPECT_THROW(flatten_multilevel(disk.mesh, disk.surface, disk.problem, fails, Progress{}),
@@ -128,7 +129,7 @@ TEST(Multilevel, Cancels) {
     const Disk disk(shapes::hemisphere(80, 42));
     Progress stopped([](double, const char*) { return false; });
     // Once the coarse map is there: what follows must stop as well.
-    const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface&) {
+    const auto solve = [&](const FlatteningProblem& coarse, const atlas::ChartSurface&) {
         std::vector<Vec2> uv = minimised_lscm(coarse, 1e-3);
         EXPECT_THROW(stopped.update(0.5), Cancelled);
         return uv;
@@ -139,4 +140,4 @@ TEST(Multilevel, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -4,18 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/maps/lscm.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 // A bowl with one vertex pulled out a little: besides the stretch of the bowl, a flat map has a
 // peak at one place.
 checks::Disk spiked_plate() {
-    RawMesh raw = shapes::grid(40, 40, 40.0, 40.0);
+    mesh::RawMesh raw = shapes::grid(40, 40, 40.0, 40.0);
     for (Vec3& p : raw.points)
         p.z() = 0.012 * ((p.x() - 20.0) * (p.x() - 20.0) + (p.y() - 20.0) * (p.y() - 20.0));
     raw.points[20 * 41 + 12].z() += 1.0;
@@ -49,7 +49,7 @@ TEST(Peaks, TheWorstFaceIsRelievedAtLittleCost) {
 // The flat bottom of a rail that is bent sideways, with its rounded edges and walls: nearly
 // isometric, with low peaks at the ends.
 TEST(Peaks, LowPeaksOfNearlyIsometricMapsAreRelieved) {
-    RawMesh raw = shapes::grid(40, 60, 40.0, 60.0);
+    mesh::RawMesh raw = shapes::grid(40, 60, 40.0, 60.0);
     for (Vec3& p : raw.points) {
         const double across = std::clamp(p.x(), 10.0, 30.0);
         const double along = p.y() / 250.0;
@@ -93,7 +93,7 @@ TEST(Peaks, AnIsometryStaysAsItIs) {
 // A plate with a fold across: a row of needles pressed to a hundredth of their width, which single
 // vertices cannot leave.
 TEST(Peaks, NeedlesAreSettledTogether) {
-    RawMesh raw = shapes::grid(60, 60, 60.0, 60.0);
+    mesh::RawMesh raw = shapes::grid(60, 60, 60.0, 60.0);
     const auto index = [](Index x, Index y) { return at(y * 61 + x); };
     for (Index x = 26; x <= 34; ++x) // a row of low faces
         raw.points[index(x, 31)].y() -= 0.98;
@@ -128,4 +128,4 @@ TEST(Peaks, EvenStretchIsNothingToSettle) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,14 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -34,7 +34,7 @@ double energy_from_stretches(const Disk& disk, const std::vector<Vec2>& uv) {
     return sum / disk.problem.total_area;
 }
 
-std::vector<RawMesh> curved() {
+std::vector<mesh::RawMesh> curved() {
     return {shapes::hemisphere(16, 7), shapes::with_noise(shapes::grid(9, 9), 0.04, 3),
             shapes::torus(14, 9),      shapes::plate_with_handle(),
             shapes::sphere(2),         shapes::finger(10, 12, 1.0, 6.0)};
@@ -48,7 +48,7 @@ std::vector<Vec2> identity(const Disk& disk) {
 }
 
 TEST(SymmetricDirichlet, EnergyIsThatOfTheSingularValues) {
-    for (const RawMesh& raw : curved()) {
+    for (const mesh::RawMesh& raw : curved()) {
         const Disk disk(raw);
         const std::vector<Vec2> uv = flatten_tutte(disk.problem);
         const double expected = energy_from_stretches(disk, uv);
@@ -76,7 +76,7 @@ TEST(SymmetricDirichlet, EnergyIsInfiniteForFlipsAndFacesWithoutArea) {
 }
 
 TEST(SymmetricDirichlet, DevelopablesBecomeIsometricFromAnyStart) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::grid(8, 5), shapes::cylinder_tube(20, 6), shapes::frustum(24, 6, 1.0, 0.3, 2.0),
           shapes::cylinder_tube(30, 4, 1.0, 0.5), shapes::annulus(24, 3, 1.0, 1.5)}) {
         const Disk disk(raw);
@@ -99,7 +99,7 @@ TEST(SymmetricDirichlet, ATightToleranceReachesTheIsometry) {
 }
 
 TEST(SymmetricDirichlet, EveryStepGoesDownAndFlipsNothing) {
-    for (const RawMesh& raw : curved()) {
+    for (const mesh::RawMesh& raw : curved()) {
         const Disk disk(raw);
         const std::vector<Vec2> start = flatten_tutte(disk.problem);
         double before = symmetric_dirichlet_energy(disk.problem, start);
@@ -122,7 +122,7 @@ TEST(SymmetricDirichlet, EveryStepGoesDownAndFlipsNothing) {
 TEST(SymmetricDirichlet, ResultsAreNearlyStationary) {
     // Neither moves of single vertices nor smooth fields lower the energy by more than the
     // tolerance of the stopping rule.
-    for (const RawMesh& raw : curved()) {
+    for (const mesh::RawMesh& raw : curved()) {
         const Disk disk(raw);
         const SymmetricDirichletResult result = minimise(disk, flatten_tutte(disk.problem));
         EXPECT_TRUE(result.converged);
@@ -176,7 +176,7 @@ TEST(SymmetricDirichlet, StartsThatAreTurnedOrMovedGiveTheSameMap) {
 }
 
 TEST(SymmetricDirichlet, TheStartMatterslittleForTheEnergy) {
-    for (const RawMesh& raw : {shapes::hemisphere(16, 7), shapes::torus(14, 9)}) {
+    for (const mesh::RawMesh& raw : {shapes::hemisphere(16, 7), shapes::torus(14, 9)}) {
         const Disk disk(raw);
         const std::vector<Vec2> lscm = flatten_lscm(disk.problem);
         ASSERT_EQ(checks::count_flips(disk.problem.faces, lscm), 0);
@@ -219,4 +219,4 @@ TEST(SymmetricDirichlet, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

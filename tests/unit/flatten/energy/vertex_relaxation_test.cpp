@@ -13,7 +13,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using shapes::pi;
@@ -225,4 +225,4 @@ TEST(KernelPoint, AStarWithoutKernelKeepsTheHint) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -4,19 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
 
-RawMesh bumpy_grid(Index cells) {
-    RawMesh mesh = shapes::grid(cells, cells, cells, cells);
+mesh::RawMesh bumpy_grid(Index cells) {
+    mesh::RawMesh mesh = shapes::grid(cells, cells, cells, cells);
     for (Vec3& p : mesh.points)
         p.z() = 0.35 * std::sin(0.8 * p.x()) * std::cos(0.7 * p.y());
     return shapes::with_noise(std::move(mesh), 0.15, 7);
@@ -162,7 +162,7 @@ TEST(Abf, ThinTrianglesGiveFiniteMapsOrFailures) {
     for (const double width : {1e-2, 1e-4, 1e-6, 0.0})
         for (const std::uint32_t seed : {1u, 2u}) {
             // Columns of needles, with vertices that lie almost on the opposite edges.
-            RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
+            mesh::RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
             for (Vec3& p : raw.points)
                 p.x() *= width;
             const Disk disk(raw);
@@ -176,7 +176,7 @@ TEST(Abf, ThinTrianglesGiveFiniteMapsOrFailures) {
 }
 
 TEST(Abf, OneTriangleKeepsItsShape) {
-    const Disk disk(RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
+    const Disk disk(mesh::RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
     const AbfResult result = flatten(disk);
     EXPECT_TRUE(result.converged);
     for (const double s : checks::stretches(disk.problem, result.uv, 0))
@@ -192,4 +192,4 @@ TEST(Abf, RunsAreEqualAndCanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -5,14 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -143,7 +143,7 @@ TEST(Arap, ThinTrianglesGiveFiniteMapsOrFailures) {
     for (const double width : {1e-2, 1e-4, 1e-6, 0.0})
         for (const std::uint32_t seed : {1u, 2u}) {
             // Columns of needles, with vertices that lie almost on the opposite edges.
-            RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
+            mesh::RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
             for (Vec3& p : raw.points)
                 p.x() *= width;
             const Disk disk(raw);
@@ -166,4 +166,4 @@ TEST(Arap, RunsAreEqualAndCanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

@@ -6,14 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/maps/abf.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/abf.h"
 #include "devseg/flatten/maps/seam_lengths.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -182,7 +182,7 @@ TEST(Lpfb, BothSidesOfADartAreEquallyLong) {
     const LpfbResult result = flatten(disk);
     EXPECT_EQ(result.flips, 0);
     int pairs = 0;
-    const ChartSurface& surface = disk.surface;
+    const atlas::ChartSurface& surface = disk.surface;
     const auto length = [&](Index h) {
         return (result.uv[at(surface.target(h))] - result.uv[at(surface.origin(h))]).norm();
     };
@@ -254,7 +254,7 @@ TEST(Lpfb, ThinTrianglesGiveFiniteMapsOrFailures) {
     for (const double width : {1e-2, 1e-4, 1e-6, 0.0})
         for (const std::uint32_t seed : {1u, 2u}) {
             // Needles, with vertices that lie almost on the opposite edges.
-            RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
+            mesh::RawMesh raw = shapes::with_noise(shapes::grid(6, 40), 1e-3, seed);
             for (Vec3& p : raw.points)
                 p.x() *= width;
             const Disk disk(raw);
@@ -288,7 +288,7 @@ TEST(Lpfb, LengthsAreGivenBackByShortMoves) {
 }
 
 TEST(Lpfb, OneTriangleKeepsItsShape) {
-    const Disk disk(RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
+    const Disk disk(mesh::RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
     for (const double s : checks::stretches(disk.problem, flatten(disk).uv, 0))
         EXPECT_NEAR(s, 1.0, 1e-12);
 }
@@ -302,4 +302,4 @@ TEST(Lpfb, RunsAreEqualAndCanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

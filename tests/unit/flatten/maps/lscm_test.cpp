@@ -10,7 +10,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -77,7 +77,7 @@ TEST(Lscm, DevelopablesAreFlattenedIsometrically) {
 }
 
 TEST(Lscm, OneTriangleKeepsItsShape) {
-    const Disk disk(RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
+    const Disk disk(mesh::RawMesh{{{0, 0, 0}, {5, 1, 2}, {1, 3, -1}}, {{0, 1, 2}}});
     const std::vector<Vec2> uv = flatten_lscm(disk.problem);
     for (const double s : checks::stretches(disk.problem, uv, 0))
         EXPECT_NEAR(s, 1.0, 1e-12);
@@ -161,8 +161,8 @@ TEST(Lscm, AnglesArePreservedOnAHemisphere) {
 }
 
 TEST(Lscm, RotationOfTheSurfaceDoesNotMatter) {
-    const RawMesh raw = shapes::with_noise(shapes::hemisphere(14, 6), 0.02, 8);
-    RawMesh turned = raw;
+    const mesh::RawMesh raw = shapes::with_noise(shapes::hemisphere(14, 6), 0.02, 8);
+    mesh::RawMesh turned = raw;
     const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, 3).normalized());
     for (Vec3& p : turned.points)
         p = turn * p;
@@ -176,4 +176,4 @@ TEST(Lscm, RotationOfTheSurfaceDoesNotMatter) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

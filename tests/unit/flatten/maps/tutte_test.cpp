@@ -10,7 +10,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using checks::Disk;
@@ -49,7 +49,7 @@ void expect_embedding(const Disk& disk, const std::vector<Vec2>& uv) {
 }
 
 TEST(Tutte, EveryMapIsAnEmbedding) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::grid(6, 4), shapes::hemisphere(16, 7), shapes::torus(16, 9), shapes::sphere(3),
           shapes::double_torus(), shapes::plate_with_handle(), shapes::cone(20, 6),
           shapes::moebius_strip(30, 3), shapes::plate(shapes::mask_with_holes(5)),
@@ -97,18 +97,18 @@ TEST(Tutte, InnerVerticesAreInTheHullOfTheirNeighbours) {
 }
 
 TEST(Tutte, HardChartsDoNotFlip) {
-    std::vector<RawMesh> hard;
+    std::vector<mesh::RawMesh> hard;
     hard.push_back(shapes::grid(400, 1, 400.0, 1.0)); // long strips
     hard.push_back(shapes::grid(300, 3, 300.0, 1.0));
     hard.push_back(shapes::grid(30, 30, 1.0, 1e-5)); // needles
     hard.push_back(shapes::grid(30, 30, 1.0, 1e-9));
     hard.push_back(shapes::finger(12, 20, 1.0, 10.0)); // much surface behind a short boundary
     hard.push_back(shapes::hemisphere(40, 40));
-    RawMesh spikes = shapes::grid(20, 20);
+    mesh::RawMesh spikes = shapes::grid(20, 20);
     for (std::size_t v = 0; v < spikes.points.size(); v += 7)
         spikes.points[v].z() = 1e3;
     hard.push_back(spikes);
-    RawMesh unbalanced = shapes::grid(24, 24); // sizes from 1 down to 2^-24
+    mesh::RawMesh unbalanced = shapes::grid(24, 24); // sizes from 1 down to 2^-24
     for (Vec3& p : unbalanced.points)
         p.x() = std::exp2(-24.0 * p.x());
     hard.push_back(unbalanced);
@@ -132,4 +132,4 @@ TEST(Tutte, FingersDoNotFlip) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

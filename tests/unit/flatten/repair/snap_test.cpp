@@ -8,7 +8,7 @@
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 
-namespace devseg {
+namespace devseg::flatten {
 namespace {
 
 using shapes::Random;
@@ -155,4 +155,4 @@ TEST(Snap, LayoutsOfAnySizeAreHandled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::flatten

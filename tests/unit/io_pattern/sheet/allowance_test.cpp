@@ -6,13 +6,13 @@
 
 #include "sheet/segment_grid.h"
 
-namespace devseg {
+namespace devseg::sheet {
 namespace {
 
 using Ring = std::vector<Vec2>;
 
-PatternPiece piece_of(const Ring& outer, const std::vector<Ring>& holes = {}) {
-    PatternPiece piece;
+pattern::PatternPiece piece_of(const Ring& outer, const std::vector<Ring>& holes = {}) {
+    pattern::PatternPiece piece;
     piece.outer.points = outer;
     for (const Vec2& p : outer)
         piece.box.extend(p);
@@ -52,7 +52,7 @@ const Ring corner = {Vec2(0, 0),   Vec2(40, 0),  Vec2(40, 20),
 TEST(Allowance, CornersAreOfTheirStyle) {
     const double w = 5.0;
     const double straight = 1600.0 + 4.0 * 40.0 * w;
-    const PatternPiece piece = piece_of(square);
+    const pattern::PatternPiece piece = piece_of(square);
     EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::miter)[0]), straight + 4 * w * w, 1e-3);
     EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::bevel)[0]), straight + 2 * w * w, 1e-3);
     EXPECT_NEAR(area(add_allowance(piece, w, CornerStyle::round)[0]), straight + M_PI * w * w, 0.4);
@@ -98,7 +98,7 @@ TEST(Allowance, NarrowDartsAreCovered) {
 
 // The lower side of the square is a hem, twice as wide as the seams.
 TEST(Allowance, HemsHaveAWidthOfTheirOwn) {
-    PatternPiece piece = piece_of(square);
+    pattern::PatternPiece piece = piece_of(square);
     piece.outer.edges.assign(4, {0, 0});
     piece.outer.edges[0].seam = -1;
     const Ring cut = add_allowance(piece, {5.0, 10.0}, CornerStyle::miter)[0];
@@ -117,7 +117,7 @@ TEST(Allowance, HemsHaveAWidthOfTheirOwn) {
 
 // Where a hem goes on straight as a seam, the cut line steps.
 TEST(Allowance, StepsOnStraightOutlines) {
-    PatternPiece piece =
+    pattern::PatternPiece piece =
         piece_of({Vec2(0, 0), Vec2(20, 0), Vec2(40, 0), Vec2(40, 40), Vec2(0, 40)});
     piece.outer.edges.assign(5, {0, 0});
     piece.outer.edges[0].seam = -1;
@@ -126,4 +126,4 @@ TEST(Allowance, StepsOnStraightOutlines) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::sheet

@@ -8,7 +8,7 @@
 #include "sheet/page_size.h"
 #include "unit/checks.h"
 
-namespace devseg {
+namespace devseg::sheet {
 namespace {
 
 SheetPiece rectangle(double width, double height) {
@@ -74,4 +74,4 @@ TEST(PageSize, KnowsNamesAndSizes) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::sheet

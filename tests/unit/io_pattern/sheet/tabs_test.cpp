@@ -6,14 +6,14 @@
 
 #include "devseg/base/errors.h"
 
-namespace devseg {
+namespace devseg::sheet {
 namespace {
 
 // Two squares that are joined along the whole of their outlines: one seam for each side.
-Pattern two_squares(double side, double notch) {
-    Pattern pattern;
+pattern::Pattern two_squares(double side, double notch) {
+    pattern::Pattern pattern;
     for (int k = 0; k < 2; ++k) {
-        PatternPiece piece;
+        pattern::PatternPiece piece;
         const Vec2 low(2.0 * side * k, 0.0);
         piece.outer.points = {low, low + Vec2(side, 0), low + Vec2(side, side),
                               low + Vec2(0.5 * side, side - notch), low + Vec2(0, side)};
@@ -22,7 +22,7 @@ Pattern two_squares(double side, double notch) {
         pattern.pieces.push_back(piece);
     }
     for (Index i = 0; i < 5; ++i) {
-        Seam seam;
+        pattern::Seam seam;
         seam.number = i + 1;
         seam.sides[0] = {0, 0, i, 1, false, 0.0, {}};
         seam.sides[1] = {1, 0, i, 1, true, 0.0, {}};
@@ -38,7 +38,7 @@ ClipperLib::Path path_of(const std::vector<Vec2>& points) {
     return path;
 }
 
-std::vector<Vec2> polygon(const Pattern& pattern, const GlueTab& tab) {
+std::vector<Vec2> polygon(const pattern::Pattern& pattern, const GlueTab& tab) {
     const std::vector<Vec2>& points = pattern.pieces[at(tab.piece)].path(tab.path).points;
     std::vector<Vec2> ring;
     for (Index i = tab.count; i >= 0; --i)
@@ -61,7 +61,7 @@ double common_area(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
     return area;
 }
 
-void expect_no_overlap(const Pattern& pattern, const GlueTabs& tabs) {
+void expect_no_overlap(const pattern::Pattern& pattern, const GlueTabs& tabs) {
     for (std::size_t p = 0; p < pattern.pieces.size(); ++p)
         for (std::size_t i = 0; i < tabs.tabs[p].size(); ++i) {
             const std::vector<Vec2> tab = polygon(pattern, tabs.tabs[p][i]);
@@ -73,7 +73,7 @@ void expect_no_overlap(const Pattern& pattern, const GlueTabs& tabs) {
 
 TEST(GlueTabs, OneForEachSeam) {
     Progress progress;
-    const Pattern pattern = two_squares(50.0, 0.0);
+    const pattern::Pattern pattern = two_squares(50.0, 0.0);
     const GlueTabs tabs = make_tabs(pattern, 5.0, progress);
     EXPECT_EQ(tabs.tabs[0].size() + tabs.tabs[1].size(), 5u);
     EXPECT_EQ(tabs.seams_without, 0);
@@ -87,7 +87,7 @@ TEST(GlueTabs, OneForEachSeam) {
 TEST(GlueTabs, GiveWayAtConcaveCorners) {
     Progress progress;
     for (const double notch : {5.0, 15.0, 30.0, 45.0}) {
-        const Pattern pattern = two_squares(50.0, notch);
+        const pattern::Pattern pattern = two_squares(50.0, notch);
         const GlueTabs tabs = make_tabs(pattern, 8.0, progress);
         EXPECT_GE(tabs.tabs[0].size() + tabs.tabs[1].size(), 4u);
         expect_no_overlap(pattern, tabs);
@@ -96,7 +96,7 @@ TEST(GlueTabs, GiveWayAtConcaveCorners) {
 
 TEST(GlueTabs, NoRoomIsReported) {
     Progress progress;
-    const Pattern pattern = two_squares(1.0, 0.0); // sides far shorter than the depth
+    const pattern::Pattern pattern = two_squares(1.0, 0.0); // sides far shorter than the depth
     EXPECT_EQ(make_tabs(pattern, 5.0, progress).seams_without, 5);
 }
 
@@ -111,4 +111,4 @@ TEST(GlueTabs, CanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::sheet

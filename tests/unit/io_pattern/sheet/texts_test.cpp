@@ -8,7 +8,7 @@
 #include "sheet/layout.h"
 #include "unit/pattern_samples.h"
 
-namespace devseg {
+namespace devseg::sheet {
 namespace {
 
 ExportOptions numbered() {
@@ -18,7 +18,7 @@ ExportOptions numbered() {
 }
 
 PatternLayout laid_out(double scale, const ExportOptions& options) {
-    PatternOptions pattern_options;
+    pattern::PatternOptions pattern_options;
     pattern_options.mm_per_unit = scale;
     Progress progress;
     return lay_out_pattern(samples::two_pieces().pattern(pattern_options), options, progress);
@@ -36,7 +36,7 @@ TEST(Texts, EverySeamHasItsNumberOnBothSides) {
     EXPECT_EQ(number_count(layout), 2U);
     for (const SheetPiece& piece : layout.pieces) {
         EXPECT_GE(piece.names.size(), 1U);
-        for (const DrawingText& text : piece.numbers)
+        for (const writers::DrawingText& text : piece.numbers)
             EXPECT_GE(text.size, 2.5);
     }
     EXPECT_TRUE(layout.left_out.seams.empty());
@@ -60,10 +60,10 @@ SheetPiece strip(double width, double height) {
     return piece;
 }
 
-Pattern pattern_of(double width, double height) {
-    Pattern pattern;
+pattern::Pattern pattern_of(double width, double height) {
+    pattern::Pattern pattern;
     pattern.pieces.resize(1);
-    PatternPiece& piece = pattern.pieces[0];
+    pattern::PatternPiece& piece = pattern.pieces[0];
     piece.name = "P01";
     piece.outer.points = strip(width, height).cut[0];
     piece.label_position = Vec2(0.5 * width, 0.5 * height);
@@ -71,7 +71,7 @@ Pattern pattern_of(double width, double height) {
 }
 
 TEST(Texts, NamesCrossNoFoldsWhereThereIsRoom) {
-    const Pattern pattern = pattern_of(60.0, 40.0);
+    const pattern::Pattern pattern = pattern_of(60.0, 40.0);
     std::vector<SheetPiece> pieces{strip(60.0, 40.0)};
     pieces[0].mountains = {{Vec2(0, 20), Vec2(60, 20)}, {Vec2(30, 0), Vec2(30, 40)}};
     EXPECT_TRUE(add_texts(pattern, {}, pieces).pieces.empty());
@@ -82,7 +82,7 @@ TEST(Texts, NamesCrossNoFoldsWhereThereIsRoom) {
 }
 
 TEST(Texts, NamesMayCrossFoldsThatLeaveNoRoom) {
-    const Pattern pattern = pattern_of(30.0, 20.0);
+    const pattern::Pattern pattern = pattern_of(30.0, 20.0);
     std::vector<SheetPiece> pieces{strip(30.0, 20.0)};
     for (int i = 1; i < 20; ++i)
         pieces[0].valleys.push_back({Vec2(0, i), Vec2(30, i)});
@@ -92,11 +92,11 @@ TEST(Texts, NamesMayCrossFoldsThatLeaveNoRoom) {
 
 // One side of the seam lies in a slot too narrow for a number beside it.
 TEST(Texts, LinesLeadToNumbersThatLieApart) {
-    Pattern pattern = pattern_of(40.0, 30.0);
-    PatternPiece& piece = pattern.pieces[0];
+    pattern::Pattern pattern = pattern_of(40.0, 30.0);
+    pattern::PatternPiece& piece = pattern.pieces[0];
     piece.outer.points = {{0, 0},     {20, 0},    {20, 10}, {40, 10},
                           {40, 11.5}, {20, 11.5}, {20, 30}, {0, 30}};
-    Seam seam;
+    pattern::Seam seam;
     seam.number = 1;
     seam.label = "1";
     seam.sides[0] = {0, 0, 3, 1, false, 1.5, {}};
@@ -114,4 +114,4 @@ TEST(Texts, LinesLeadToNumbersThatLieApart) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::sheet

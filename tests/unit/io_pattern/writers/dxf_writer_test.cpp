@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace devseg {
+namespace devseg::writers {
 namespace {
 
 using Groups = std::vector<std::pair<int, std::string>>;
@@ -106,4 +106,4 @@ TEST(DxfWriter, CurvesAreSplinesOfRelease2000) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::writers

@@ -7,7 +7,7 @@
 #include "writers/pdf_objects.h"
 #include "writers/text_metrics.h"
 
-namespace devseg {
+namespace devseg::writers {
 namespace {
 
 Document small_document() {
@@ -91,4 +91,4 @@ TEST(TextMetrics, CharactersThatAFileCannotHoldAreReplaced) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::writers

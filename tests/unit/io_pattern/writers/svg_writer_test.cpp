@@ -15,7 +15,7 @@
 #include "unit/temporary_folder.h"
 #include "writers/file.h"
 
-namespace devseg {
+namespace devseg::writers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,8 +38,8 @@ Drawing small_drawing() {
     return drawing;
 }
 
-PatternPiece round_piece(const Vec2& centre, double radius, const std::string& name) {
-    PatternPiece piece;
+pattern::PatternPiece round_piece(const Vec2& centre, double radius, const std::string& name) {
+    pattern::PatternPiece piece;
     piece.name = name;
     const int count = 200;
     for (int i = 0; i < count; ++i) {
@@ -54,8 +54,8 @@ PatternPiece round_piece(const Vec2& centre, double radius, const std::string& n
 }
 
 // Two round pieces beside one another; the second has a quarter of the radius.
-Pattern two_pieces(double radius) {
-    Pattern pattern;
+pattern::Pattern two_pieces(double radius) {
+    pattern::Pattern pattern;
     pattern.pieces.push_back(round_piece(Vec2(radius, radius), radius, "P01"));
     pattern.pieces.push_back(round_piece(Vec2(2.5 * radius, radius), 0.25 * radius, "P02"));
     pattern.width = 2.75 * radius;
@@ -155,17 +155,17 @@ TEST(SvgWriter, LeavesNothingAfterAFailure) {
     fs::permissions(closed, fs::perms::owner_all);
 }
 
-Drawing drawn(const Pattern& pattern, const ExportOptions& options = {}) {
+Drawing drawn(const pattern::Pattern& pattern, const sheet::ExportOptions& options = {}) {
     Progress progress;
-    return draw_sheets(lay_out_pattern(pattern, options, progress), options);
+    return sheet::draw_sheets(sheet::lay_out_pattern(pattern, options, progress), options);
 }
 
 TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
     for (const double radius : {1e-9, 1e-3, 0.05, 2.0, 90.0, 1e5, 1e9}) {
-        const Pattern pattern = two_pieces(radius);
+        const pattern::Pattern pattern = two_pieces(radius);
         const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
-        for (const PatternPiece& piece : pattern.pieces) {
+        for (const pattern::PatternPiece& piece : pattern.pieces) {
             const double area = area_of(points_in_file(svg, piece.name + "-cut"));
             // y points down in the file: counterclockwise on the screen is negative here.
             EXPECT_NEAR(-area / piece.area, 1.0, 5e-4) << radius << ' ' << piece.name;
@@ -176,7 +176,7 @@ TEST(PatternDrawing, OutlinesHoldTheAreaAtAnySize) {
 
 TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
     for (const double radius : {0.05, 20.0, 300.0}) {
-        const Pattern pattern = two_pieces(radius);
+        const pattern::Pattern pattern = two_pieces(radius);
         const Drawing drawing = drawn(pattern);
         const std::string svg = svg_bytes(drawing);
         const std::vector<Vec2> square = points_in_file(svg, "check-square");
@@ -192,7 +192,7 @@ TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
         EXPECT_EQ(sheet.min(), Vec2(0, 0));
         EXPECT_EQ(sheet.max(), Vec2(drawing.width, drawing.height));
         EXPECT_TRUE(sheet.contains(box));
-        for (const PatternPiece& piece : pattern.pieces)
+        for (const pattern::PatternPiece& piece : pattern.pieces)
             for (const Vec2& p : points_in_file(svg, piece.name + "-cut")) {
                 EXPECT_GT(box.exteriorDistance(p), 9.9);
                 EXPECT_GT(std::min((p - sheet.min()).minCoeff(), (sheet.max() - p).minCoeff()),
@@ -202,7 +202,7 @@ TEST(PatternDrawing, CheckSquareIsTrueAndClearOfThePieces) {
 }
 
 TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
-    const Pattern pattern = two_pieces(25.0);
+    const pattern::Pattern pattern = two_pieces(25.0);
     const Drawing drawing = drawn(pattern);
     const DrawingLayer& layer = drawing.layers.back();
     ASSERT_EQ(layer.id, "text");
@@ -215,7 +215,7 @@ TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
     }
     EXPECT_LE(drawn(two_pieces(500.0)).layers.back().texts[0].size, 8.0);
 
-    ExportOptions silent;
+    sheet::ExportOptions silent;
     silent.labels = false;
     const std::string svg = svg_bytes(drawn(pattern, silent));
     EXPECT_EQ(svg.find("id=\"text\""), std::string::npos);
@@ -223,4 +223,4 @@ TEST(PatternDrawing, LabelsFitIntoTheirPieces) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::writers

@@ -11,7 +11,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::baselines {
 namespace {
 
 VsaResult vsa(const Mesh& mesh, int number, bool teleport = true) {
@@ -32,7 +32,7 @@ McgimResult mcgim(const Mesh& mesh, int number, int rounds = 100) {
 
 void expect_charts(const Mesh& mesh, const std::vector<Index>& chart, int number) {
     ASSERT_EQ(chart.size(), mesh.faces.size());
-    const ChartMap map = make_chart_map(mesh, chart, {}, false);
+    const atlas::ChartMap map = atlas::make_chart_map(mesh, chart, {}, false);
     EXPECT_EQ(map.count, number);
     EXPECT_EQ(std::set<Index>(chart.begin(), chart.end()).size(), static_cast<std::size_t>(number));
     EXPECT_TRUE(checks::is_valid(mesh, map));
@@ -83,7 +83,7 @@ TEST(Vsa, MoreRoundsAndMoreChartsFitBetter) {
 
 TEST(Vsa, TeleportsLeaveBadStarts) {
     // Most seeds land on a wavy plate, which hardly needs them; the ball does.
-    RawMesh plate = shapes::grid(40, 40, 12.0, 12.0);
+    mesh::RawMesh plate = shapes::grid(40, 40, 12.0, 12.0);
     for (Vec3& p : plate.points)
         p.z() = 0.02 * std::sin(p.x()) * std::sin(p.y());
     const Mesh mesh = checks::gated(
@@ -141,7 +141,7 @@ TEST(Mcgim, SeedsComeToRest) {
 }
 
 TEST(Baselines, EdgeConnectedChartsOnManyShapes) {
-    const std::vector<RawMesh> all = {
+    const std::vector<mesh::RawMesh> all = {
         shapes::grid(9, 7),    shapes::double_torus(),        shapes::moebius_strip(30, 3),
         shapes::tetrahedron(), shapes::plate_with_handle(),   shapes::finger(12, 20, 1.0, 9.0),
         shapes::sphere(3),     shapes::capped_cylinder(16, 6)};
@@ -181,4 +181,4 @@ TEST(Baselines, RefusalsAndCancelling) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::baselines

@@ -14,7 +14,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 namespace {
 
 using checks::contains;
@@ -32,7 +32,7 @@ DChartsOptions charts(int number, double max_fitting_error = 0.2) {
     return options;
 }
 
-RawMesh noisy_torus() {
+mesh::RawMesh noisy_torus() {
     return shapes::with_noise(shapes::torus(40, 24, 2.0, 0.8), 0.02, 21);
 }
 
@@ -51,15 +51,15 @@ void expect_promises(const Mesh& mesh, const DChartsOptions& options, const DCha
     }
     EXPECT_EQ(static_cast<Index>(used.size()), count);
     // Each label in one piece: as many pieces as labels.
-    const ChartMap map = make_chart_map(mesh, r.chart, {}, false);
+    const atlas::ChartMap map = atlas::make_chart_map(mesh, r.chart, {}, false);
     EXPECT_EQ(map.count, count);
     EXPECT_TRUE(checks::is_valid(mesh, map));
     // The proxies are the best ones of the final charts, and the errors are theirs.
-    std::vector<NormalMoments> moments(at(count));
+    std::vector<metrics::NormalMoments> moments(at(count));
     for (Index f = 0; f < mesh.face_count(); ++f)
         moments[at(r.chart[at(f)])].add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
     for (Index f = 0; f < mesh.face_count(); ++f) {
-        const ConicProxy proxy = fit_conic(moments[at(r.chart[at(f)])]);
+        const metrics::ConicProxy proxy = metrics::fit_conic(moments[at(r.chart[at(f)])]);
         ASSERT_NEAR(r.fitting_error[at(f)], proxy.fitting_error(mesh.face_normals[at(f)]), 1e-12);
     }
 }
@@ -69,15 +69,15 @@ double largest_error(const DChartsResult& r) {
 }
 
 TEST(DCharts, KeepsItsPromisesOnManyShapes) {
-    const std::vector<RawMesh> all = {shapes::grid(9, 7),
-                                      shapes::sphere(3),
-                                      noisy_torus(),
-                                      shapes::double_torus(),
-                                      shapes::cube(4),
-                                      shapes::tetrahedron(),
-                                      shapes::moebius_strip(30, 3),
-                                      shapes::plate_with_handle(),
-                                      shapes::finger(12, 20, 1.0, 9.0)};
+    const std::vector<mesh::RawMesh> all = {shapes::grid(9, 7),
+                                            shapes::sphere(3),
+                                            noisy_torus(),
+                                            shapes::double_torus(),
+                                            shapes::cube(4),
+                                            shapes::tetrahedron(),
+                                            shapes::moebius_strip(30, 3),
+                                            shapes::plate_with_handle(),
+                                            shapes::finger(12, 20, 1.0, 9.0)};
     for (std::size_t i = 0; i < all.size(); ++i) {
         SCOPED_TRACE("shape " + std::to_string(i));
         const Mesh mesh = checks::gated(all[i]);
@@ -185,7 +185,7 @@ TEST(DCharts, LargeHolesGetChartsOfTheirOwn) {
 }
 
 TEST(DCharts, ComponentsAreNeverJoined) {
-    const RawMesh raw =
+    const mesh::RawMesh raw =
         shapes::join(shapes::sphere(2), shapes::moved(shapes::cube(3), 0.5, Vec3(4, 0, 0)));
     const Mesh mesh = checks::gated(raw);
     for (const int number : {1, 2, 5}) { // one seed for two components: the other is a hole
@@ -212,7 +212,7 @@ TEST(DCharts, TheSameInputGivesTheSameChartsOnAnyNumberOfThreads) {
 }
 
 void expect_same_charts_in_any_face_order(const DChartsOptions& options) {
-    const RawMesh raw = noisy_torus();
+    const mesh::RawMesh raw = noisy_torus();
     const DChartsResult expected = segment(checks::gated(raw), options);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const std::vector<Index> order = shapes::random_order(raw.faces.size(), seed);
@@ -232,7 +232,7 @@ TEST(DCharts, TheOrderOfFacesDoesNotMatter) {
 }
 
 TEST(DCharts, SizeAndPlaceDoNotMatter) {
-    const RawMesh raw = noisy_torus();
+    const mesh::RawMesh raw = noisy_torus();
     const std::vector<Index> expected = segment(checks::gated(raw), charts(7)).chart;
     for (const double scale : {1e-9, 1e9})
         EXPECT_EQ(
@@ -250,7 +250,7 @@ TEST(DCharts, WeightsOfZeroAndTenAreAccepted) {
 }
 
 TEST(DCharts, FacesWithoutAreaAreLabelledAsWell) {
-    RawMesh raw = shapes::grid(6, 6);
+    mesh::RawMesh raw = shapes::grid(6, 6);
     for (Index i = 8; i < 13; ++i)
         raw.points[at(i)] = raw.points[at(i - 7)]; // a whole row collapses
     const Mesh mesh = checks::gated(raw);
@@ -306,4 +306,4 @@ TEST(DCharts, CancelsAtAnyCallback) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -8,18 +8,18 @@
 
 #include "devseg/atlas/border_path.h"
 #include "devseg/atlas/disks.h"
-#include "devseg/flatten/flatten.h"
-#include "devseg/metrics/segmentation.h"
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/flatten.h"
 #include "devseg/methods/dcharts/coarse_charts.h"
 #include "devseg/methods/dcharts/darts.h"
 #include "devseg/methods/dcharts/merging.h"
 #include "devseg/methods/dcharts/splitting.h"
+#include "devseg/metrics/segmentation.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 namespace {
 
 DevelopableCharts design(const Mesh& mesh, const DevelopableChartsOptions& options) {
@@ -34,18 +34,21 @@ DevelopableChartsOptions charts(int number) {
 }
 
 // Charts as they are flattened: cut to disks, and their map.
-FlattenResult flatten(const Mesh& mesh, const DevelopableCharts& design) {
+flatten::FlattenResult flatten(const Mesh& mesh, const DevelopableCharts& design) {
     Progress progress;
-    const ChartMap cut =
-        cut_charts_to_disks(mesh, make_chart_map(mesh, design.chart, design.seam, false), progress)
+    const atlas::ChartMap cut =
+        atlas::cut_charts_to_disks(
+            mesh, atlas::make_chart_map(mesh, design.chart, design.seam, false), progress)
             .charts;
-    return flatten_charts(mesh, cut, FlattenMethod::symmetric_dirichlet, progress);
+    return flatten::flatten_charts(mesh, cut, flatten::FlattenMethod::symmetric_dirichlet,
+                                   progress);
 }
 
-double stretch(const Mesh& mesh, const FlattenResult& result) {
+double stretch(const Mesh& mesh, const flatten::FlattenResult& result) {
     double sum = 0.0;
-    for (const FlatChart& flat : result.flat) {
-        const FlatteningProblem problem = make_flattening_problem(mesh, flat.surface);
+    for (const flatten::FlatChart& flat : result.flat) {
+        const flatten::FlatteningProblem problem =
+            flatten::make_flattening_problem(mesh, flat.surface);
         const double l2 = checks::l2_stretch(problem, flat.uv);
         sum += problem.total_area * l2 * l2;
     }
@@ -56,12 +59,12 @@ void expect_partition(const Mesh& mesh, const DevelopableCharts& r) {
     ASSERT_EQ(r.chart.size(), mesh.faces.size());
     ASSERT_EQ(r.seam.size(), mesh.twin.size());
     ASSERT_EQ(r.fitting_error.size(), mesh.faces.size());
-    const ChartMap map = make_chart_map(mesh, r.chart, r.seam, false);
+    const atlas::ChartMap map = atlas::make_chart_map(mesh, r.chart, r.seam, false);
     EXPECT_EQ(map.chart, r.chart); // edge-connected, numbers without gaps
     EXPECT_TRUE(checks::is_valid(mesh, map));
 }
 
-RawMesh noisy_torus() {
+mesh::RawMesh noisy_torus() {
     return shapes::with_noise(shapes::torus(40, 24, 2.0, 0.8), 0.02, 21);
 }
 
@@ -82,7 +85,7 @@ TEST(DevelopableCharts, PartsOfACreasedSolidAreItsCharts) {
 
 TEST(DevelopableCharts, PlanesAreJoinedAcrossStraightCreases) {
     // The faces of a long box: each fits a chart of its own, and all unfold into a net.
-    RawMesh raw = shapes::cube(6);
+    mesh::RawMesh raw = shapes::cube(6);
     for (Vec3& p : raw.points)
         p.z() *= 3.0;
     const Mesh mesh = checks::gated(raw);
@@ -102,7 +105,7 @@ TEST(DevelopableCharts, JoiningLowersTheNumberAndShortensSeams) {
     EXPECT_GT(joined.joins, 0);
     EXPECT_EQ(apart.joins, 0);
     const auto seams = [&](const DevelopableCharts& r) {
-        return seam_length(mesh, flatten(mesh, r).charts);
+        return metrics::seam_length(mesh, flatten(mesh, r).charts);
     };
     EXPECT_LT(seams(joined), seams(apart));
     expect_partition(mesh, joined);
@@ -113,7 +116,8 @@ TEST(DevelopableCharts, StraighteningShortensBorders) {
     DevelopableChartsOptions options = charts(8);
     options.merge_charts = options.add_darts = false;
     const auto seams = [&] {
-        return seam_length(mesh, make_chart_map(mesh, design(mesh, options).chart, {}, false));
+        return metrics::seam_length(
+            mesh, atlas::make_chart_map(mesh, design(mesh, options).chart, {}, false));
     };
     const double straight = seams();
     options.straighten_boundaries = false;
@@ -131,7 +135,7 @@ TEST(DevelopableCharts, BordersLoseTheStepsOfTheCoarseSurface) {
     const auto seams = [&](Straightening straightening) {
         const FullCharts full =
             working.carry_over(draft, grown.chart, 0.02, straightening, progress);
-        return seam_length(mesh, make_chart_map(mesh, full.chart, {}, false));
+        return metrics::seam_length(mesh, atlas::make_chart_map(mesh, full.chart, {}, false));
     };
     EXPECT_LT(seams(Straightening::fitting), seams(Straightening::none));
     EXPECT_LT(seams(Straightening::smooth), 0.98 * seams(Straightening::fitting));
@@ -148,8 +152,8 @@ TEST(DevelopableCharts, DartsLowerTheWorstSpot) {
     EXPECT_LT(draft.linf(), before);
     EXPECT_EQ(draft.tips.empty(), false);
     // What the draft says of the chart with its darts is what a new trial finds.
-    const TrialMap again =
-        try_chart(mesh, draft.faces.front(), draft.seam, TrialEffort{}, progress);
+    const judge::TrialMap again =
+        judge::try_chart(mesh, draft.faces.front(), draft.seam, judge::TrialEffort{}, progress);
     EXPECT_NEAR(again.linf, draft.map.front().linf, 1e-9);
 }
 
@@ -166,7 +170,8 @@ Mesh oloid(int steps, int along) {
         const double m = static_cast<double>(j) / along;
         return j == along ? on_second : (1.0 - m) * on_first + m * on_second;
     };
-    RawMesh soup; // both halves of the second circle's arc lie on each other: the gate joins them
+    mesh::RawMesh
+        soup; // both halves of the second circle's arc lie on each other: the gate joins them
     const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
         const Index first = static_cast<Index>(soup.points.size());
         soup.points.insert(soup.points.end(), {a, b, c});
@@ -180,14 +185,14 @@ Mesh oloid(int steps, int along) {
                 add(p[0], p[1], p[2]);
                 add(p[0], p[2], p[3]);
             }
-    return gate_mesh(soup).mesh;
+    return mesh::gate_mesh(soup).mesh;
 }
 
 TEST(DevelopableCharts, OneSeedDoesNotMakeMoreChartsThanManySeeds) {
     const Mesh mesh = oloid(40, 12);
     DevelopableChartsOptions options = charts(1);
     options.merge_threshold = 0.05;
-    const FlattenResult flat = flatten(mesh, design(mesh, options));
+    const flatten::FlattenResult flat = flatten(mesh, design(mesh, options));
     EXPECT_LE(flat.charts.count, 3);
     EXPECT_LT(stretch(mesh, flat), 1.001);
 }
@@ -200,8 +205,8 @@ TEST(DevelopableCharts, PathToBorderIsTheShortestOne) {
     const std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
     // The vertex at column 3, row 5 of the grid is 3 edges away from the border.
     const Index vertex = 5 * 11 + 3;
-    EXPECT_EQ(path_to_border(mesh, faces, seam, vertex).size(), 3U);
-    EXPECT_TRUE(path_to_border(mesh, faces, seam, 0).empty());
+    EXPECT_EQ(atlas::path_to_border(mesh, faces, seam, vertex).size(), 3U);
+    EXPECT_TRUE(atlas::path_to_border(mesh, faces, seam, 0).empty());
 }
 
 TEST(DevelopableCharts, SplittingDividesAChartAndTriesBoth) {
@@ -245,8 +250,9 @@ TEST(DevelopableCharts, TheWorstSpotKeepsItsBound) {
         ASSERT_TRUE(r.bounds_kept);
         expect_partition(mesh, r);
         double worst = 1.0;
-        for (const FlatChart& flat : flatten(mesh, r).flat) {
-            const FlatteningProblem problem = make_flattening_problem(mesh, flat.surface);
+        for (const flatten::FlatChart& flat : flatten(mesh, r).flat) {
+            const flatten::FlatteningProblem problem =
+                flatten::make_flattening_problem(mesh, flat.surface);
             for (std::size_t f = 0; f < problem.faces.size(); ++f)
                 worst = std::max(worst, 1.0 / checks::stretches(problem, flat.uv, f)[1]);
         }
@@ -267,7 +273,7 @@ TEST(DevelopableCharts, LargeSurfacesAreDecidedOnACoarseVersion) {
     const Mesh mesh = checks::gated(shapes::sphere(5));
     const DevelopableCharts r = design(mesh, charts(8));
     expect_partition(mesh, r);
-    const FlattenResult flat = flatten(mesh, r);
+    const flatten::FlattenResult flat = flatten(mesh, r);
     std::vector<double> area(flat.flat.size());
     for (std::size_t c = 0; c < flat.flat.size(); ++c) {
         EXPECT_TRUE(flat.flat[c].surface.is_disk());
@@ -290,8 +296,8 @@ TEST(DevelopableCharts, TheNumberOfThreadsDoesNotMatter) {
 }
 
 TEST(DevelopableCharts, SeveralComponentsAndOpenSurfacesWork) {
-    RawMesh raw = shapes::cone(24, 8);
-    const RawMesh other = shapes::moved(shapes::torus(20, 12), 1.0, Vec3(9, 0, 0));
+    mesh::RawMesh raw = shapes::cone(24, 8);
+    const mesh::RawMesh other = shapes::moved(shapes::torus(20, 12), 1.0, Vec3(9, 0, 0));
     const Index base = static_cast<Index>(raw.points.size());
     raw.points.insert(raw.points.end(), other.points.begin(), other.points.end());
     for (const Triangle& t : other.faces)
@@ -304,7 +310,7 @@ TEST(DevelopableCharts, SeveralComponentsAndOpenSurfacesWork) {
 
 // One spike on a large plate: a cone fits all faces but a few.
 TEST(DevelopableCharts, ASpikeIsCutUntilTheBoundHolds) {
-    RawMesh raw = shapes::grid(60, 60, 60.0, 60.0);
+    mesh::RawMesh raw = shapes::grid(60, 60, 60.0, 60.0);
     raw.points[60 * 31 + 30].z() += 1.5;
     const Mesh mesh = checks::gated(raw);
     DevelopableChartsOptions options = charts(0);
@@ -339,4 +345,4 @@ TEST(DevelopableCharts, CanBeCancelled) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::dcharts

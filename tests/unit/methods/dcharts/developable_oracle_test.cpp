@@ -12,23 +12,24 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::dcharts {
 namespace {
 
 using checks::Disk;
 using shapes::pi;
 
-constexpr FlattenMethod methods[] = {FlattenMethod::symmetric_dirichlet, FlattenMethod::lscm,
-                                     FlattenMethod::abf, FlattenMethod::arap, FlattenMethod::lpfb};
+constexpr flatten::FlattenMethod methods[] = {
+    flatten::FlattenMethod::symmetric_dirichlet, flatten::FlattenMethod::lscm,
+    flatten::FlattenMethod::abf, flatten::FlattenMethod::arap, flatten::FlattenMethod::lpfb};
 
-FlattenResult flatten(const Disk& disk, FlattenMethod method) {
+flatten::FlattenResult flatten(const Disk& disk, flatten::FlattenMethod method) {
     Progress progress;
-    return flatten_charts(disk.mesh, disk.charts, method, progress);
+    return flatten::flatten_charts(disk.mesh, disk.charts, method, progress);
 }
 
 // A grid of which ruling i, point j is where `place` puts it.
-RawMesh ruled(Index rulings, Index points, const std::function<Vec3(Index, Index)>& place) {
-    RawMesh mesh = shapes::grid(rulings, points);
+mesh::RawMesh ruled(Index rulings, Index points, const std::function<Vec3(Index, Index)>& place) {
+    mesh::RawMesh mesh = shapes::grid(rulings, points);
     for (Index i = 0; i <= rulings; ++i)
         for (Index j = 0; j <= points; ++j)
             mesh.points[at(j * (rulings + 1) + i)] = place(i, j);
@@ -36,7 +37,7 @@ RawMesh ruled(Index rulings, Index points, const std::function<Vec3(Index, Index
 }
 
 // A part of a cylinder, what is above a slanting plane mirrored at it: folded along an ellipse.
-RawMesh curved_crease() {
+mesh::RawMesh curved_crease() {
     constexpr Index columns = 30;
     constexpr Index rows = 12; // half of them above the crease
     constexpr double slope = 0.4;
@@ -56,7 +57,7 @@ RawMesh curved_crease() {
 
 // The rulings are the edges of a polygon on a helix, prolonged: two that follow each other meet in
 // a vertex of the polygon, and so the strip between them is flat.
-RawMesh tangent_developable() {
+mesh::RawMesh tangent_developable() {
     const auto helix = [](Index i) {
         const double t = 0.12 * i;
         return Vec3(std::cos(t), std::sin(t), 0.5 * t);
@@ -115,11 +116,11 @@ TEST(DevelopableOracle, TheSurfacesAreDevelopableAndBent) {
 
 TEST(DevelopableOracle, EveryMethodFindsTheIsometry) {
     for (const Oracle& oracle : oracles())
-        for (const FlattenMethod method : methods) {
+        for (const flatten::FlattenMethod method : methods) {
             SCOPED_TRACE(oracle.name + ", method " + std::to_string(static_cast<int>(method)));
-            const FlattenResult r = flatten(oracle.disk, method);
+            const flatten::FlattenResult r = flatten(oracle.disk, method);
             ASSERT_EQ(r.flat.size(), 1U);
-            const FlatChart& chart = r.flat.front();
+            const flatten::FlatChart& chart = r.flat.front();
             EXPECT_EQ(r.cuts, 0);
             EXPECT_FALSE(chart.mended);
             EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
@@ -132,11 +133,12 @@ TEST(DevelopableOracle, EveryMethodFindsTheIsometry) {
 
 // With LPFB both sides of every seam are equally long, in charts that are far from developable too.
 TEST(DevelopableOracle, LpfbKeepsEveryBoundaryEdgeOfEveryChart) {
-    for (const RawMesh& raw : {shapes::hemisphere(20, 8), shapes::torus(14, 9), shapes::sphere(2),
-                               shapes::with_noise(shapes::grid(12, 12), 0.05, 3)}) {
+    for (const mesh::RawMesh& raw :
+         {shapes::hemisphere(20, 8), shapes::torus(14, 9), shapes::sphere(2),
+          shapes::with_noise(shapes::grid(12, 12), 0.05, 3)}) {
         const Disk disk(raw);
-        const FlattenResult r = flatten(disk, FlattenMethod::lpfb);
-        for (const FlatChart& chart : r.flat) {
+        const flatten::FlattenResult r = flatten(disk, flatten::FlattenMethod::lpfb);
+        for (const flatten::FlatChart& chart : r.flat) {
             EXPECT_FALSE(chart.mended);
             for (const Index h : chart.surface.loops.front()) {
                 const double length = disk.mesh.edge_length(chart.surface.mesh_half_edge(h));
@@ -149,4 +151,4 @@ TEST(DevelopableOracle, LpfbKeepsEveryBoundaryEdgeOfEveryChart) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::dcharts

@@ -9,11 +9,11 @@
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::growth {
 namespace {
 
 // The sum that expansion moves lower, recomputed; smooth surfaces only (no crease factor).
-double sum_of(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
+double sum_of(const Mesh& mesh, const std::vector<metrics::ConicProxy>& proxies,
               const ExpansionOptions& options, const std::vector<Index>& chart) {
     double sum = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
@@ -24,8 +24,8 @@ double sum_of(const Mesh& mesh, const std::vector<ConicProxy>& proxies,
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         const Index twin = mesh.twin[at(h)];
         if (twin > h && chart[at(h / 3)] != chart[at(twin / 3)])
-            sum += options.length_weight * std::sqrt(mesh.total_area) * crease_factor(mesh, h) *
-                   mesh.edge_length(h);
+            sum += options.length_weight * std::sqrt(mesh.total_area) *
+                   atlas::crease_factor(mesh, h) * mesh.edge_length(h);
     }
     return sum;
 }
@@ -44,7 +44,7 @@ TEST(Expansion, NeverRaisesTheSumAndLowersABadStart) {
         chart[f] = static_cast<Index>(f % 5);
     ExpansionOptions options;
     options.max_rounds = 1; // proxies stay those of the start
-    const std::vector<ConicProxy> proxies = fit_conics(mesh, chart, 5);
+    const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, chart, 5);
     const double before = sum_of(mesh, proxies, options, chart);
     Progress progress;
     relabel_by_expansion(mesh, proxies, options, chart, progress);
@@ -60,7 +60,7 @@ TEST(Expansion, TwoLabelsEndAtTheLeastCut) {
     // labels one move is exact, and the crease is both where faces fit and where borders are cheap.
     const Mesh mesh = checks::gated(shapes::cube(6));
     std::vector<Index> chart(mesh.faces.size());
-    std::vector<ConicProxy> proxies(6);
+    std::vector<metrics::ConicProxy> proxies(6);
     std::vector<Index> wanted(chart.size());
     for (Index f = 0; f < mesh.face_count(); ++f) {
         Index axis = 0;
@@ -79,7 +79,7 @@ TEST(CreaseFactor, IsOneOnPlanesAndATenthOnRightAngles) {
     for (Index h = 0; h < mesh.half_edge_count(); ++h) {
         const bool crease =
             mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(mesh.twin[at(h)] / 3)]) < 0.5;
-        EXPECT_NEAR(crease_factor(mesh, h), crease ? 0.1 : 1.0, 1e-12);
+        EXPECT_NEAR(atlas::crease_factor(mesh, h), crease ? 0.1 : 1.0, 1e-12);
     }
 }
 
@@ -89,7 +89,7 @@ TEST(Fragments, SmallPiecesGoToTheNeighbourWithTheLongestBorder) {
     for (const Vec3& centre : mesh.face_centers)
         label.push_back(centre.x() < 0.0 ? 0 : 1);
     label[5] = 7; // one face, all of whose neighbours have the same label
-    const std::vector<Index> result = absorb_fragments(mesh, label, 0.01);
+    const std::vector<Index> result = atlas::absorb_fragments(mesh, label, 0.01);
     EXPECT_EQ(1 + *std::max_element(result.begin(), result.end()), 2);
     for (Index h = 15; h < 18; ++h)
         if (mesh.twin[at(h)] >= 0) {
@@ -98,17 +98,17 @@ TEST(Fragments, SmallPiecesGoToTheNeighbourWithTheLongestBorder) {
 }
 
 TEST(Fragments, PiecesWithoutNeighboursAndLargeOnesStay) {
-    RawMesh raw = shapes::grid(10, 10);
+    mesh::RawMesh raw = shapes::grid(10, 10);
     const Index base = static_cast<Index>(raw.points.size());
     for (const Vec3& p : {Vec3(5, 5, 5), Vec3(5.01, 5, 5), Vec3(5, 5.01, 5)})
         raw.points.push_back(p);
     raw.faces.push_back({base, base + 1, base + 2});
     const Mesh mesh = checks::gated(raw);
     const std::vector<Index> label(mesh.faces.size(), 3);
-    const std::vector<Index> result = absorb_fragments(mesh, label, 0.5);
+    const std::vector<Index> result = atlas::absorb_fragments(mesh, label, 0.5);
     EXPECT_EQ(result.front(), 0);
     EXPECT_EQ(result.back(), 1);
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::growth

@@ -8,7 +8,7 @@
 
 #include "unit/mesh_edits.h"
 
-namespace devseg {
+namespace devseg::growth {
 namespace {
 
 using shapes::Random;
@@ -109,4 +109,4 @@ TEST(Tournament, StartsWithoutCandidates) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::growth

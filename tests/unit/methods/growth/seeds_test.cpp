@@ -9,7 +9,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::growth {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -39,7 +39,7 @@ std::vector<std::vector<double>> all_distances(const Mesh& mesh) {
 }
 
 TEST(Seeds, EachIsFarthestFromThoseBefore) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::sphere(1), shapes::torus(8, 6), shapes::plate_with_handle()}) {
         const Mesh mesh = checks::gated(shapes::with_noise(raw, 0.05, 2));
         const auto distances = all_distances(mesh);
@@ -59,7 +59,7 @@ TEST(Seeds, EachIsFarthestFromThoseBefore) {
 }
 
 TEST(Seeds, AllFacesWhenAsManyAreAskedFor) {
-    for (const RawMesh& raw : {shapes::grid(4, 3), shapes::tetrahedron(), shapes::cube(2)}) {
+    for (const mesh::RawMesh& raw : {shapes::grid(4, 3), shapes::tetrahedron(), shapes::cube(2)}) {
         const Mesh mesh = checks::gated(raw);
         for (const std::uint32_t random_seed : {0U, 9U}) {
             const std::vector<Index> seeds = seeds_of(mesh, mesh.face_count(), random_seed);
@@ -71,7 +71,7 @@ TEST(Seeds, AllFacesWhenAsManyAreAskedFor) {
 
 TEST(Seeds, FacesThatCoincideAreStillDistinct) {
     // Four equal faces beside a square: most centroids coincide.
-    RawMesh raw;
+    mesh::RawMesh raw;
     raw.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     for (int i = 0; i < 4; ++i) {
         const Index n = static_cast<Index>(raw.points.size());
@@ -87,11 +87,11 @@ TEST(Seeds, FacesThatCoincideAreStillDistinct) {
 }
 
 TEST(Seeds, EveryComponentGetsOneBeforeAnyGetsTwo) {
-    RawMesh raw = shapes::grid(6, 6, 10.0, 10.0);
+    mesh::RawMesh raw = shapes::grid(6, 6, 10.0, 10.0);
     for (int i = 0; i < 4; ++i)
         raw = shapes::join(raw, shapes::moved(shapes::tetrahedron(), 0.01, Vec3(i, 0, 20)));
     const Mesh mesh = checks::gated(raw);
-    const ChartMap parts = checks::components(mesh);
+    const atlas::ChartMap parts = checks::components(mesh);
     std::set<Index> reached;
     for (const Index seed : seeds_of(mesh, 5))
         reached.insert(parts.chart[at(seed)]);
@@ -99,7 +99,7 @@ TEST(Seeds, EveryComponentGetsOneBeforeAnyGetsTwo) {
 }
 
 TEST(Seeds, TheStartDoesNotDependOnTheOrderOfFaces) {
-    const RawMesh raw = shapes::with_noise(shapes::sphere(2), 0.1, 3);
+    const mesh::RawMesh raw = shapes::with_noise(shapes::sphere(2), 0.1, 3);
     const Mesh mesh = checks::gated(raw);
     const std::vector<Index> seeds = seeds_of(mesh, 10);
     for (std::uint32_t seed = 1; seed < 5; ++seed) {
@@ -112,7 +112,7 @@ TEST(Seeds, TheStartDoesNotDependOnTheOrderOfFaces) {
 }
 
 TEST(Seeds, ZeroStartsAtTheFaceFarthestFromTheCentre) {
-    RawMesh raw = shapes::sphere(2);
+    mesh::RawMesh raw = shapes::sphere(2);
     raw.points[100] *= 3.0; // a spike
     const Mesh mesh = checks::gated(raw);
     const Triangle& t = mesh.faces[at(seeds_of(mesh, 1).at(0))];
@@ -131,7 +131,7 @@ TEST(Seeds, RandomSeedsGiveDifferentStartsAndTheSameOnesTwice) {
 
 // A component without seeds is infinitely far, all of it: no face may come first by its number.
 TEST(Seeds, OfSeveralComponentsDoNotDependOnTheOrderOfFaces) {
-    const RawMesh raw = shapes::with_noise(
+    const mesh::RawMesh raw = shapes::with_noise(
         shapes::join(shapes::sphere(1), shapes::moved(shapes::torus(8, 6), 0.5, {5.0, 1.0, -2.0})),
         0.05, 3);
     const Mesh mesh = checks::gated(raw);
@@ -148,4 +148,4 @@ TEST(Seeds, OfSeveralComponentsDoNotDependOnTheOrderOfFaces) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::growth

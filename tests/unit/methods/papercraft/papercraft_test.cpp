@@ -3,16 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/atlas/slit_closing.h"
 #include "devseg/develop/deform.h"
 #include "devseg/mesh/angle_defects.h"
-#include "devseg/methods/papercraft/papercraft.h"
-#include "devseg/atlas/slit_closing.h"
 #include "devseg/methods/growth/vertex_growth.h"
+#include "devseg/methods/papercraft/papercraft.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::papercraft {
 namespace {
 
 Mesh lumpy_sphere() {
@@ -27,7 +27,7 @@ PapercraftResult segment(const Mesh& mesh, int charts, double slit_threshold = 0
     return segment_papercraft(mesh, options, progress);
 }
 
-void expect_disks(const Mesh& mesh, const ChartMap& charts) {
+void expect_disks(const Mesh& mesh, const atlas::ChartMap& charts) {
     EXPECT_TRUE(checks::is_valid(mesh, charts));
     for (Index c = 0; c < charts.count; ++c) {
         const checks::Topology topology = checks::topology(mesh, charts, c);
@@ -37,7 +37,7 @@ void expect_disks(const Mesh& mesh, const ChartMap& charts) {
 }
 
 TEST(Papercraft, ChartsAreAsManyAsWantedAndDisks) {
-    for (const RawMesh& raw :
+    for (const mesh::RawMesh& raw :
          {shapes::with_noise(shapes::sphere(3), 0.02, 5), shapes::double_torus(),
           shapes::with_noise(shapes::torus(40, 20), 0.03, 1), shapes::hemisphere(24, 8),
           shapes::plate_with_handle()}) {
@@ -52,7 +52,7 @@ TEST(Papercraft, ChartsAreAsManyAsWantedAndDisks) {
 }
 
 TEST(Papercraft, EveryComponentHasAChart) {
-    RawMesh raw = shapes::sphere(2);
+    mesh::RawMesh raw = shapes::sphere(2);
     for (int i = 1; i < 5; ++i)
         raw = shapes::join(raw, shapes::moved(shapes::tetrahedron(), 0.3, Vec3(3.0 * i, 0, 0)));
     raw = shapes::join(raw, shapes::moved(shapes::grid(1, 1), 1.0, Vec3(0, 5, 0)));
@@ -63,7 +63,7 @@ TEST(Papercraft, EveryComponentHasAChart) {
 }
 
 TEST(Papercraft, ADevelopableSurfaceIsOneChartWithoutSlits) {
-    for (const RawMesh& raw : {shapes::folded_strip(8, 6, 0.7), shapes::grid(9, 7)}) {
+    for (const mesh::RawMesh& raw : {shapes::folded_strip(8, 6, 0.7), shapes::grid(9, 7)}) {
         const Mesh mesh = checks::gated(raw);
         const PapercraftResult r = segment(mesh, 1);
         EXPECT_EQ(r.charts.count, 1);
@@ -73,10 +73,10 @@ TEST(Papercraft, ADevelopableSurfaceIsOneChartWithoutSlits) {
 
 TEST(Papercraft, CornersNeverComeInside) {
     const Mesh mesh = checks::gated(shapes::cube(6));
-    const std::vector<double> defect = angle_defects(mesh);
+    const std::vector<double> defect = mesh::angle_defects(mesh);
     for (const int number : {1, 3}) {
         const PapercraftResult r = segment(mesh, number, 1000.0);
-        for (const Index v : inner_vertices(mesh, r.charts.seam))
+        for (const Index v : develop::inner_vertices(mesh, r.charts.seam))
             EXPECT_NEAR(defect[at(v)], 0.0, 1e-9);
     }
 }
@@ -84,7 +84,7 @@ TEST(Papercraft, CornersNeverComeInside) {
 TEST(Papercraft, FacesShareTheDefectsOfTheirVertices) {
     const Mesh mesh = lumpy_sphere();
     double all = 0.0;
-    for (const double d : angle_defects(mesh))
+    for (const double d : mesh::angle_defects(mesh))
         all += std::abs(d);
     double shared = 0.0;
     for (const double d : segment(mesh, 4).defect_share)
@@ -118,12 +118,12 @@ TEST(VertexGrowth, AChartTakesTheCheapestVertexOfItsBorder) {
             seed = static_cast<Index>(v);
     }
     ASSERT_GE(seed, 0);
-    VertexGrowth growth(mesh, cost);
+    growth::VertexGrowth growth(mesh, cost);
     Progress progress;
     const std::vector<Index> seeds = growth.find_seeds(1.0, progress);
     // The first chart is the cheap column, and no more.
     EXPECT_EQ(cost[at(seeds.front())], 0.0);
-    const VertexCharts grown = growth.grow({seed}, progress);
+    const growth::VertexCharts grown = growth.grow({seed}, progress);
     for (std::size_t v = 0; v < cost.size(); ++v)
         if (cost[v] == 0.0) {
             EXPECT_EQ(grown.inside[v], 0);
@@ -168,7 +168,8 @@ TEST(SlitClosing, TheCostIsThatOfEquation6) {
             Slit slit(4);
             ASSERT_EQ(slit.cut_edges(), 4);
             const double threshold = (expected[l - 1] + side) / slit.mesh.unit_length;
-            const ClosedSlits closed = close_slits(slit.mesh, slit.cost, threshold, slit.seam);
+            const atlas::ClosedSlits closed =
+                atlas::close_slits(slit.mesh, slit.cost, threshold, slit.seam);
             EXPECT_EQ(closed.closed_edges, side > 0.0 ? l : l - 1);
             EXPECT_EQ(slit.cut_edges(), 4 - closed.closed_edges);
         }
@@ -185,4 +186,4 @@ TEST(SlitClosing, BordersAndTheLastCutOfAClosedChartStay) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::papercraft

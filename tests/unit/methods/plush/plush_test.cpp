@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/flatten/flatten.h"
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/flatten.h"
 #include "devseg/methods/plush/carry_seams.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/patch_trial.h"
@@ -19,11 +19,11 @@
 #include "unit/shapes.h"
 #include "unit/temporary_folder.h"
 
-namespace devseg {
+namespace devseg::plush {
 namespace {
 
 // Two balls on one axis with a waist between them, like a doll without arms.
-RawMesh doll(Index around = 32) {
+mesh::RawMesh doll(Index around = 32) {
     std::vector<Vec2> profile;
     for (int i = 0; i <= 40; ++i) {
         const double t = shapes::pi * i / 40.0;
@@ -49,11 +49,13 @@ void expect_promises(const Mesh& mesh, const PlushOptions& options, const PlushS
     EXPECT_TRUE(seams.all_developable);
     // 'Charts: Flatten' makes the maps that were accepted.
     Progress progress;
-    const FlattenResult flat = flatten_charts(mesh, seams.charts, FlattenMethod::lpfb, progress);
+    const flatten::FlattenResult flat =
+        flatten::flatten_charts(mesh, seams.charts, flatten::FlattenMethod::lpfb, progress);
     EXPECT_EQ(flat.cuts, 0);
     EXPECT_EQ(flat.charts.count, seams.charts.count);
-    for (const FlatChart& chart : flat.flat) {
-        const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
+    for (const flatten::FlatChart& chart : flat.flat) {
+        const flatten::FlatteningProblem problem =
+            flatten::make_flattening_problem(mesh, chart.surface);
         EXPECT_EQ(checks::count_flips(problem.faces, chart.uv), 0);
         double plane = 0.0;
         std::vector<double> ratio;
@@ -79,7 +81,7 @@ void expect_promises(const Mesh& mesh, const PlushOptions& options, const PlushS
 }
 
 TEST(PlushSeams, PatchesOfBallAndDollLieFlat) {
-    for (const RawMesh& raw : {shapes::sphere(3), doll()}) {
+    for (const mesh::RawMesh& raw : {shapes::sphere(3), doll()}) {
         const Mesh mesh = checks::gated(raw);
         const PlushOptions options;
         const PlushSeams seams = segment(mesh, options);
@@ -93,8 +95,8 @@ TEST(PlushSeams, PatchesOfBallAndDollLieFlat) {
 
 // A body with two arms and two legs, the same on both sides of the plane x = 0 only; the mesh is
 // not symmetric.
-RawMesh animal() {
-    RawMesh raw = shapes::sphere(4);
+mesh::RawMesh animal() {
+    mesh::RawMesh raw = shapes::sphere(4);
     const std::vector<std::pair<Vec3, double>> limbs = {
         {{0.8, 0.5, 0.33}, 1.1}, {{0.6, -0.75, 0.2}, 0.9}, {{0.0, 0.9, -0.43}, 0.5}};
     for (Vec3& p : raw.points) {
@@ -233,7 +235,7 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
                         .norm() <
                 1e-9)
             mark(coarse, h, 1, seam);
-    const FaceComponents before = find_patches(coarse, seam);
+    const mesh::FaceComponents before = find_patches(coarse, seam);
     Progress progress;
     progress.begin_phase("carrying", 1.0);
     SeamMarks carried = carry_seams(coarse, seam, fine, build_vertex_graph(fine),
@@ -344,7 +346,7 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
 }
 
 TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
-    RawMesh raw = shapes::torus(40, 20);
+    mesh::RawMesh raw = shapes::torus(40, 20);
     for (Vec3& p : raw.points)
         p.x() += 0.3 * p.y() * p.y(); // bent: left and right stay, front and back differ
     const Mesh mesh = checks::gated(raw);
@@ -376,7 +378,7 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
 }
 
 TEST(Symmetry, NoPlaneWhereThereIsNone) {
-    RawMesh raw = shapes::sphere(3);
+    mesh::RawMesh raw = shapes::sphere(3);
     for (Vec3& p : raw.points)
         p += 0.5 * Vec3(std::sin(2.0 * p.y() + p.z()), std::sin(3.0 * p.z() + 1.0), p.x() * p.y());
     Progress progress;
@@ -432,7 +434,7 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
     }
     profile.emplace_back(0.0, -1.0);
     std::reverse(profile.begin(), profile.end());
-    const RawMesh raw = shapes::revolve(profile, 32);
+    const mesh::RawMesh raw = shapes::revolve(profile, 32);
     const Mesh mesh = checks::gated(raw);
     Index tip = 0;
     for (Index v = 0; v < mesh.vertex_count(); ++v)
@@ -453,7 +455,7 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
 }
 
 TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
-    const auto accepted = [](const RawMesh& raw) {
+    const auto accepted = [](const mesh::RawMesh& raw) {
         const checks::Disk disk(raw);
         return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, false, Progress{})
             .accepted;
@@ -522,4 +524,4 @@ TEST(SeamSmoothing, TeethGo) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::plush

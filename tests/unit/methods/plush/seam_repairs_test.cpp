@@ -13,7 +13,7 @@
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::plush {
 namespace {
 
 // The edges between the faces for which `inside` holds and others.
@@ -41,7 +41,7 @@ std::vector<double> lengths(const Mesh& mesh) {
     return result;
 }
 
-RawMesh moved(RawMesh raw, double scale) {
+mesh::RawMesh moved(mesh::RawMesh raw, double scale) {
     const Eigen::AngleAxisd turn(1.1, Vec3(0.3, -0.5, 0.8).normalized());
     for (Vec3& p : raw.points)
         p = scale * (turn * p) + Vec3(5.0, -3.0, 2.0);
@@ -50,37 +50,39 @@ RawMesh moved(RawMesh raw, double scale) {
 
 Mesh framed(const Mesh& mesh) {
     const Progress progress;
-    return in_frame(mesh, canonical_frame(mesh, progress), progress);
+    return mesh::in_frame(mesh, mesh::canonical_frame(mesh, progress), progress);
 }
 
 TEST(CanonicalFrame, MovedMeshesAreTheSameInIt) {
-    RawMesh egg = shapes::sphere(3);
+    mesh::RawMesh egg = shapes::sphere(3);
     for (Vec3& p : egg.points)
         p = p.cwiseProduct(Vec3(1.0, 1.3, 0.8 + 0.2 * p.y()));
-    for (const RawMesh& raw : {egg, shapes::sphere(3), shapes::cube(4), shapes::torus(20, 10)}) {
+    for (const mesh::RawMesh& raw :
+         {egg, shapes::sphere(3), shapes::cube(4), shapes::torus(20, 10)}) {
         const Mesh mesh = checks::gated(raw);
         const Mesh other = checks::gated(moved(raw, 0.7));
         const Mesh own = framed(mesh);
         EXPECT_EQ(own.points, framed(other).points);
         EXPECT_NEAR(own.total_area, 1.0, 1e-6);
         EXPECT_NEAR(own.unit_length, mesh.unit_length * std::sqrt(mesh.total_area), 1e-9);
-        EXPECT_NEAR(canonical_frame(mesh, Progress()).axes.determinant(), 1.0, 1e-12); // no mirror image
+        EXPECT_NEAR(mesh::canonical_frame(mesh, Progress()).axes.determinant(), 1.0,
+                    1e-12); // no mirror image
     }
 }
 
 TEST(CanonicalFrame, NeedlesStayAsTheyAre) {
-    RawMesh raw = shapes::grid(4, 1);
+    mesh::RawMesh raw = shapes::grid(4, 1);
     for (Vec3& p : raw.points)
         p.y() *= 1e-15;
     const Mesh mesh = checks::gated(raw);
-    EXPECT_TRUE(canonical_frame(mesh, Progress()).is_identity);
+    EXPECT_TRUE(mesh::canonical_frame(mesh, Progress()).is_identity);
     EXPECT_EQ(framed(mesh).points, mesh.points);
     Progress progress;
     EXPECT_GE(segment_plush_seams(mesh, {}, {}, {}, progress).charts.count, 1);
 }
 
 TEST(CanonicalFrame, MovedModelsHaveTheSamePlushSeams) {
-    const RawMesh raw = shapes::finger(24, 30, 0.3, 2.0);
+    const mesh::RawMesh raw = shapes::finger(24, 30, 0.3, 2.0);
     Progress progress;
     const PlushSeams seams = segment_plush_seams(checks::gated(raw), {}, {}, {}, progress);
     Progress again;
@@ -126,7 +128,7 @@ TEST(MendPatch, PatchesThatFitStay) {
 }
 
 // All faces as one patch, mended: the patches afterwards keep the limits.
-std::size_t mended_patches(const RawMesh& raw, double max_area_change) {
+std::size_t mended_patches(const mesh::RawMesh& raw, double max_area_change) {
     const Mesh mesh = checks::gated(raw);
     std::vector<Index> faces;
     for (Index f = 0; f < mesh.face_count(); ++f)
@@ -162,7 +164,7 @@ TEST(MendPatch, BallsAreLeftToOthers) {
 
 // A surface with what seams on it are judged by.
 struct Trials {
-    explicit Trials(const RawMesh& raw) : surface{checks::gated(raw), {}} {}
+    explicit Trials(const mesh::RawMesh& raw) : surface{checks::gated(raw), {}} {}
 
     const Mesh& mesh() const { return surface.mesh; }
     double unit() const { return 1.0 / mesh().unit_length; }
@@ -298,4 +300,4 @@ TEST(Remnants, GoToTheirNeighbourWithoutTheirDarts) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::plush

@@ -15,7 +15,7 @@
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
 
-namespace devseg {
+namespace devseg::t_flooding {
 namespace {
 
 TFloodingResult segment(const Mesh& mesh, const TFloodingOptions& options) {
@@ -29,7 +29,7 @@ TFloodingOptions charts(int number) {
     return options;
 }
 
-RawMesh noisy_torus() {
+mesh::RawMesh noisy_torus() {
     return shapes::with_noise(shapes::torus(60, 36, 2.0, 0.8), 0.01, 21);
 }
 
@@ -37,28 +37,29 @@ void expect_promises(const Mesh& mesh, const TFloodingOptions& options, const TF
     ASSERT_EQ(r.chart.size(), mesh.faces.size());
     const Index count = static_cast<Index>(r.chart_gauss_area.size());
     EXPECT_GE(count, options.charts_number);
-    const ChartMap map = make_chart_map(mesh, r.chart, {}, false);
+    const atlas::ChartMap map = atlas::make_chart_map(mesh, r.chart, {}, false);
     EXPECT_EQ(map.count, count); // as many pieces as labels
     EXPECT_TRUE(checks::is_valid(mesh, map));
     EXPECT_LE(r.rounds, options.max_iterations);
-    const GaussAreas areas = compute_gauss_areas(mesh, options.crease_angle * shapes::pi / 180.0);
-    EXPECT_EQ(r.chart_gauss_area, chart_gauss_areas(mesh, areas, r.chart, count));
-    EXPECT_EQ(r.gauss_area_std, standard_deviation(r.chart_gauss_area));
+    const metrics::GaussAreas areas =
+        metrics::compute_gauss_areas(mesh, options.crease_angle * shapes::pi / 180.0);
+    EXPECT_EQ(r.chart_gauss_area, metrics::chart_gauss_areas(mesh, areas, r.chart, count));
+    EXPECT_EQ(r.gauss_area_std, metrics::standard_deviation(r.chart_gauss_area));
     EXPECT_EQ(r.face_gauss_area, areas.face);
     EXPECT_LE(std::accumulate(r.chart_gauss_area.begin(), r.chart_gauss_area.end(), 0.0),
               r.total_gauss_area * (1.0 + 1e-12));
 }
 
 TEST(TFlooding, KeepsItsPromisesOnManyShapes) {
-    const std::vector<RawMesh> all = {shapes::grid(9, 7),
-                                      shapes::sphere(3),
-                                      noisy_torus(),
-                                      shapes::double_torus(),
-                                      shapes::cube(4),
-                                      shapes::tetrahedron(),
-                                      shapes::moebius_strip(30, 3),
-                                      shapes::plate_with_handle(),
-                                      shapes::capped_cylinder(16, 6)};
+    const std::vector<mesh::RawMesh> all = {shapes::grid(9, 7),
+                                            shapes::sphere(3),
+                                            noisy_torus(),
+                                            shapes::double_torus(),
+                                            shapes::cube(4),
+                                            shapes::tetrahedron(),
+                                            shapes::moebius_strip(30, 3),
+                                            shapes::plate_with_handle(),
+                                            shapes::capped_cylinder(16, 6)};
     for (std::size_t i = 0; i < all.size(); ++i)
         for (const int number : {1, 2, 4})
             for (const bool straight : {false, true}) {
@@ -107,10 +108,10 @@ TEST(TFlooding, MoreRoundsAreNeverWorse) {
 }
 
 TEST(TFlooding, BordersFollowCreases) {
-    for (const RawMesh& raw : {shapes::cube(6), shapes::capped_cylinder(32, 8)}) {
+    for (const mesh::RawMesh& raw : {shapes::cube(6), shapes::capped_cylinder(32, 8)}) {
         const Mesh mesh = checks::gated(raw);
         const TFloodingResult r = segment(mesh, charts(8));
-        const GaussAreas areas = compute_gauss_areas(mesh, shapes::pi / 4.0);
+        const metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, shapes::pi / 4.0);
         double all = 0.0;
         double on_border = 0.0;
         for (Index h = 0; h < mesh.half_edge_count(); ++h)
@@ -147,40 +148,42 @@ TEST(TFlooding, BalancingLowersItsObjective) {
     std::vector<Index> chart;
     for (const Vec3& c : mesh.face_centers)
         chart.push_back(c.normalized().z() > 0.6 ? 0 : 1);
-    const GaussAreas areas = compute_gauss_areas(mesh, shapes::pi / 4.0);
-    const double before = standard_deviation(chart_gauss_areas(mesh, areas, chart, 2));
+    const metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, shapes::pi / 4.0);
+    const double before =
+        metrics::standard_deviation(metrics::chart_gauss_areas(mesh, areas, chart, 2));
     Progress progress;
     BorderBalance options;
     options.sweeps = 30;
     balance_borders(mesh, areas, options, 2, chart, progress);
-    EXPECT_LT(standard_deviation(chart_gauss_areas(mesh, areas, chart, 2)), 0.1 * before);
-    const ChartMap map = make_chart_map(mesh, chart, {}, false);
+    EXPECT_LT(metrics::standard_deviation(metrics::chart_gauss_areas(mesh, areas, chart, 2)),
+              0.1 * before);
+    const atlas::ChartMap map = atlas::make_chart_map(mesh, chart, {}, false);
     EXPECT_EQ(map.count, 2);
     for (Index c = 0; c < 2; ++c)
         EXPECT_EQ(checks::topology(mesh, map, c).loops, 1);
 }
 
 TEST(TFlooding, EveryComponentGetsAChart) {
-    RawMesh raw = shapes::sphere(2);
+    mesh::RawMesh raw = shapes::sphere(2);
     for (int i = 1; i < 5; ++i)
         raw = shapes::join(raw, shapes::moved(shapes::cube(3), 0.5, Vec3(3.0 * i, 0, 0)));
     const Mesh mesh = checks::gated(raw);
     for (const int number : {1, 5, 9}) {
         const TFloodingResult r = segment(mesh, charts(number));
         EXPECT_EQ(static_cast<int>(r.chart_gauss_area.size()), std::max(number, 5));
-        EXPECT_EQ(make_chart_map(mesh, r.chart, {}, false).count, std::max(number, 5));
+        EXPECT_EQ(atlas::make_chart_map(mesh, r.chart, {}, false).count, std::max(number, 5));
     }
 }
 
 TEST(TFlooding, TheSameChartsForAnyNumberOfThreadsAndSize) {
-    const RawMesh raw = noisy_torus();
+    const mesh::RawMesh raw = noisy_torus();
     const TFloodingResult expected = segment(checks::gated(raw), charts(9));
     for (const int threads : {1, 2, 0}) {
         set_thread_limit(threads);
         EXPECT_EQ(segment(checks::gated(raw), charts(9)).chart, expected.chart);
     }
     set_thread_limit(0);
-    const RawMesh scaled = shapes::moved(raw, 1048576.0, Vec3::Zero());
+    const mesh::RawMesh scaled = shapes::moved(raw, 1048576.0, Vec3::Zero());
     EXPECT_EQ(segment(checks::gated(scaled), charts(9)).chart, expected.chart);
 }
 
@@ -226,4 +229,4 @@ TEST(TFlooding, Cancels) {
 }
 
 } // namespace
-} // namespace devseg
+} // namespace devseg::t_flooding
