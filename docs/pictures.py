@@ -16,6 +16,8 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 import numpy as np
+from PIL import Image, ImageChops, ImageDraw, ImageFont
+
 from devseg import host
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, METHODS
@@ -23,7 +25,6 @@ from devseg.pipeline import DEFORM_FILTER, FLATTEN_FILTER, Session, simplify
 from devseg.plugins import load_plugins
 from devseg.quickstart import sample_mesh
 from devseg.render import render_meshes, render_pair
-from PIL import Image, ImageChops, ImageDraw, ImageFont
 
 IMAGES = Path(__file__).resolve().parent / "images"
 # Pixels: the height of a panel. Colours of the palette: few shades, small files.
