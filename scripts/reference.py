@@ -1,6 +1,7 @@
 """Writes what is generated from the filter declarations.
 
-These are docs/filters.md, the tables in the pages of docs/methods, and the scripts of scripts/mlx.
+These are docs/filters.md, the tables in the pages of docs/methods and in README.md, and the scripts
+of scripts/mlx.
 
 .venv/bin/python scripts/reference.py           writes the files that have changed
 .venv/bin/python scripts/reference.py --check   fails where a file is not up to date
@@ -28,6 +29,9 @@ METHOD_PAGES = Path("docs") / "methods"
 END = "<!-- end -->\n"
 TABLES = re.compile(r"(?<=^<!-- parameters of )(\w+)( -->\n)(.*?)(?=^<!-- end -->\n)", re.M | re.S)
 RUNS = "<!-- what was run -->\n"
+FILTERS = "<!-- filters -->\n"
+METHODS = "<!-- methods -->\n"
+STAGES = "<!-- stages -->\n"
 # Larger bounds of parameters are no bounds.
 UNBOUNDED = 1e6
 # One file for each host, written by the tests (tests/python/hosts.py).
@@ -160,6 +164,51 @@ def filled(path: Path, text: str, table: list[dict[str, Any]]) -> str:
     return TABLES.sub(tables, text)
 
 
+def replaced(text: str, start: str, block: str) -> str:
+    """The text with another block between the line `start` and the next END."""
+    before, rest = text.split(start)
+    return f"{before}{start}{block}\n{END}{rest.split(END, maxsplit=1)[1]}"
+
+
+def methods_index(text: str, table: list[dict[str, Any]], pages: dict[Path, str]) -> str:
+    """docs/methods/README.md: a row for each page, with its title and the line below it."""
+    by_name = {filter_["python_name"]: filter_["menu_name"] for filter_ in table}
+    order = list(by_name)
+    lines: dict[str, list[str]] = {METHODS: [], STAGES: []}
+    names = {path: [name for name, _, _ in TABLES.findall(page)] for path, page in pages.items()}
+    for path in sorted(pages, key=lambda path: order.index(names[path][0])):
+        title, lead = pages[path].split("\n\n", maxsplit=2)[:2]
+        row = _row(
+            f"[{title.removeprefix('# ')}]({path.name})",
+            ", ".join(by_name[name] for name in names[path]),
+            lead.strip("*"),
+        )
+        lines[METHODS if SEGMENTATION.fullmatch(names[path][0]) else STAGES].append(row)
+    for start, rows in lines.items():
+        head = ["| page | filters | what for |", "|---|---|---|"]
+        text = replaced(text, start, "\n".join([*head, *rows]))
+    return text
+
+
+def readme_table(text: str, table: list[dict[str, Any]]) -> str:
+    """README.md with a row for each filter; what it does is kept as it was written there."""
+    rows = [line.strip("| ").split(" | ") for line in text.split(FILTERS)[1].splitlines()]
+    written = {row[1].strip("`"): row[2] for row in rows if len(row) == 3}
+    groups = ["Segmentation", "Charts", "Pattern"]
+    measures = "get_"
+
+    def rank(filter_: dict[str, Any]) -> tuple[bool, int]:
+        group = groups.index(filter_["menu_name"].split(":")[0])
+        return filter_["python_name"].startswith(measures), group
+
+    lines = ["| menu | Python | what it does |", "|---|---|---|"]
+    for filter_ in sorted(table, key=rank):
+        name = filter_["python_name"]
+        what = written.get(name) or first_sentence(markdown(filter_["help"]))[0].rstrip(".")
+        lines.append(_row(filter_["menu_name"], f"`{name}`", what))
+    return replaced(text, FILTERS, "\n".join(lines))
+
+
 def filter_tables(filter_: dict[str, Any]) -> str:
     """Names, what is written, parameters and results of a filter."""
     writes = [what for bit, what in WRITES.items() if filter_["writes"] & bit]
@@ -266,6 +315,9 @@ def generated_files() -> dict[Path, str]:
     pages = method_pages()
     files = {path: filled(path, text, table) for path, text in pages.items()}
     files[Path("docs") / "filters.md"] = filters_page(table, page_of_filter(pages))
+    index, readme = METHOD_PAGES / "README.md", Path("README.md")
+    files[index] = methods_index((ROOT / index).read_text(), table, pages)
+    files[readme] = readme_table((ROOT / readme).read_text(), table)
     files |= {MLX / name: text for name, text in mlx_scripts(table).items()}
     return files
 
@@ -297,9 +349,8 @@ def hosts_table(table: list[dict[str, Any]], runs: dict[str, dict[str, str]]) ->
 def write_hosts_table() -> None:
     """Replaces the table in docs/hosts.md."""
     page = ROOT / "docs" / "hosts.md"
-    before, rest = page.read_text().split(RUNS)
     table = hosts_table(declarations(), host_runs())
-    page.write_text(f"{before}{RUNS}{table}\n{END}{rest.split(END)[1]}")
+    page.write_text(replaced(page.read_text(), RUNS, table))
 
 
 def main() -> int:
