@@ -99,7 +99,9 @@ def save(image: Image.Image, name: str) -> None:
     empty = Image.new(image.mode, image.size, "white")
     box = ImageChops.difference(image, empty).getbbox()
     image = image.crop((0, max(box[1] - FONT, 0), image.width, min(box[3] + FONT, image.height)))
-    image.quantize(COLORS, dither=Image.Dither.NONE).save(file, optimize=True)
+    image.quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+        file, optimize=True
+    )
     print(f"{file.name}: {file.stat().st_size / 1000:.0f} kB")
 
 
