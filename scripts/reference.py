@@ -1,4 +1,7 @@
-"""Writes what is generated from the filter declarations: docs/filters.md and scripts/mlx.
+"""Writes what is generated from the filter declarations.
+
+These are docs/filters.md, the tables in the pages of docs/methods and in README.md, and the scripts
+of scripts/mlx.
 
 .venv/bin/python scripts/reference.py           writes the files that have changed
 .venv/bin/python scripts/reference.py --check   fails where a file is not up to date
@@ -20,6 +23,17 @@ from xml.sax.saxutils import quoteattr
 ROOT = Path(__file__).resolve().parents[1]
 DESCRIBE = ROOT / "build" / "release" / "tests" / "devseg_describe_filters"
 MLX = Path("scripts") / "mlx"
+METHOD_PAGES = Path("docs") / "methods"
+# A page asks for the tables of a filter by a line such as <!-- parameters of PYTHON_NAME -->; they
+# stand between it and the next END.
+END = "<!-- end -->\n"
+TABLES = re.compile(r"(?<=^<!-- parameters of )(\w+)( -->\n)(.*?)(?=^<!-- end -->\n)", re.M | re.S)
+RUNS = "<!-- what was run -->\n"
+FILTERS = "<!-- filters -->\n"
+METHODS = "<!-- methods -->\n"
+STAGES = "<!-- stages -->\n"
+# Larger bounds of parameters are no bounds.
+UNBOUNDED = 1e6
 # One file for each host, written by the tests (tests/python/hosts.py).
 RECORDS = ROOT / "build" / "host-runs"
 HOSTS = {
@@ -60,11 +74,11 @@ INTRODUCTION = """# Filters
 
 Written by `scripts/reference.py` from the declarations of the filters; do not edit.
 
-The names are the same in every host: the menu name is what MeshLab's search and `.mlx` scripts
-use, the Python name is for `MeshSet.apply_filter`. [hosts.md](hosts.md) says how each host is used.
+The names are the same in every host. MeshLab's search and `.mlx` scripts use the menu name;
+`MeshSet.apply_filter` takes the Python name. [hosts.md](hosts.md) says how each host is used.
 
-| filter | Python |
-|---|---|
+| filter | Python | parameters and results |
+|---|---|---|
 """
 
 
@@ -102,36 +116,135 @@ def markdown(text: str) -> str:
     return html.unescape("  \n".join(part for part in paragraphs if part))
 
 
-def filters_page(table: list[dict[str, Any]]) -> str:
-    """The reference of all filters."""
+def filters_page(table: list[dict[str, Any]], pages: dict[str, Path]) -> str:
+    """The index of all filters, and the reference of those without a page of their own."""
     page = INTRODUCTION
     for filter_ in table:
-        anchor = re.sub(r"[^a-z0-9 -]", "", filter_["menu_name"].lower()).replace(" ", "-")
-        page += f"| [{filter_['menu_name']}](#{anchor}) | `{filter_['python_name']}` |\n"
-    return page + "".join(_filter_section(filter_) for filter_ in table)
+        name, python_name = filter_["menu_name"], filter_["python_name"]
+        anchor = re.sub(r"[^a-z0-9 -]", "", name.lower()).replace(" ", "-")
+        place = f"[below](#{anchor})"
+        if python_name in pages:
+            path = pages[python_name].relative_to("docs").as_posix()
+            place = f"[{path}]({path})"
+        page += f"| {name} | `{python_name}` | {place} |\n"
+    for filter_ in table:
+        if filter_["python_name"] not in pages:
+            page += f"\n## {filter_['menu_name']}\n\n{markdown(filter_['help'])}\n\n"
+            page += filter_tables(filter_)
+    return page
 
 
-def _filter_section(filter_: dict[str, Any]) -> str:
+def method_pages() -> dict[Path, str]:
+    """The pages that ask for tables of filters, relative to the checkout, as they are."""
+    paths = sorted((ROOT / METHOD_PAGES).glob("*.md"))
+    texts = {path.relative_to(ROOT): path.read_text() for path in paths}
+    return {path: text for path, text in texts.items() if TABLES.search(text)}
+
+
+def page_of_filter(pages: dict[Path, str]) -> dict[str, Path]:
+    """The page that has the tables of a filter, by its Python name."""
+    found: dict[str, Path] = {}
+    for path, text in pages.items():
+        for name, _, _ in TABLES.findall(text):
+            if name in found:
+                raise SystemExit(f"{path}: {name} has its tables in {found[name]} already")
+            found[name] = path
+    return found
+
+
+def filled(path: Path, text: str, table: list[dict[str, Any]]) -> str:
+    """The page with its tables up to date."""
+    by_name = {filter_["python_name"]: filter_ for filter_ in table}
+
+    def tables(match: re.Match[str]) -> str:
+        if match[1] not in by_name:
+            raise SystemExit(f"{path}: no filter is called {match[1]}")
+        return f"{match[1]}{match[2]}\n{filter_tables(by_name[match[1]])}\n"
+
+    return TABLES.sub(tables, text)
+
+
+def replaced(text: str, start: str, block: str) -> str:
+    """The text with another block between the line `start` and the next END."""
+    before, rest = text.split(start)
+    return f"{before}{start}{block}\n{END}{rest.split(END, maxsplit=1)[1]}"
+
+
+def methods_index(text: str, table: list[dict[str, Any]], pages: dict[Path, str]) -> str:
+    """docs/methods/README.md: a row for each page, with its title and the line below it."""
+    by_name = {filter_["python_name"]: filter_["menu_name"] for filter_ in table}
+    order = list(by_name)
+    lines: dict[str, list[str]] = {METHODS: [], STAGES: []}
+    names = {path: [name for name, _, _ in TABLES.findall(page)] for path, page in pages.items()}
+    for path in sorted(pages, key=lambda path: order.index(names[path][0])):
+        title, lead = pages[path].split("\n\n", maxsplit=2)[:2]
+        row = _row(
+            f"[{title.removeprefix('# ')}]({path.name})",
+            ", ".join(by_name[name] for name in names[path]),
+            lead.strip("*"),
+        )
+        lines[METHODS if SEGMENTATION.fullmatch(names[path][0]) else STAGES].append(row)
+    for start, rows in lines.items():
+        head = ["| page | filters | what for |", "|---|---|---|"]
+        text = replaced(text, start, "\n".join([*head, *rows]))
+    return text
+
+
+def readme_table(text: str, table: list[dict[str, Any]]) -> str:
+    """README.md with a row for each filter; what it does is kept as it was written there."""
+    rows = [line.strip("| ").split(" | ") for line in text.split(FILTERS)[1].splitlines()]
+    written = {row[1].strip("`"): row[2] for row in rows if len(row) == 3}
+    groups = ["Segmentation", "Charts", "Pattern"]
+    measures = "get_"
+
+    def rank(filter_: dict[str, Any]) -> tuple[bool, int]:
+        group = groups.index(filter_["menu_name"].split(":")[0])
+        return filter_["python_name"].startswith(measures), group
+
+    lines = ["| menu | Python | what it does |", "|---|---|---|"]
+    for filter_ in sorted(table, key=rank):
+        name = filter_["python_name"]
+        what = written.get(name) or first_sentence(markdown(filter_["help"]))[0].rstrip(".")
+        lines.append(_row(filter_["menu_name"], f"`{name}`", what))
+    return replaced(text, FILTERS, "\n".join(lines))
+
+
+def filter_tables(filter_: dict[str, Any]) -> str:
+    """Names, what is written, parameters and results of a filter."""
     writes = [what for bit, what in WRITES.items() if filter_["writes"] & bit]
     lines = [
-        f"\n## {filter_['menu_name']}\n",
-        f"`{filter_['python_name']}` · menu *Filters, {filter_['menu']}*\n",
-        markdown(filter_["help"]) + "\n",
+        f"`{filter_['python_name']}` · menu *Filters, {filter_['menu']}*  ",
         f"Writes: {', '.join(writes) or 'nothing'}."
         + (" Needs wedge texture coordinates." if filter_["needs_uv"] else ""),
     ]
     if filter_["parameters"]:
-        lines += ["\n| parameter | default | range | meaning |", "|---|---|---|---|"]
+        lines += ["", "| parameter | default | range | meaning |", "|---|---|---|---|"]
         lines += [_parameter_row(parameter) for parameter in filter_["parameters"]]
+        more = [(p["name"], first_sentence(help_text(p))[1]) for p in filter_["parameters"]]
+        if any(rest for _, rest in more):
+            lines += ["", *(f"- `{name}`: {rest}" for name, rest in more if rest)]
     if filter_["results"]:
-        lines += ["\n| result | meaning |", "|---|---|"]
+        lines += ["", "| result | meaning |", "|---|---|"]
         lines += [_row(f"`{r['name']}`", r["meaning"]) for r in filter_["results"]]
     return "\n".join(lines) + "\n"
+
+
+def help_text(parameter: dict[str, Any]) -> str:
+    """A parameter's help on one line."""
+    return markdown(parameter["help"]).replace("  \n", " ")
+
+
+def first_sentence(text: str) -> tuple[str, str]:
+    """The first sentence, for a table, and the rest. A sentence ends before a capital."""
+    parts = re.split(r"(?<=[a-z0-9)]\.) (?=[A-Z0-9])", text, maxsplit=1)
+    return parts[0], parts[1] if len(parts) > 1 else ""
 
 
 def _parameter_row(parameter: dict[str, Any]) -> str:
     default = written_default(parameter)
     limits = f"{parameter['minimum']:.9g} to {parameter['maximum']:.9g}"
+    if parameter["maximum"] >= UNBOUNDED:
+        limits = f"≥ {parameter['minimum']:.9g}"
     if parameter["kind"] == "choice":
         default = parameter["choices"][parameter["default"]]
         limits = ", ".join(parameter["choices"])
@@ -139,8 +252,12 @@ def _parameter_row(parameter: dict[str, Any]) -> str:
         limits = "true, false"
     elif parameter["kind"] in ("text", "output file"):
         limits = parameter["kind"]
-    meaning = f"{parameter['label']}. {markdown(parameter['help'])}".replace("  \n", " ")
-    return _row(f"`{parameter['name']}`", default, limits, meaning)
+    return _row(
+        f"`{parameter['name']}`",
+        default or "empty",
+        limits,
+        first_sentence(help_text(parameter))[0],
+    )
 
 
 def _row(*cells: str) -> str:
@@ -195,30 +312,45 @@ def mlx_filter(filter_: dict[str, Any]) -> str:
 def generated_files() -> dict[Path, str]:
     """All generated files, relative to the checkout, and their texts."""
     table = declarations()
-    files = {Path("docs") / "filters.md": filters_page(table)}
+    pages = method_pages()
+    files = {path: filled(path, text, table) for path, text in pages.items()}
+    files[Path("docs") / "filters.md"] = filters_page(table, page_of_filter(pages))
+    index, readme = METHOD_PAGES / "README.md", Path("README.md")
+    files[index] = methods_index((ROOT / index).read_text(), table, pages)
+    files[readme] = readme_table((ROOT / readme).read_text(), table)
     files |= {MLX / name: text for name, text in mlx_scripts(table).items()}
     return files
 
 
-def hosts_table(table: list[dict[str, Any]]) -> str:
-    """What the tests have run, in which host."""
-    runs = [
-        json.loads(file.read_text()) if (file := RECORDS / f"{host}.json").is_file() else {}
+def host_runs() -> dict[str, dict[str, str]]:
+    """What the tests have recorded: for each host, what each filter did."""
+    return {
+        host: json.loads(file.read_text()) if (file := RECORDS / f"{host}.json").is_file() else {}
         for host in HOSTS
-    ]
-    lines = [_row("", *HOSTS.values()), _row("---", *("---" for _ in HOSTS))]
-    for name in [*(filter_["menu_name"] for filter_ in table), "Saving as SVG"]:
-        lines.append(_row(name, *(run.get(name, "not run") for run in runs)))
+    }
+
+
+def hosts_table(table: list[dict[str, Any]], runs: dict[str, dict[str, str]]) -> str:
+    """What the tests have run, in which host."""
+    names = [filter_["menu_name"] for filter_ in table]
+    lines = [_row("host", "filters", "saving as SVG"), "|---|---|---|"]
+    for host, title in HOSTS.items():
+        outcomes: dict[str, list[str]] = {}
+        for name in names:
+            outcomes.setdefault(runs[host].get(name, "not run"), []).append(name)
+        cells = [
+            f"{what}: {f'all {len(names)}' if who == names else ', '.join(who)}"
+            for what, who in outcomes.items()
+        ]
+        lines.append(_row(title, "; ".join(cells), runs[host].get("Saving as SVG", "not run")))
     return "\n".join(lines)
 
 
 def write_hosts_table() -> None:
     """Replaces the table in docs/hosts.md."""
     page = ROOT / "docs" / "hosts.md"
-    before, rest = page.read_text().split("<!-- what was run -->\n")
-    after = rest.split("<!-- end -->")[1]
-    table = hosts_table(declarations())
-    page.write_text(f"{before}<!-- what was run -->\n{table}\n<!-- end -->{after}")
+    table = hosts_table(declarations(), host_runs())
+    page.write_text(replaced(page.read_text(), RUNS, table))
 
 
 def main() -> int:
