@@ -169,7 +169,7 @@ inline void fill_layer(MeshModel& model, const declare::LayerMesh& layer) {
     auto face = vcg::tri::Allocator<CMeshO>::AddFaces(m, layer.geometry.faces.size());
     for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f, ++face) {
         for (int k = 0; k < 3; ++k)
-            face->V(k) = &m.vert[at(layer.geometry.faces[f][static_cast<std::size_t>(k)])];
+            face->V(k) = &m.vert[layer.geometry.faces[f][static_cast<std::size_t>(k)]];
         const declare::Color& c = layer.face_color[f];
         face->C() = vcg::Color4b(c[0], c[1], c[2], 255);
         face->Q() = static_cast<Scalarm>(layer.face_quality[f]);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "devseg/declare/declare.h"
+#include "devseg/filters/table.h"
 #include "filters/export_pattern.h"
 #include "writers/file.h"
 
@@ -142,7 +143,7 @@ const declare::FilterDeclaration& export_filter() {
 
 const std::vector<declare::FilterDeclaration>& plugin_filters() {
     static const std::vector<declare::FilterDeclaration> table = [] {
-        std::vector<declare::FilterDeclaration> all = declare::filter_table();
+        std::vector<declare::FilterDeclaration> all = filters::filter_table();
         all.push_back(export_filter());
         return all;
     }();

@@ -78,7 +78,7 @@ std::string quantity(const pattern::PatternPiece& piece) {
 
 std::string annotation(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.model >= 0 && piece.quantity == 0)
-        return (piece.mirrored ? "MIRROR OF " : "SAME AS ") + pattern.pieces[at(piece.model)].name +
+        return (piece.mirrored ? "MIRROR OF " : "SAME AS ") + pattern.pieces[piece.model].name +
                ", COUNTED THERE";
     std::string text = "CUT " + std::to_string(std::max(Index{1}, piece.quantity));
     if (piece.mirrored_quantity > 0)
@@ -94,7 +94,7 @@ void write_lines(writers::DxfText& file, const char* layer,
 
 void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const SheetPiece& piece,
                  const ExportOptions& options) {
-    const pattern::PatternPiece& source = pattern.pieces[at(piece.piece)];
+    const pattern::PatternPiece& source = pattern.pieces[piece.piece];
     file.group(0, "BLOCK");
     file.group(8, "1");
     file.group(2, code(piece.name));
@@ -114,9 +114,9 @@ void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const 
     std::vector<std::string> seams;
     for (const pattern::Seam& seam : pattern.seams)
         for (const int side : {0, 1})
-            if (seam.sides[at(side)].piece == piece.piece)
+            if (seam.sides[side].piece == piece.piece)
                 seams.push_back("SEAM: " + seam.label + " TO " +
-                                pattern.pieces[at(seam.sides[at(1 - side)].piece)].name);
+                                pattern.pieces[seam.sides[1 - side].piece].name);
     const Vec2 place = piece.names.empty() ? piece.box().center() : piece.names.front().position;
     write_texts(file, "15", place, seams);
     write_texts(file, "1", place + Vec2(0.0, 6.0 * line_pitch),
@@ -139,7 +139,7 @@ std::string apparel_dxf_bytes(const pattern::Pattern& pattern, const PatternLayo
     file.end_section();
     file.begin_section("BLOCKS");
     for (SheetPiece piece : layout.pieces) {
-        piece.move(shifts[at(piece.sheet)]);
+        piece.move(shifts[piece.sheet]);
         write_block(file, pattern, piece, options);
     }
     file.end_section();

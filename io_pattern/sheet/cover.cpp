@@ -40,7 +40,7 @@ std::string page_list(Index piece, const std::vector<PrintedPage>& pages) {
 
 std::string cut_text(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.model >= 0 && (piece.mirrored || piece.quantity == 0))
-        return (piece.mirrored ? "mirrored " : "same as ") + pattern.pieces[at(piece.model)].name;
+        return (piece.mirrored ? "mirrored " : "same as ") + pattern.pieces[piece.model].name;
     std::string text = std::to_string(std::max(Index{1}, piece.quantity));
     if (piece.mirrored_quantity > 0)
         text += " + " + std::to_string(piece.mirrored_quantity) + " mirrored";
@@ -58,7 +58,7 @@ std::string seam_list(const pattern::Pattern& pattern, Index piece) {
         const Index other = a == piece ? b : a;
         const std::string name = seam.is_dart     ? "dart"
                                  : other == piece ? "itself"
-                                                  : pattern.pieces[at(other)].name;
+                                                  : pattern.pieces[other].name;
         const auto entry = std::find_if(numbers_to.begin(), numbers_to.end(),
                                         [&](const auto& known) { return known.first == name; });
         if (entry == numbers_to.end())
@@ -77,7 +77,7 @@ std::vector<Row> table_rows(const pattern::Pattern& pattern, const PatternLayout
     std::vector<Row> rows;
     for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
         const SheetPiece& drawn = layout.pieces[i];
-        const pattern::PatternPiece& piece = pattern.pieces[at(drawn.piece)];
+        const pattern::PatternPiece& piece = pattern.pieces[drawn.piece];
         const Vec2 size = drawn.box().sizes();
         rows.push_back(
             {{piece.name,
@@ -93,17 +93,17 @@ std::vector<std::string> missing_texts(const pattern::Pattern& pattern, const Le
     std::vector<std::string> lines;
     std::string seams;
     for (const Index s : left_out.seams) {
-        const pattern::Seam& seam = pattern.seams[at(s)];
+        const pattern::Seam& seam = pattern.seams[s];
         seams += (seams.empty() ? "" : "; ") + seam.label + " (" +
-                 pattern.pieces[at(seam.sides[0].piece)].name + " - " +
-                 pattern.pieces[at(seam.sides[1].piece)].name + ", " +
+                 pattern.pieces[seam.sides[0].piece].name + " - " +
+                 pattern.pieces[seam.sides[1].piece].name + ", " +
                  writers::number_text(seam.sides[0].length, 1) + " mm)";
     }
     if (!seams.empty())
         lines.push_back("No room for their numbers on the pieces: seams " + seams);
     std::string pieces;
     for (const Index p : left_out.pieces)
-        pieces += (pieces.empty() ? "" : ", ") + pattern.pieces[at(p)].name;
+        pieces += (pieces.empty() ? "" : ", ") + pattern.pieces[p].name;
     if (!pieces.empty())
         lines.push_back("No room for their names: pieces " + pieces);
     return lines;
@@ -171,7 +171,7 @@ void add_pictures(const Mesh& mesh, const pattern::Pattern& pattern, Book& book)
         view.image.low = Vec2(x, book.cursor());
         view.image.size = Vec2::Constant(side);
         for (const PieceLabel& label : view.labels) {
-            const std::string& name = pattern.pieces[at(label.piece)].name;
+            const std::string& name = pattern.pieces[label.piece].name;
             const double room = side * label.radius / writers::text_width(name, 0.6);
             const double size = std::min(largest_label, room);
             if (size >= least_label)

@@ -70,7 +70,7 @@ OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& s
 
 void add_notches(const pattern::Pattern& pattern, const ExportOptions& options,
                  SheetPiece& result) {
-    const pattern::PatternPiece& piece = pattern.pieces[at(result.piece)];
+    const pattern::PatternPiece& piece = pattern.pieces[result.piece];
     for (const pattern::Seam& seam : pattern.seams)
         for (const pattern::SeamSide& side : seam.sides)
             if (side.piece == result.piece)

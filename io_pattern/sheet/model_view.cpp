@@ -90,9 +90,9 @@ DepthBuffer project(const Mesh& mesh, const Eigen::Matrix3d& rotation, int side)
         const Vec3 q = scale * (p - box.center());
         p = Vec3(q.x() + 0.5 * side, 0.5 * side - q.y(), q.z());
     }
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const Triangle& t = mesh.faces[at(f)];
-        buffer.draw({seen[at(t[0])], seen[at(t[1])], seen[at(t[2])]}, f);
+    for (const Face f : mesh.all_faces()) {
+        const Triangle& t = mesh.faces[f];
+        buffer.draw({seen[t[0]], seen[t[1]], seen[t[2]]}, f);
     }
     return buffer;
 }
@@ -128,8 +128,8 @@ std::vector<PieceLabel> find_labels(const std::vector<Index>& piece_of_pixel, in
             depth[i] = std::min({depth[i], reach(x, y, 1, 0), reach(x, y, 0, 1)});
             const Index piece = piece_of_pixel[i];
             const double radius = static_cast<double>(depth[i]) / side;
-            if (piece >= 0 && radius > best[at(piece)].radius)
-                best[at(piece)] = {piece, Vec2(x + 0.5, side - y - 0.5) / side, radius};
+            if (piece >= 0 && radius > best[piece].radius)
+                best[piece] = {piece, Vec2(x + 0.5, side - y - 0.5) / side, radius};
         }
     best.erase(std::remove_if(best.begin(), best.end(),
                               [](const PieceLabel& label) { return label.piece < 0; }),
@@ -147,7 +147,7 @@ ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double a
     const std::vector<declare::Color> colors = piece_colors(mesh, pattern);
     const auto piece_at = [&](int x, int y) {
         const Index f = buffer.face(x, y);
-        return f < 0 ? Index{-2} : pattern.face_piece[at(f)];
+        return f < 0 ? Index{-2} : pattern.face_piece[f];
     };
     ModelView view;
     view.image.columns = view.image.rows = pixels;
@@ -162,9 +162,9 @@ ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double a
             double shade = 1.0;
             declare::Color color{255, 255, 255};
             if (piece > -2) {
-                const Vec3 normal = rotation * mesh.face_normals[at(buffer.face(x, y))];
+                const Vec3 normal = rotation * mesh.face_normals[buffer.face(x, y)];
                 shade = ambient + (1.0 - ambient) * std::abs(normal.dot(light));
-                color = piece >= 0 ? colors[at(piece)] : colors.back();
+                color = piece >= 0 ? colors[piece] : colors.back();
             }
             if (border)
                 shade *= line_shade;

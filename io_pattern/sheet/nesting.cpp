@@ -68,7 +68,7 @@ public:
         const Index last = grows_ ? rows_ : rows_ - cells.height;
         for (Index y = 0; y <= last && y + cells.height < limit; ++y) {
             add_rows(y + cells.height);
-            if (widest_[at(y + longest.row)] < width(longest) || !has_room(cells, y))
+            if (widest_[y + longest.row] < width(longest) || !has_room(cells, y))
                 continue;
             for (Index x = 0; x + cells.width <= columns_;) {
                 const Index next = blocked_until(cells, x, y);
@@ -89,7 +89,7 @@ public:
             std::fill(row + spot.x + run.first, row + spot.x + run.last, 0);
             for (Index x = spot.x + run.first - 1; x >= 0 && row[x] != 0; --x)
                 row[x] = spot.x + run.first - x;
-            widest_[at(spot.y + run.row)] = *std::max_element(row, row + columns_);
+            widest_[spot.y + run.row] = *std::max_element(row, row + columns_);
         }
     }
 
@@ -97,14 +97,14 @@ private:
     // Whether each row has somewhere as many free cells as the run that comes there.
     bool has_room(const pack::ChartCells& cells, Index y) const {
         return std::all_of(cells.runs.begin(), cells.runs.end(), [&](const pack::CellRun& run) {
-            return widest_[at(y + run.row)] >= width(run);
+            return widest_[y + run.row] >= width(run);
         });
     }
 
     // The next column to try; x itself where all runs are free.
     Index blocked_until(const pack::ChartCells& cells, Index x, Index y) const {
         for (const pack::CellRun& run : cells.runs) {
-            const Index room = free_[at(static_cast<Index>(offset(y + run.row)) + x + run.first)];
+            const Index room = free_[static_cast<Index>(offset(y + run.row)) + x + run.first];
             if (room < width(run))
                 return x + room + 1;
         }

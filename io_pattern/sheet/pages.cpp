@@ -72,7 +72,7 @@ void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::s
     const double size = std::min(largest_caption, caption_share * page.margin);
     if (size < least_caption)
         return;
-    const PatternSheet& sheet = layout.sheets[at(printed.sheet)];
+    const PatternSheet& sheet = layout.sheets[printed.sheet];
     const double y = 0.45 * page.margin;
     const Vec2 from(page.size.x() - page.margin - bar, y + 0.6 * size);
     const Vec2 to = from + Vec2(bar, 0.0);
@@ -149,7 +149,7 @@ std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
         marks.paths.push_back(
             {"", {rectangle(pages[i].window.position, layout.page->printable())}});
         for (const Vec2& place :
-             cross_places(layout.sheets[at(pages[i].sheet)], *layout.page, pages[i])) {
+             cross_places(layout.sheets[pages[i].sheet], *layout.page, pages[i])) {
             const Vec2 p = place - pages[i].window.low + pages[i].window.position;
             marks.paths.push_back({"",
                                    {segment(p - Vec2(cross, 0.0), p + Vec2(cross, 0.0)),

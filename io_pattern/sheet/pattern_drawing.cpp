@@ -178,7 +178,7 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
     writers::DrawingLayer text{"text", "Text", "#000000", {}, {}, {}};
     writers::DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
     for (SheetPiece piece : layout.pieces) {
-        piece.move({1.0, 0.0, plan.sheets[at(piece.sheet)]});
+        piece.move({1.0, 0.0, plan.sheets[piece.sheet]});
         add_rings(piece.cut, piece.cut_curves, piece.name + "-cut", cut);
         add_lines(piece.slits, false, piece.name + "-slit", piece.has_allowance() ? sew : cut);
         add_rings(piece.sew, piece.sew_curves, piece.name + "-sew", sew);

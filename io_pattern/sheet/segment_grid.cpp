@@ -89,7 +89,7 @@ bool SegmentGrid::touches(const Vec2& a, const Vec2& b, Index owner) const {
     bool found = false;
     visit_cells(a, b, [&](std::size_t cell) {
         for (const Index number : cells_[cell]) {
-            const Segment& other = segments_[at(number)];
+            const Segment& other = segments_[number];
             found = found || (other.owner != owner && segments_touch(a, b, other.a, other.b));
         }
     });

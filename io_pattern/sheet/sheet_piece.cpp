@@ -92,7 +92,7 @@ void merge_slits(const pattern::Pattern& pattern, Index piece, std::vector<Outli
         const pattern::SeamSide& b = seam.sides[1];
         if (!seam.is_dart || a.piece != piece || a.path != b.path || a.count != b.count)
             continue;
-        Outline& outline = outlines[at(a.path)];
+        Outline& outline = outlines[a.path];
         const auto point = [&](const pattern::SeamSide& side, Index i) {
             return outline.points[outline.at_index(side_point(side, i))];
         };
@@ -116,7 +116,7 @@ void merge_slits(const pattern::Pattern& pattern, Index piece, std::vector<Outli
 void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
               SheetPiece& result) {
     for (const GlueTab& tab : tabs) {
-        Outline& outline = outlines[at(tab.path)];
+        Outline& outline = outlines[tab.path];
         std::vector<Vec2> base;
         for (Index i = tab.first; i <= tab.first + tab.count; ++i)
             base.push_back(outline.points[outline.at_index(i)]);
@@ -221,7 +221,7 @@ void SheetPiece::mirror() {
 
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
                          const std::vector<GlueTab>& tabs, const ExportOptions& options) {
-    const pattern::PatternPiece& piece = pattern.pieces[at(index)];
+    const pattern::PatternPiece& piece = pattern.pieces[index];
     SheetPiece result;
     result.piece = index;
     result.name = piece.name;

@@ -29,13 +29,13 @@ struct Stretch {
 class Side {
 public:
     Side(const pattern::Pattern& pattern, const pattern::SeamSide& side)
-        : path_(pattern.pieces[at(side.piece)].path(side.path)), side_(side) {}
+        : path_(pattern.pieces[side.piece].path(side.path)), side_(side) {}
 
     Index edge_count() const { return side_.count; }
     /// Point i of edge_count() + 1, in the direction of the seam.
     const Vec2& point(Index i) const {
         const Index step = side_.reversed ? side_.count - i : i;
-        return path_.points[at((side_.first + step) % size())];
+        return path_.points[(side_.first + step) % size()];
     }
     /// The tab's place in the outline, without corners.
     GlueTab place(const Stretch& s) const {
@@ -100,9 +100,7 @@ public:
     /// Finds corners for a tab of at most this depth; false where there is no room.
     bool shape(GlueTab& tab, double depth) const {
         const std::vector<Vec2>& points = piece_.path(tab.path).points;
-        const auto point = [&](Index i) {
-            return points[at(i % static_cast<Index>(points.size()))];
-        };
+        const auto point = [&](Index i) { return points[i % static_cast<Index>(points.size())]; };
         const Index count = static_cast<Index>(points.size());
         const Vec2 a = point(tab.first);
         const Vec2 b = point(tab.first + tab.count);
@@ -126,7 +124,7 @@ public:
 
     void take(const GlueTab& tab) {
         const std::vector<Vec2>& points = piece_.path(tab.path).points;
-        const Vec2& a = points[at(tab.first)];
+        const Vec2& a = points[tab.first];
         const Vec2& b = points[at(tab.first + tab.count) % points.size()];
         grid_.add(a, tab.corner[0], 0);
         grid_.add(tab.corner[0], tab.corner[1], 0);
@@ -164,10 +162,10 @@ GlueTabs make_tabs(const pattern::Pattern& pattern, double depth, Progress& prog
         for (const double share : shares_of_depth)
             for (const Side& side : sides) {
                 GlueTab tab = side.place(stretch);
-                if (!rooms[at(tab.piece)].shape(tab, share * depth))
+                if (!rooms[tab.piece].shape(tab, share * depth))
                     continue;
-                rooms[at(tab.piece)].take(tab);
-                result.tabs[at(tab.piece)].push_back(tab);
+                rooms[tab.piece].take(tab);
+                result.tabs[tab.piece].push_back(tab);
                 return true;
             }
         return false;

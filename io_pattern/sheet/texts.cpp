@@ -111,9 +111,9 @@ private:
 
 std::string quantity_text(const pattern::PatternPiece& piece, const pattern::Pattern& pattern) {
     if (piece.mirrored)
-        return "mirrored " + pattern.pieces[at(piece.model)].name;
+        return "mirrored " + pattern.pieces[piece.model].name;
     if (piece.quantity == 0)
-        return "same as " + pattern.pieces[at(piece.model)].name;
+        return "same as " + pattern.pieces[piece.model].name;
     return "";
 }
 
@@ -263,7 +263,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
     std::vector<std::vector<WrittenNumber>> written(pattern.seams.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
-        const pattern::PatternPiece& source = pattern.pieces[at(piece.piece)];
+        const pattern::PatternPiece& source = pattern.pieces[piece.piece];
         Room room(piece);
         if (options.labels && !add_name(source, pattern, piece, room))
             left_out.pieces.push_back(piece.piece);

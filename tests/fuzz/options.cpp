@@ -24,7 +24,7 @@ declare::HostMesh strip() {
             host.geometry.faces.push_back(t);
             std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
             for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3& p = host.geometry.points[at(t[k])];
+                const Vec3& p = host.geometry.points[t[k]];
                 corners[k] = Vec2(0.1 * p.x() * (1.0 + 0.15 * p.x()), 0.1 * p.y());
                 corners[k].y() += i >= columns / 2 ? 0.5 : 0.0;
             }
@@ -69,7 +69,7 @@ void run_with_options(Bytes& bytes) {
     }();
     const auto& filters = exporting::plugin_filters();
     const declare::FilterDeclaration& filter =
-        filters[at(bytes.below(static_cast<int>(filters.size())))];
+        filters[bytes.below(static_cast<int>(filters.size()))];
     declare::ParameterValues values;
     for (const declare::Parameter& parameter : filter.parameters)
         if (parameter.kind == declare::ParameterKind::output_file || bytes.below(3) == 0)

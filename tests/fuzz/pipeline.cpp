@@ -7,6 +7,7 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/base/errors.h"
 #include "devseg/declare/filter.h"
+#include "devseg/filters/table.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/repair/slits.h"
 #include "devseg/flatten/repair/snap.h"
@@ -52,8 +53,8 @@ atlas::ChartMap charts_of(const mesh::GatedMesh& gate, const declare::HostResult
     const Mesh& mesh = gate.mesh;
     std::vector<Index> labels;
     std::vector<std::uint8_t> seam;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::size_t source = at(gate.source_face[at(f)]);
+    for (const Face f : mesh.all_faces()) {
+        const std::size_t source = at(gate.source_face[f]);
         labels.push_back(segmented.chart_id[source]);
         for (Index e = 0; e < 3; ++e)
             seam.push_back(segmented.seam_edges[source] >> gate.source_edge(f, e) & 1);
@@ -87,8 +88,8 @@ Layout lay_in_a_row(const Mesh& mesh, const atlas::ChartMap& charts,
             p += Vec2(left, 0.0) - box.min();
         left += 1.01 * box.sizes().x() + 0.01;
         layout.too_thin += flatten::snap_to_single(chart.surface.corners, chart.uv);
-        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
-            layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+        for (const HalfEdge h : chart.surface.all_half_edges())
+            layout.uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     }
     layout.charts = flattened.charts.count;
     return layout;
@@ -97,13 +98,13 @@ Layout lay_in_a_row(const Mesh& mesh, const atlas::ChartMap& charts,
 void run_pipeline(Bytes& bytes) {
     static const std::vector<const declare::FilterDeclaration*> methods = [] {
         std::vector<const declare::FilterDeclaration*> found;
-        for (const declare::FilterDeclaration& filter : declare::filter_table())
+        for (const declare::FilterDeclaration& filter : filters::filter_table())
             if (filter.menu_name.compare(0, 13, "Segmentation:") == 0)
                 found.push_back(&filter);
         return found;
     }();
     const declare::FilterDeclaration& method =
-        *methods[at(bytes.below(static_cast<int>(methods.size())))];
+        *methods[bytes.below(static_cast<int>(methods.size()))];
     const declare::ParameterValues charts{{"charts_number", 1 + bytes.below(6)},
                                           {"max_iterations", 5}};
     const auto way = static_cast<flatten::FlattenMethod>(bytes.below(5));

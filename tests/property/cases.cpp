@@ -79,17 +79,17 @@ struct Gated {
 Gated behind_gate(const mesh::RawMesh& raw, const declare::HostResult& result) {
     Gated gated{mesh::gate_mesh(raw), {}, {}};
     const mesh::GatedMesh& gate = gated.gate;
-    for (Index f = 0; f < gate.mesh.face_count(); ++f) {
-        const std::size_t source = at(gate.source_face[at(f)]);
+    for (const Face f : gate.mesh.all_faces()) {
+        const std::size_t source = at(gate.source_face[f]);
         const Index chart = result.chart_id[source];
         gated.charts.chart.push_back(chart);
         gated.charts.count = std::max(gated.charts.count, chart + 1);
         std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
         for (Index k = 0; k < 3; ++k) {
             const bool cut = (result.seam_edges[source] >> gate.source_edge(f, k) & 1) != 0;
-            gated.charts.seam.push_back(cut && gate.mesh.twin[at(3 * f + k)] >= 0 ? 1 : 0);
+            gated.charts.seam.push_back(cut && gate.mesh.twin[3 * f + k] >= 0 ? 1 : 0);
             if (!result.wedge_uv.empty())
-                corners[at(k)] = result.wedge_uv[source][at(gate.source_corner(f, k))];
+                corners[k] = result.wedge_uv[source][gate.source_corner(f, k)];
         }
         if (!result.wedge_uv.empty())
             gated.uv.push_back(corners);
@@ -158,7 +158,7 @@ std::vector<const declare::FilterDeclaration*> filters_named(const std::string& 
 
 const declare::FilterDeclaration&
 any_of(const std::vector<const declare::FilterDeclaration*>& filters, Random& random) {
-    return *filters[at(random.below(static_cast<Index>(filters.size())))];
+    return *filters[random.below(static_cast<Index>(filters.size()))];
 }
 
 declare::ParameterValues random_values(const declare::FilterDeclaration& filter, Index faces,

@@ -149,7 +149,7 @@ void add_random_attributes(declare::HostMesh& host, Random& random) {
             continue;
         std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = projected ? Vec2(host.geometry.points[at(t[k])].head<2>())
+            corners[k] = projected ? Vec2(host.geometry.points[t[k]].head<2>())
                                    : Vec2(number(-1.0, 1.0), number(-1.0, 1.0));
         host.wedge_uv.push_back(corners);
     }
@@ -162,7 +162,7 @@ TEST(Property, EveryFilterAnswersOrRefuses) {
         SCOPED_TRACE(mesh.recipe);
         declare::HostMesh host = host_of(mesh.raw);
         if (random.below(20) == 0)
-            host.geometry.points[at(mesh.raw.faces[0][0])].x() =
+            host.geometry.points[mesh.raw.faces[0][0]].x() =
                 std::numeric_limits<double>::quiet_NaN();
         add_random_attributes(host, random);
         const declare::FilterDeclaration& filter = any_of(filters_named(""), random);
@@ -283,7 +283,7 @@ void count_changes(Random& random, Edit edit, Changes& changes,
     std::vector<int> in_order;
     const bool reordered = edited.faces != mesh.raw.faces;
     for (const Index f : order)
-        in_order.push_back(charts->chart_id[at(f)]);
+        in_order.push_back(charts->chart_id[f]);
     const std::vector<int>& expected = reordered ? in_order : charts->chart_id;
     const double share =
         std::max(difference(expected, other->chart_id), difference(other->chart_id, expected));

@@ -113,8 +113,7 @@ mesh::RawMesh base_mesh(Random& random, std::string& recipe) {
 Vec3 face_point(const mesh::RawMesh& mesh, const Triangle& t, Random& random) {
     const double a = random.uniform(0.2, 0.5);
     const double b = random.uniform(0.2, 0.4);
-    return a * mesh.points[at(t[0])] + b * mesh.points[at(t[1])] +
-           (1.0 - a - b) * mesh.points[at(t[2])];
+    return a * mesh.points[t[0]] + b * mesh.points[t[1]] + (1.0 - a - b) * mesh.points[t[2]];
 }
 
 // Faces get a vertex inside: valences and sizes vary.
@@ -138,7 +137,7 @@ void subdivide(mesh::RawMesh& mesh) {
         const auto [place, fresh] = middles.try_emplace(std::minmax(a, b), 0);
         if (fresh) {
             place->second = static_cast<Index>(mesh.points.size());
-            const Vec3 p = 0.5 * (mesh.points[at(a)] + mesh.points[at(b)]);
+            const Vec3 p = 0.5 * (mesh.points[a] + mesh.points[b]);
             mesh.points.push_back(p);
         }
         return place->second;
@@ -170,7 +169,7 @@ void remove_stars(mesh::RawMesh& mesh, Random& random, Index count) {
 double mean_edge(const mesh::RawMesh& mesh) {
     double sum = 0.0;
     for (const Triangle& t : mesh.faces)
-        sum += (mesh.points[at(t[1])] - mesh.points[at(t[0])]).norm();
+        sum += (mesh.points[t[1]] - mesh.points[t[0]]).norm();
     return sum / static_cast<double>(mesh.faces.size());
 }
 
@@ -185,8 +184,8 @@ void bend(mesh::RawMesh& mesh, Random& random) {
 // One defect, at a random place.
 std::string add_defect(mesh::RawMesh& mesh, Random& random) {
     const auto face = [&] { return random.below(static_cast<Index>(mesh.faces.size())); };
-    const auto vertex = [&] { return mesh.faces[at(face())][at(random.below(3))]; };
-    const Triangle t = mesh.faces[at(face())];
+    const auto vertex = [&] { return mesh.faces[face()][random.below(3)]; };
+    const Triangle t = mesh.faces[face()];
     switch (random.below(10)) {
     case 0:
         mesh.faces.push_back(t);
@@ -198,7 +197,7 @@ std::string add_defect(mesh::RawMesh& mesh, Random& random) {
         mesh.faces.push_back({t[0], t[1], t[1]});
         return "repeated vertex";
     case 3: { // a fin on an edge
-        mesh.points.push_back(mesh.points[at(t[0])] + random.direction());
+        mesh.points.push_back(mesh.points[t[0]] + random.direction());
         mesh.faces.push_back({t[0], t[1], static_cast<Index>(mesh.points.size()) - 1});
         return "fin";
     }
@@ -210,14 +209,14 @@ std::string add_defect(mesh::RawMesh& mesh, Random& random) {
         return "joined vertices";
     }
     case 5:
-        mesh.points[at(t[0])] = mesh.points[at(t[1])];
+        mesh.points[t[0]] = mesh.points[t[1]];
         return "two vertices at one place";
     case 6:
-        mesh.points[at(t[0])] = 0.5 * (mesh.points[at(t[1])] + mesh.points[at(t[2])]);
+        mesh.points[t[0]] = 0.5 * (mesh.points[t[1]] + mesh.points[t[2]]);
         return "vertex on an edge";
     case 7: {
-        const Vec3 way = mesh.points[at(t[1])] - mesh.points[at(t[0])];
-        mesh.points[at(t[0])] += (1.0 - std::pow(10.0, random.uniform(-12.0, -3.0))) * way;
+        const Vec3 way = mesh.points[t[1]] - mesh.points[t[0]];
+        mesh.points[t[0]] += (1.0 - std::pow(10.0, random.uniform(-12.0, -3.0))) * way;
         return "needle";
     }
     case 8:

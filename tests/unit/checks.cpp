@@ -19,11 +19,11 @@ public:
         std::iota(parent_.begin(), parent_.end(), 0);
     }
     Index find(Index i) {
-        while (parent_[at(i)] != i)
-            i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+        while (parent_[i] != i)
+            i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    void join(Index a, Index b) { parent_[at(find(a))] = find(b); }
+    void join(Index a, Index b) { parent_[find(a)] = find(b); }
 
 private:
     std::vector<Index> parent_;
@@ -57,9 +57,9 @@ Disk::Disk(const mesh::RawMesh& raw) : Disk(raw, [](const Vec3&) { return false;
 Disk::Disk(const mesh::RawMesh& raw, const std::function<bool(const Vec3& middle)>& cut)
     : mesh(gated(raw)) {
     std::vector<std::uint8_t> seam;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        seam.push_back(
-            cut(0.5 * (mesh.points[at(mesh.origin(h))] + mesh.points[at(mesh.target(h))])) ? 1 : 0);
+    for (const HalfEdge h : mesh.all_half_edges())
+        seam.push_back(cut(0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)])) ? 1
+                                                                                              : 0);
     const atlas::ChartMap whole =
         atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     Progress progress;
@@ -72,13 +72,13 @@ testing::AssertionResult is_valid(const Mesh& mesh) {
     if (mesh.twin.size() != 3 * mesh.faces.size())
         return testing::AssertionFailure() << "3 #F twins expected, found " << mesh.twin.size();
     UnionFind fans(mesh.twin.size());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index opposite = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index opposite = mesh.twin[h];
         if (mesh.origin(h) < 0 || mesh.origin(h) >= mesh.vertex_count())
             return testing::AssertionFailure() << "corner " << h << " names no vertex";
         if (opposite < 0)
             continue;
-        if (mesh.twin[at(opposite)] != h)
+        if (mesh.twin[opposite] != h)
             return testing::AssertionFailure() << "twins of " << h << " are not mutual";
         if (mesh.origin(h) != mesh.target(opposite) || mesh.target(h) != mesh.origin(opposite))
             return testing::AssertionFailure() << "twins of " << h << " run in one direction";
@@ -86,8 +86,8 @@ testing::AssertionResult is_valid(const Mesh& mesh) {
         fans.join(Mesh::next(h), opposite);
     }
     std::vector<std::set<Index>> fans_of(mesh.points.size());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        fans_of[at(mesh.origin(h))].insert(fans.find(h));
+    for (const HalfEdge h : mesh.all_half_edges())
+        fans_of[mesh.origin(h)].insert(fans.find(h));
     for (std::size_t v = 0; v < fans_of.size(); ++v)
         if (fans_of[v].size() != 1)
             return testing::AssertionFailure()
@@ -99,21 +99,21 @@ testing::AssertionResult is_valid(const Mesh& mesh, const atlas::ChartMap& chart
     if (charts.chart.size() != mesh.faces.size() || charts.seam.size() != mesh.twin.size())
         return testing::AssertionFailure() << "sizes do not match the mesh";
     UnionFind parts(mesh.faces.size());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index opposite = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index opposite = mesh.twin[h];
         if (opposite < 0)
             continue;
-        if (charts.seam[at(h)] != charts.seam[at(opposite)])
+        if (charts.seam[h] != charts.seam[opposite])
             return testing::AssertionFailure() << "the seam at " << h << " has one side only";
-        const bool border = charts.chart[at(h / 3)] != charts.chart[at(opposite / 3)];
-        if (border && charts.seam[at(h)] == 0)
+        const bool border = charts.chart[h / 3] != charts.chart[opposite / 3];
+        if (border && charts.seam[h] == 0)
             return testing::AssertionFailure() << "no seam between two charts at " << h;
-        if (charts.seam[at(h)] == 0)
+        if (charts.seam[h] == 0)
             parts.join(h / 3, opposite / 3);
     }
     std::map<Index, std::set<Index>> parts_of;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        parts_of[charts.chart[at(f)]].insert(parts.find(f));
+    for (const Face f : mesh.all_faces())
+        parts_of[charts.chart[f]].insert(parts.find(f));
     if (static_cast<Index>(parts_of.size()) != charts.count || parts_of.begin()->first != 0 ||
         parts_of.rbegin()->first != charts.count - 1)
         return testing::AssertionFailure() << "labels are not 0 to " << charts.count - 1;
@@ -125,25 +125,25 @@ testing::AssertionResult is_valid(const Mesh& mesh, const atlas::ChartMap& chart
 }
 
 Topology topology(const Mesh& mesh, const atlas::ChartMap& charts, Index chart) {
-    const auto glued = [&](Index h) { return mesh.twin[at(h)] >= 0 && charts.seam[at(h)] == 0; };
+    const auto glued = [&](Index h) { return mesh.twin[h] >= 0 && charts.seam[h] == 0; };
     UnionFind corners(mesh.twin.size());
     UnionFind borders(mesh.twin.size()); // boundary half-edges that meet at a vertex
     Index edges_twice = 0;
     Index faces = 0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        if (charts.chart[at(h / 3)] != chart)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (charts.chart[h / 3] != chart)
             continue;
         faces += h % 3 == 0 ? 1 : 0;
         edges_twice += glued(h) ? 1 : 2;
         if (glued(h)) {
-            corners.join(h, Mesh::next(mesh.twin[at(h)]));
-            corners.join(Mesh::next(h), mesh.twin[at(h)]);
+            corners.join(h, Mesh::next(mesh.twin[h]));
+            corners.join(Mesh::next(h), mesh.twin[h]);
         }
     }
     std::set<Index> vertices;
     std::map<Index, Index> leaving; // welded corner → boundary half-edge that starts there
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (charts.chart[at(h / 3)] == chart) {
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (charts.chart[h / 3] == chart) {
             vertices.insert(corners.find(h));
             if (!glued(h))
                 leaving[corners.find(h)] = h;
@@ -162,8 +162,8 @@ std::array<double, 2> stretches(const flatten::FlatteningProblem& problem,
     // First fundamental forms of both triangles in the basis of the edges 0→1 and 0→2; σ² are
     // the generalised eigenvalues.
     const Triangle& t = problem.faces[f];
-    const Vec2 p = uv[at(t[1])] - uv[at(t[0])];
-    const Vec2 q = uv[at(t[2])] - uv[at(t[0])];
+    const Vec2 p = uv[t[1]] - uv[t[0]];
+    const Vec2 q = uv[t[2]] - uv[t[0]];
     const Vec2 a = problem.edges[f].col(0);
     const Vec2 b = problem.edges[f].col(1);
     const double rest = a.squaredNorm() * b.squaredNorm() - a.dot(b) * a.dot(b);
@@ -193,8 +193,7 @@ Index count_flips(const std::vector<Triangle>& faces, const std::vector<Vec2>& u
     Index flips = 0;
     for (const Triangle& t : faces) {
         const auto difference = [&](std::size_t i, int axis) {
-            return static_cast<Extended>(uv[at(t[i])][axis]) -
-                   static_cast<Extended>(uv[at(t[0])][axis]);
+            return static_cast<Extended>(uv[t[i]][axis]) - static_cast<Extended>(uv[t[0]][axis]);
         };
         const Extended area =
             difference(1, 0) * difference(2, 1) - difference(1, 1) * difference(2, 0);

@@ -5,12 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/filters/table.h"
+
 namespace devseg::checks {
 
 declare::HostResult run(const std::string& menu_name, const declare::HostMesh& host,
                         const declare::ParameterValues& values) {
     Progress progress;
-    for (const declare::FilterDeclaration& filter : declare::filter_table())
+    for (const declare::FilterDeclaration& filter : filters::filter_table())
         if (filter.menu_name == menu_name)
             return declare::run_filter(filter, host, values, progress);
     throw std::logic_error("no such filter");
@@ -61,7 +63,7 @@ mesh::RawMesh joined(mesh::RawMesh raw) {
     std::map<std::array<double, 3>, Index> first;
     for (Triangle& t : raw.faces)
         for (Index& v : t) {
-            const Vec3& p = raw.points[at(v)];
+            const Vec3& p = raw.points[v];
             v = first.emplace(std::array<double, 3>{p.x(), p.y(), p.z()}, v).first->second;
         }
     return raw;
@@ -102,9 +104,8 @@ double signed_area(const std::array<Vec2, 3>& triangle) {
 
 double area_on_surface(const mesh::RawMesh& raw, std::size_t face) {
     const Triangle& t = raw.faces[face];
-    return 0.5 * (raw.points[at(t[1])] - raw.points[at(t[0])])
-                     .cross(raw.points[at(t[2])] - raw.points[at(t[0])])
-                     .norm();
+    return 0.5 *
+           (raw.points[t[1]] - raw.points[t[0]]).cross(raw.points[t[2]] - raw.points[t[0]]).norm();
 }
 
 } // namespace devseg::checks

@@ -53,7 +53,7 @@ mesh::RawMesh with_face_order(const mesh::RawMesh& mesh, const std::vector<Index
     mesh::RawMesh result;
     result.points = mesh.points;
     for (const Index f : order)
-        result.faces.push_back(mesh.faces[at(f)]);
+        result.faces.push_back(mesh.faces[f]);
     return result;
 }
 

@@ -15,7 +15,7 @@ void Cloth::add(const mesh::RawMesh& part, const Place& place) {
         host_.geometry.faces.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
         std::array<Vec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = part.points[at(t[k])];
+            corners[k] = part.points[t[k]];
         const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         host_.wedge_uv.push_back(
             {place(corners[0], middle), place(corners[1], middle), place(corners[2], middle)});
@@ -29,10 +29,9 @@ Mesh Cloth::mesh() const {
 CornerUv Cloth::uv() const {
     const mesh::GatedMesh gated = mesh::gate_mesh(host_.geometry);
     CornerUv uv;
-    for (Index f = 0; f < gated.mesh.face_count(); ++f)
+    for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k)
-            uv.push_back(
-                host_.wedge_uv[at(gated.source_face[at(f)])][at(gated.source_corner(f, k))]);
+            uv.push_back(host_.wedge_uv[gated.source_face[f]][gated.source_corner(f, k)]);
     return uv;
 }
 

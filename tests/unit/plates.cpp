@@ -31,13 +31,13 @@ private:
 
 bool is_cell(const Mask& mask, Index x, Index y) {
     return y >= 0 && y < static_cast<Index>(mask.size()) && x >= 0 &&
-           x < static_cast<Index>(mask[at(y)].size()) && mask[at(y)][at(x)] == '#';
+           x < static_cast<Index>(mask[y].size()) && mask[y][x] == '#';
 }
 
 template <class Visit>
 void for_each_cell(const Mask& mask, Visit visit) {
     for (Index y = 0; y < static_cast<Index>(mask.size()); ++y)
-        for (Index x = 0; x < static_cast<Index>(mask[at(y)].size()); ++x)
+        for (Index x = 0; x < static_cast<Index>(mask[y].size()); ++x)
             if (is_cell(mask, x, y))
                 visit(x, y);
 }
@@ -89,7 +89,7 @@ mesh::RawMesh slab(const Mask& mask) {
 Mask mask_with_holes(Index holes) {
     Mask mask(3, std::string(at(2 * holes + 1), '#'));
     for (Index i = 0; i < holes; ++i)
-        mask[1][at(2 * i + 1)] = '.';
+        mask[1][2 * i + 1] = '.';
     return mask;
 }
 
@@ -107,9 +107,9 @@ mesh::RawMesh cube(Index cells) {
                 for (Index u = 0; u < cells; ++u) {
                     const auto p = [&](Index i, Index j) {
                         std::array<Index, 3> at_lattice{};
-                        at_lattice[at(axis)] = side * cells;
-                        at_lattice[at((axis + 1) % 3)] = side == 1 ? i : j;
-                        at_lattice[at((axis + 2) % 3)] = side == 1 ? j : i;
+                        at_lattice[axis] = side * cells;
+                        at_lattice[(axis + 1) % 3] = side == 1 ? i : j;
+                        at_lattice[(axis + 2) % 3] = side == 1 ? j : i;
                         return point(at_lattice[0], at_lattice[1], at_lattice[2]);
                     };
                     add_square(mesh, p(u, v), p(u + 1, v), p(u + 1, v + 1), p(u, v + 1));
@@ -126,7 +126,7 @@ mesh::RawMesh plate_with_handle() {
     constexpr double middle = 7.5; // x halfway between the holes that the tube joins
     const auto find = [&](const Vec3& p) {
         Index v = 0;
-        while ((mesh.points[at(v)] - p).norm() > 1e-9)
+        while ((mesh.points[v] - p).norm() > 1e-9)
             ++v;
         return v;
     };
@@ -139,7 +139,7 @@ mesh::RawMesh plate_with_handle() {
             const Vec3 p(middle - r * std::cos(t), hole[i].y(), r * std::sin(t));
             if (k > 0 && k < steps)
                 mesh.points.push_back(p);
-            rings[at(k)][i] = find(p);
+            rings[k][i] = find(p);
         }
     for (std::size_t k = 0; k < at(steps); ++k)
         for (std::size_t i = 0; i < 4; ++i)

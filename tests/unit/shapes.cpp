@@ -128,7 +128,7 @@ mesh::RawMesh sphere(Index subdivisions) {
             const auto [place, added] =
                 middles.try_emplace(std::minmax(a, b), static_cast<Index>(mesh.points.size()));
             if (added)
-                mesh.points.push_back(mesh.points[at(a)] + mesh.points[at(b)]);
+                mesh.points.push_back(mesh.points[a] + mesh.points[b]);
             return place->second;
         };
         std::vector<Triangle> faces;
@@ -192,7 +192,7 @@ mesh::RawMesh folded_strip(Index folds, Index rows, double angle) {
         place = place * Eigen::Translation3d(bottom) *
                 Eigen::AngleAxisd(angle, ruling.normalized()) * Eigen::Translation3d(-bottom);
         for (Index j = 0; j <= rows; ++j)
-            mesh.points[at(j * (folds + 1) + i)] = place * (bottom + ruling * j / rows);
+            mesh.points[j * (folds + 1) + i] = place * (bottom + ruling * j / rows);
     }
     return mesh;
 }

@@ -7,12 +7,12 @@ namespace devseg::atlas {
 
 /// Factor of an edge's length: 1 on a smooth surface, down to 0.1 on a right-angled crease, where
 /// a cut is not seen and does not cost shape.
-double crease_factor(const Mesh& mesh, Index half_edge);
+double crease_factor(const Mesh& mesh, HalfEdge half_edge);
 
 /// The half-edges of the shortest path within the faces from a vertex to their border or to a cut;
 /// creases count less. Empty where the vertex is on the border, or not among the faces.
 std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
-                                  const std::vector<std::uint8_t>& seam, Index vertex);
+                                  const std::vector<std::uint8_t>& seam, Vertex vertex);
 
 /// Marks the half-edges and their twins as cuts.
 void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,

@@ -36,18 +36,21 @@ struct ChartSurface {
     std::vector<Index> face;               // #f: index in the mesh
     std::vector<Triangle> corners;         // #f: local vertices
     std::vector<Index> vertex;             // #v: index of the mesh vertex
-    std::vector<Index> twin;               // 3 #f: local half-edges, −1 on the chart's boundary
+    std::vector<HalfEdge> twin;            // 3 #f: local half-edges, −1 on the chart's boundary
     std::vector<std::vector<Index>> loops; // boundary loops as local half-edges, in their order
     Index edge_count = 0;
 
     Index vertex_count() const { return static_cast<Index>(vertex.size()); }
     Index face_count() const { return static_cast<Index>(face.size()); }
-    Index origin(Index h) const { return corners[at(h / 3)][at(h % 3)]; }
-    Index target(Index h) const { return origin(Mesh::next(h)); }
+    Range<VertexKind> all_vertices() const { return {0, vertex_count()}; }
+    Range<FaceKind> all_faces() const { return {0, face_count()}; }
+    Range<HalfEdgeKind> all_half_edges() const { return {0, 3 * face_count()}; }
+    Vertex origin(HalfEdge h) const { return corners[face_of(h)][corner_of(h)]; }
+    Vertex target(HalfEdge h) const { return origin(Mesh::next(h)); }
     Index euler_characteristic() const { return vertex_count() - edge_count + face_count(); }
     bool is_disk() const { return loops.size() == 1 && euler_characteristic() == 1; }
     /// Half-edge of the mesh that the local half-edge lies on.
-    Index mesh_half_edge(Index h) const { return 3 * face[at(h / 3)] + h % 3; }
+    Index mesh_half_edge(HalfEdge h) const { return 3 * face[h / 3] + h % 3; }
 };
 
 /// The given faces, cut open along the marked edges (`seam`, 3 #F): all edges between these faces

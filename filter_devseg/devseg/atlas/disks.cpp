@@ -20,7 +20,7 @@ struct PathForest {
     std::vector<Index> toward;    // #v: half-edge from the vertex, one step nearer; −1 at the end
 };
 
-double edge_length(const Mesh& mesh, const ChartSurface& s, Index h) {
+double edge_length(const Mesh& mesh, const ChartSurface& s, HalfEdge h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
@@ -29,25 +29,25 @@ void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edg
                  const std::vector<Index>& sources, PathForest& forest, Heartbeat& beat) {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const Index v : sources) {
-        forest.distance[at(v)] = 0.0;
-        forest.toward[at(v)] = -1;
+    for (const Vertex v : sources) {
+        forest.distance[v] = 0.0;
+        forest.toward[v] = -1;
         queue.emplace(0.0, v);
     }
     while (!queue.empty()) {
         beat();
         const auto [d, v] = queue.top();
         queue.pop();
-        if (d > forest.distance[at(v)])
+        if (d > forest.distance[v])
             continue;
         for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
-            if (s.twin[at(*e)] < 0)
+            if (s.twin[*e] < 0)
                 continue;
             const Index w = s.target(*e);
             const double through = d + edge_length(mesh, s, *e);
-            if (through < forest.distance[at(w)]) {
-                forest.toward[at(w)] = s.twin[at(*e)];
-                forest.distance[at(w)] = through;
+            if (through < forest.distance[w]) {
+                forest.toward[w] = s.twin[*e];
+                forest.distance[w] = through;
                 queue.emplace(through, w);
             }
         }
@@ -63,7 +63,7 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
     if (s.loops.empty())
         sources.push_back(root);
     else
-        for (const Index h : s.loops.front())
+        for (const HalfEdge h : s.loops.front())
             sources.push_back(s.origin(h));
     Heartbeat beat(progress);
     relax_paths(mesh, s, edges, sources, forest, beat);
@@ -80,15 +80,15 @@ public:
     double join() { return cut(join_loops(mesh_, s_, progress_)); }
 
     double cut(const std::vector<Index>& half_edges) {
-        for (const Index h : half_edges)
+        for (const HalfEdge h : half_edges)
             cut_edge(h);
         return length_;
     }
 
-    void cut_path(const PathForest& forest, Index v) {
-        while (forest.toward[at(v)] >= 0) {
-            cut_edge(forest.toward[at(v)]);
-            v = s_.target(forest.toward[at(v)]);
+    void cut_path(const PathForest& forest, Vertex v) {
+        while (forest.toward[v] >= 0) {
+            cut_edge(forest.toward[v]);
+            v = s_.target(forest.toward[v]);
         }
     }
     double length() const { return length_; }
@@ -102,7 +102,7 @@ public:
     double cut_handles() {
         const VertexEdges edges(s_);
         const PathForest forest = grow_paths(mesh_, s_, edges, 0, progress_);
-        for (const Index h : handle_edges(forest)) {
+        for (const HalfEdge h : handle_edges(forest)) {
             cut_edge(h);
             cut_path(forest, s_.origin(h));
             cut_path(forest, s_.target(h));
@@ -119,11 +119,11 @@ public:
     // A boundary of two edges encloses nothing in the plane: cut one more edge, to an inner vertex.
     double lengthen() {
         std::vector<std::uint8_t> on_boundary(s_.vertex.size(), 0);
-        for (const Index h : s_.loops.front())
-            on_boundary[at(s_.origin(h))] = 1;
+        for (const HalfEdge h : s_.loops.front())
+            on_boundary[s_.origin(h)] = 1;
         Index shortest = -1;
-        for (Index h = 0; h < 3 * s_.face_count(); ++h)
-            if (on_boundary[at(s_.origin(h))] != 0 && on_boundary[at(s_.target(h))] == 0 &&
+        for (const HalfEdge h : s_.all_half_edges())
+            if (on_boundary[s_.origin(h)] != 0 && on_boundary[s_.target(h)] == 0 &&
                 (shortest < 0 || edge_length(mesh_, s_, h) < edge_length(mesh_, s_, shortest)))
                 shortest = h;
         if (shortest >= 0)
@@ -132,31 +132,31 @@ public:
     }
 
 private:
-    void cut_edge(Index h) {
+    void cut_edge(HalfEdge h) {
         const Index a = s_.mesh_half_edge(h);
-        const Index b = s_.mesh_half_edge(s_.twin[at(h)]);
-        if (seam_[at(a)] == 0)
+        const Index b = s_.mesh_half_edge(s_.twin[h]);
+        if (seam_[a] == 0)
             length_ += mesh_.edge_length(a);
-        seam_[at(a)] = seam_[at(b)] = 1;
+        seam_[a] = seam_[b] = 1;
         any_cut_ = true;
     }
 
     // The cycles through handles of a closed chart may hang together only by a path from the
     // root, which cuts nothing apart: take it back.
-    void drop_stem(const VertexEdges& edges, Index v) {
+    void drop_stem(const VertexEdges& edges, Vertex v) {
         while (true) {
             Index only = -1;
             int count = 0;
             for (const Index* e = edges.first(v); e != edges.last(v); ++e)
-                if (seam_[at(s_.mesh_half_edge(*e))] != 0) {
+                if (seam_[s_.mesh_half_edge(*e)] != 0) {
                     only = *e;
                     ++count;
                 }
             if (count != 1)
                 return;
             length_ -= edge_length(mesh_, s_, only);
-            seam_[at(s_.mesh_half_edge(only))] = 0;
-            seam_[at(s_.mesh_half_edge(s_.twin[at(only)]))] = 0;
+            seam_[s_.mesh_half_edge(only)] = 0;
+            seam_[s_.mesh_half_edge(s_.twin[only])] = 0;
             v = s_.target(only);
         }
     }
@@ -166,18 +166,18 @@ private:
     std::vector<Index> handle_edges(const PathForest& forest) const {
         struct Dual {
             double cycle;
-            Index half_edge;
+            HalfEdge half_edge;
         };
         std::vector<Dual> duals;
         Heartbeat beat(progress_);
-        for (Index h = 0; h < 3 * s_.face_count(); ++h) {
+        for (const HalfEdge h : s_.all_half_edges()) {
             beat();
-            const Index opposite = s_.twin[at(h)];
+            const Index opposite = s_.twin[h];
             if (opposite < h)
                 continue;
             if (in_forest(forest, h) || in_forest(forest, opposite))
                 continue;
-            duals.push_back({forest.distance[at(s_.origin(h))] + forest.distance[at(s_.target(h))] +
+            duals.push_back({forest.distance[s_.origin(h)] + forest.distance[s_.target(h)] +
                                  edge_length(mesh_, s_, h),
                              h});
         }
@@ -185,28 +185,28 @@ private:
                          [](const Dual& a, const Dual& b) { return a.cycle > b.cycle; });
         std::vector<Index> parent(s_.face.size());
         std::iota(parent.begin(), parent.end(), 0);
-        const auto find = [&](Index f) {
-            while (parent[at(f)] != f)
-                f = parent[at(f)] = parent[at(parent[at(f)])];
+        const auto find = [&](Face f) {
+            while (parent[f] != f)
+                f = parent[f] = parent[parent[f]];
             return f;
         };
         std::vector<Index> rest;
         for (const Dual& dual : duals) {
             beat();
             const Index a = find(dual.half_edge / 3);
-            const Index b = find(s_.twin[at(dual.half_edge)] / 3);
+            const Index b = find(s_.twin[dual.half_edge] / 3);
             if (a == b)
                 rest.push_back(dual.half_edge);
             else
-                parent[at(a)] = b;
+                parent[a] = b;
         }
         return rest;
     }
 
-    static bool in_forest(const PathForest& forest, Index h, Index origin) {
-        return forest.toward[at(origin)] == h;
+    static bool in_forest(const PathForest& forest, HalfEdge h, Index origin) {
+        return forest.toward[origin] == h;
     }
-    bool in_forest(const PathForest& forest, Index h) const {
+    bool in_forest(const PathForest& forest, HalfEdge h) const {
         return in_forest(forest, h, s_.origin(h));
     }
 

@@ -20,16 +20,16 @@ PieceGraph build_graph(const Mesh& mesh, const ChartMap& pieces) {
     PieceGraph graph;
     graph.area.assign(at(pieces.count), 0.0);
     graph.border.resize(at(pieces.count));
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        graph.area[at(pieces.chart[at(f)])] += mesh.face_areas[at(f)];
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const Face f : mesh.all_faces())
+        graph.area[pieces.chart[f]] += mesh.face_areas[f];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin < 0)
             continue;
-        const Index a = pieces.chart[at(h / 3)];
-        const Index b = pieces.chart[at(twin / 3)];
+        const Index a = pieces.chart[h / 3];
+        const Index b = pieces.chart[twin / 3];
         if (a != b)
-            graph.border[at(a)][b] += mesh.edge_length(h);
+            graph.border[a][b] += mesh.edge_length(h);
     }
     return graph;
 }
@@ -37,7 +37,7 @@ PieceGraph build_graph(const Mesh& mesh, const ChartMap& pieces) {
 Index longest_neighbour(const PieceGraph& graph, Index piece) {
     Index best = -1;
     double longest = -1.0;
-    for (const auto& [other, length] : graph.border[at(piece)])
+    for (const auto& [other, length] : graph.border[piece])
         if (length > longest) {
             longest = length;
             best = other;
@@ -54,33 +54,33 @@ std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& 
     const double limit = share * mesh.total_area;
     std::set<std::pair<double, Index>> small; // by area, then by number
     for (Index p = 0; p < pieces.count; ++p)
-        if (graph.area[at(p)] < limit)
-            small.emplace(graph.area[at(p)], p);
+        if (graph.area[p] < limit)
+            small.emplace(graph.area[p], p);
     std::vector<Index> owner(at(pieces.count));
     for (Index p = 0; p < pieces.count; ++p)
-        owner[at(p)] = p;
+        owner[p] = p;
     while (!small.empty()) {
         const Index piece = small.begin()->second;
         small.erase(small.begin());
         const Index into = longest_neighbour(graph, piece);
         if (into < 0)
             continue;
-        owner[at(piece)] = into;
-        const bool was_small = small.erase({graph.area[at(into)], into}) > 0;
-        graph.area[at(into)] += graph.area[at(piece)];
-        if (was_small && graph.area[at(into)] < limit)
-            small.emplace(graph.area[at(into)], into);
-        for (const auto& [other, length] : graph.border[at(piece)]) {
-            graph.border[at(other)].erase(piece);
+        owner[piece] = into;
+        const bool was_small = small.erase({graph.area[into], into}) > 0;
+        graph.area[into] += graph.area[piece];
+        if (was_small && graph.area[into] < limit)
+            small.emplace(graph.area[into], into);
+        for (const auto& [other, length] : graph.border[piece]) {
+            graph.border[other].erase(piece);
             if (other != into) {
-                graph.border[at(other)][into] += length;
-                graph.border[at(into)][other] += length;
+                graph.border[other][into] += length;
+                graph.border[into][other] += length;
             }
         }
     }
     for (Index& p : pieces.chart)
-        while (owner[at(p)] != p)
-            p = owner[at(p)];
+        while (owner[p] != p)
+            p = owner[p];
     return make_chart_map(mesh, pieces.chart, {}, false).chart;
 }
 

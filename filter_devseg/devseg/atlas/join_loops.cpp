@@ -10,22 +10,22 @@ namespace devseg::atlas {
 
 VertexEdges::VertexEdges(const ChartSurface& surface) : begin_(at(surface.vertex_count()) + 1, 0) {
     const auto each = [&](auto visit) {
-        for (Index h = 0; h < 3 * surface.face_count(); ++h) {
+        for (const HalfEdge h : surface.all_half_edges()) {
             visit(surface.origin(h), h);
-            if (surface.twin[at(h)] < 0)
+            if (surface.twin[h] < 0)
                 visit(surface.target(h), h);
         }
     };
-    each([&](Index v, Index) { ++begin_[at(v) + 1]; });
+    each([&](Vertex v, Index) { ++begin_[at(v) + 1]; });
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     edges_.resize(at(begin_.back()));
     std::vector<Index> cursor(begin_.begin(), begin_.end() - 1);
-    each([&](Index v, Index h) { edges_[at(cursor[at(v)]++)] = h; });
+    each([&](Vertex v, HalfEdge h) { edges_[cursor[v]++] = h; });
 }
 
 double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vector<Index>& loop) {
     double sum = 0.0;
-    for (const Index h : loop)
+    for (const HalfEdge h : loop)
         sum += mesh.edge_length(surface.mesh_half_edge(h));
     return sum;
 }
@@ -38,8 +38,8 @@ public:
         : mesh_(mesh), s_(surface), edges_(surface), distance_(surface.vertex.size(), infinite),
           toward_(surface.vertex.size(), -1), open_loop_(surface.vertex.size(), -1) {
         for (std::size_t l = 0; l < s_.loops.size(); ++l)
-            for (const Index h : s_.loops[l])
-                open_loop_[at(s_.origin(h))] = static_cast<Index>(l);
+            for (const HalfEdge h : s_.loops[l])
+                open_loop_[s_.origin(h)] = static_cast<Index>(l);
     }
 
     std::vector<Index> run(const Progress& progress) {
@@ -53,10 +53,10 @@ public:
             beat();
             const auto [d, v] = queue_.top();
             queue_.pop();
-            if (d > distance_[at(v)])
+            if (d > distance_[v])
                 continue;
-            if (open_loop_[at(v)] >= 0) {
-                const Index loop = open_loop_[at(v)];
+            if (open_loop_[v] >= 0) {
+                const Index loop = open_loop_[v];
                 absorb_path(v);
                 absorb_loop(loop);
                 --open;
@@ -68,35 +68,35 @@ public:
     }
 
 private:
-    void make_source(Index v) {
-        distance_[at(v)] = 0.0;
-        toward_[at(v)] = -1;
+    void make_source(Vertex v) {
+        distance_[v] = 0.0;
+        toward_[v] = -1;
         queue_.emplace(0.0, v);
     }
     void absorb_loop(Index loop) {
-        for (const Index h : s_.loops[at(loop)]) {
-            open_loop_[at(s_.origin(h))] = -1;
+        for (const HalfEdge h : s_.loops[loop]) {
+            open_loop_[s_.origin(h)] = -1;
             make_source(s_.origin(h));
         }
     }
     // The path from v to what is joined already is cut, and is joined from now on.
-    void absorb_path(Index v) {
-        while (toward_[at(v)] >= 0) {
-            const Index h = toward_[at(v)];
+    void absorb_path(Vertex v) {
+        while (toward_[v] >= 0) {
+            const HalfEdge h = toward_[v];
             cut_.push_back(h);
             make_source(v);
             v = s_.target(h);
         }
     }
-    void relax(Index v) {
+    void relax(Vertex v) {
         for (const Index* e = edges_.first(v); e != edges_.last(v); ++e) {
-            if (s_.twin[at(*e)] < 0)
+            if (s_.twin[*e] < 0)
                 continue;
             const Index w = s_.target(*e);
-            const double through = distance_[at(v)] + mesh_.edge_length(s_.mesh_half_edge(*e));
-            if (through < distance_[at(w)]) {
-                distance_[at(w)] = through;
-                toward_[at(w)] = s_.twin[at(*e)];
+            const double through = distance_[v] + mesh_.edge_length(s_.mesh_half_edge(*e));
+            if (through < distance_[w]) {
+                distance_[w] = through;
+                toward_[w] = s_.twin[*e];
                 queue_.emplace(through, w);
             }
         }

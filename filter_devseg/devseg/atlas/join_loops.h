@@ -19,8 +19,8 @@ std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
 class VertexEdges {
 public:
     explicit VertexEdges(const ChartSurface& surface);
-    const Index* first(Index v) const { return edges_.data() + begin_[at(v)]; }
-    const Index* last(Index v) const { return edges_.data() + begin_[at(v) + 1]; }
+    const Index* first(Vertex v) const { return edges_.data() + begin_[v]; }
+    const Index* last(Vertex v) const { return edges_.data() + begin_[at(v) + 1]; }
 
 private:
     std::vector<Index> begin_;

@@ -11,10 +11,10 @@ namespace devseg::atlas {
 
 std::vector<Index> cut_edges_at_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
     std::vector<Index> edges(mesh.points.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] > h && seam[at(h)] != 0) {
-            ++edges[at(mesh.origin(h))];
-            ++edges[at(mesh.target(h))];
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h && seam[h] != 0) {
+            ++edges[mesh.origin(h)];
+            ++edges[mesh.target(h)];
         }
     return edges;
 }
@@ -29,21 +29,21 @@ ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, doubl
     std::priority_queue<std::tuple<double, Index>, std::vector<std::tuple<double, Index>>,
                         std::greater<>>
         tips;
-    const auto cut_edge = [&](Index v) {
-        Index cut = -1;
-        mesh::visit_star(mesh, leaving[at(v)], [&](Index h) { cut = seam[at(h)] != 0 ? h : cut; });
+    const auto cut_edge = [&](Vertex v) {
+        HalfEdge cut;
+        mesh::visit_star(mesh, leaving[v], [&](HalfEdge h) { cut = seam[h] != 0 ? h : cut; });
         return cut;
     };
-    const auto offer = [&](Index v) {
-        if (boundary[at(v)] != 0 || edges[at(v)] != 1)
+    const auto offer = [&](Vertex v) {
+        if (boundary[v] != 0 || edges[v] != 1)
             return;
-        const Index h = cut_edge(v);
+        const HalfEdge h = cut_edge(v);
         const Index other = mesh.target(h);
-        if (boundary[at(other)] == 0 && edges[at(other)] == 1)
+        if (boundary[other] == 0 && edges[other] == 1)
             return; // the last cut of a closed chart
-        tips.emplace(spent[at(v)] + defect[at(v)] * mesh.edge_length(h), v);
+        tips.emplace(spent[v] + defect[v] * mesh.edge_length(h), v);
     };
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
+    for (const Vertex v : mesh.all_vertices())
         offer(v);
     ClosedSlits result;
     while (!tips.empty()) {
@@ -51,15 +51,15 @@ ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, doubl
         tips.pop();
         if (total > threshold)
             break;
-        const Index h = cut_edge(v);
+        const HalfEdge h = cut_edge(v);
         const Index other = mesh.target(h);
-        if (boundary[at(other)] == 0 && edges[at(other)] == 1)
+        if (boundary[other] == 0 && edges[other] == 1)
             continue;
-        seam[at(h)] = seam[at(mesh.twin[at(h)])] = 0;
-        edges[at(v)] = 0;
-        --edges[at(other)];
-        defect[at(other)] += defect[at(v)];
-        spent[at(other)] += total;
+        seam[h] = seam[mesh.twin[h]] = 0;
+        edges[v] = 0;
+        --edges[other];
+        defect[other] += defect[v];
+        spent[other] += total;
         ++result.closed_edges;
         result.cost = std::max(result.cost, total);
         offer(other);

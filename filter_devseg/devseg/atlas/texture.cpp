@@ -23,14 +23,13 @@ ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv) {
     }
     const double tolerance = seam_tolerance * (high - low).norm();
     const auto differ = [&](Index a, Index b) {
-        return !((uv[at(a)] - uv[at(b)]).cwiseAbs().maxCoeff() <= tolerance);
+        return !((uv[a] - uv[b]).cwiseAbs().maxCoeff() <= tolerance);
     };
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index opposite = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index opposite = mesh.twin[h];
         if (opposite >= 0)
-            seam[at(h)] =
-                differ(h, Mesh::next(opposite)) || differ(Mesh::next(h), opposite) ? 1 : 0;
+            seam[h] = differ(h, Mesh::next(opposite)) || differ(Mesh::next(h), opposite) ? 1 : 0;
     }
     return make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, true);
 }
@@ -38,10 +37,10 @@ ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv) {
 double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv) {
     std::vector<double> surface(at(charts.count), 0.0); // boundary lengths of the charts
     std::vector<double> plane(at(charts.count), 0.0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] < 0 || charts.seam[at(h)] != 0) {
-            surface[at(charts.chart[at(h / 3)])] += mesh.edge_length(h);
-            plane[at(charts.chart[at(h / 3)])] += (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] < 0 || charts.seam[h] != 0) {
+            surface[charts.chart[h / 3]] += mesh.edge_length(h);
+            plane[charts.chart[h / 3]] += (uv[Mesh::next(h)] - uv[h]).norm();
         }
     double least = infinite;
     double most = 0.0;
@@ -57,7 +56,7 @@ double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv
     if (least > 0.0 && most <= (1.0 + same_length) * least)
         return all_surface / all_plane;
     double area = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (const Face f : mesh.all_faces())
         area += std::abs(plane::uv_area(uv, f));
     return area > 0.0 ? std::sqrt(mesh.total_area / area) : 0.0;
 }

@@ -31,11 +31,11 @@ std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts)
     const std::size_t count = at(charts.count);
     std::vector<std::set<Index>> neighbours(count);
     std::vector<double> area(count, 0.0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index c = charts.chart[at(h / 3)];
-        area[at(c)] += mesh.face_areas[at(h / 3)] / 3.0;
-        if (mesh.twin[at(h)] >= 0 && charts.chart[at(mesh.twin[at(h)] / 3)] != c)
-            neighbours[at(c)].insert(charts.chart[at(mesh.twin[at(h)] / 3)]);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index c = charts.chart[h / 3];
+        area[c] += mesh.face_areas[h / 3] / 3.0;
+        if (mesh.twin[h] >= 0 && charts.chart[mesh.twin[h] / 3] != c)
+            neighbours[c].insert(charts.chart[mesh.twin[h] / 3]);
     }
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -46,8 +46,8 @@ std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts)
     for (const std::size_t c : order) {
         std::array<bool, palette.size()> taken{};
         for (const Index n : neighbours[c])
-            if (chosen[at(n)] < palette.size())
-                taken[chosen[at(n)]] = true;
+            if (chosen[n] < palette.size())
+                taken[chosen[n]] = true;
         // The least used free colour keeps charts apart that only look like neighbours.
         std::size_t best = palette.size();
         for (std::size_t i = 0; i < palette.size(); ++i)
@@ -67,7 +67,7 @@ std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& ch
     std::vector<Color> result;
     result.reserve(charts.chart.size());
     for (const Index c : charts.chart)
-        result.push_back(colors[at(c)]);
+        result.push_back(colors[c]);
     return result;
 }
 

@@ -19,8 +19,8 @@ std::optional<atlas::ChartMap> read_charts(const HostMesh& host, const mesh::Gat
     const Mesh& mesh = gated.mesh;
     std::vector<Index> labels(mesh.faces.size(), 0);
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::size_t source = at(gated.source_face[at(f)]);
+    for (const Face f : mesh.all_faces()) {
+        const std::size_t source = at(gated.source_face[f]);
         if (!host.chart_id.empty()) {
             const double id = host.chart_id[source];
             if (!(std::abs(id) <= std::numeric_limits<Index>::max()))
@@ -28,18 +28,18 @@ std::optional<atlas::ChartMap> read_charts(const HostMesh& host, const mesh::Gat
                                       std::to_string(id) + " at face " + std::to_string(source) +
                                       "; run a segmentation filter again",
                                   {static_cast<Index>(source)});
-            labels[at(f)] = static_cast<Index>(std::lround(id));
+            labels[f] = static_cast<Index>(std::lround(id));
         }
         if (host.seam_edges.empty())
             continue;
         const double bits = host.seam_edges[source];
         const int mask = bits >= 0.0 && bits <= 7.0 ? static_cast<int>(std::lround(bits)) : 0;
         for (Index e = 0; e < 3; ++e)
-            seam[at(3 * f + e)] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
+            seam[3 * f + e] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
     }
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] >= 0 && seam[at(h)] != 0)
-            seam[at(mesh.twin[at(h)])] = 1;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 && seam[h] != 0)
+            seam[mesh.twin[h]] = 1;
     return atlas::make_chart_map(mesh, labels, seam, true);
 }
 
@@ -53,10 +53,10 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const mesh::GatedMesh& gat
     if (host.wedge_uv.empty())
         return std::nullopt;
     CornerUv uv(3 * gated.mesh.faces.size());
-    for (Index f = 0; f < gated.mesh.face_count(); ++f)
+    for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k) {
-            const std::size_t source = at(gated.source_face[at(f)]);
-            const Vec2& p = host.wedge_uv[source][at(gated.source_corner(f, k))];
+            const std::size_t source = at(gated.source_face[f]);
+            const Vec2& p = host.wedge_uv[source][gated.source_corner(f, k)];
             if (!is_coordinate(p) && !needed)
                 return std::nullopt;
             if (!is_coordinate(p))
@@ -64,7 +64,7 @@ std::optional<CornerUv> read_uv(const HostMesh& host, const mesh::GatedMesh& gat
                                   "beyond 32 bits at face " +
                                       std::to_string(source) + "; run 'Charts: Flatten' again",
                                   {static_cast<Index>(source)});
-            uv[at(3 * f + k)] = p;
+            uv[3 * f + k] = p;
         }
     return uv;
 }
@@ -74,16 +74,16 @@ template <class Value>
 std::vector<Value> of_faces(const std::vector<Value>& source, const mesh::GatedMesh& gated) {
     std::vector<Value> values;
     if (!source.empty())
-        for (const Index f : gated.source_face)
-            values.push_back(source[at(f)]);
+        for (const Face f : gated.source_face)
+            values.push_back(source[f]);
     return values;
 }
 
 // Bits of the source face's cut edges; edges that the gate had to cut are seams as well.
-int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, Index f) {
+int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, Face f) {
     int bits = 0;
     for (Index e = 0; e < 3; ++e)
-        if (charts.seam[at(3 * f + e)] != 0 || gated.cut[at(3 * f + e)] != 0)
+        if (charts.seam[3 * f + e] != 0 || gated.cut[3 * f + e] != 0)
             bits |= 1 << gated.source_edge(f, e);
     return bits;
 }
@@ -109,20 +109,20 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
     for (std::size_t source = 0; source < gated.stand_in.size(); ++source) {
-        const Index f = gated.stand_in[source];
-        const bool own = gated.source_face[at(f)] == static_cast<Index>(source);
+        const Face f = gated.stand_in[source];
+        const bool own = gated.source_face[f] == static_cast<Index>(source);
         if (output.charts) {
-            result.chart_id.push_back(output.charts->chart[at(f)]);
+            result.chart_id.push_back(output.charts->chart[f]);
             result.seam_edges.push_back(own ? seam_bits(gated, *output.charts, f) : 0);
         }
         if (output.face_quality)
-            result.face_quality.push_back((*output.face_quality)[at(f)]);
+            result.face_quality.push_back((*output.face_quality)[f]);
         if (output.face_color)
-            result.face_color.push_back((*output.face_color)[at(f)]);
+            result.face_color.push_back((*output.face_color)[f]);
         if (output.uv) {
             std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
             for (Index k = 0; k < 3; ++k) // faces that were left out collapse onto one corner
-                corners[at(gated.source_corner(f, k))] = (*output.uv)[at(3 * f + (own ? k : 0))];
+                corners[gated.source_corner(f, k)] = (*output.uv)[3 * f + (own ? k : 0)];
             result.wedge_uv.push_back(corners);
         }
     }
@@ -132,7 +132,7 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
 // The mesh with borders joined that lie on each other.
 mesh::GatedMesh gate_joined(const mesh::RawMesh& raw, const Progress& progress) {
     for (const Triangle& t : raw.faces)
-        for (const Index v : t)
+        for (const Vertex v : t)
             if (v < 0 || at(v) >= raw.points.size())
                 return mesh::gate_mesh(raw, progress); // which says what is wrong
     const mesh::WeldedMesh welded = mesh::weld_borders(raw);
@@ -175,7 +175,7 @@ void FilterRun::operator()(Progress& progress) {
         result = map_back(host, gated, std::move(output));
     } catch (InvalidMesh& error) {
         for (Index& f : error.faces)
-            f = gated.source_face[at(f)];
+            f = gated.source_face[f];
         throw;
     }
 }

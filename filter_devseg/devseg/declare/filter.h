@@ -99,8 +99,9 @@ struct FilterDeclaration {
     std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
 };
 
-/// All filters of the suite, in the order of the menus.
-const std::vector<FilterDeclaration>& filter_table();
+/// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,
+/// its connected components.
+atlas::ChartMap find_charts(const FilterInput& input);
 
 /// A mesh as a host has it; per-face data is for all faces or empty.
 struct HostMesh {

@@ -48,7 +48,7 @@ public:
                                    const Eigen::VectorXd& lambda) const;
 
     /// Points of row r: the centre first, then those around it.
-    const Index* first_point(Index r) const { return point_.data() + begin_[at(r)]; }
+    const Index* first_point(Index r) const { return point_.data() + begin_[r]; }
     const Index* last_point(Index r) const { return point_.data() + begin_[at(r) + 1]; }
 
 private:

@@ -39,8 +39,8 @@ std::vector<Index> inner_vertices(const Mesh& mesh, const std::vector<std::uint8
     const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh);
     const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
     std::vector<Index> inner;
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        if (leaving[at(v)] >= 0 && boundary[at(v)] == 0 && cuts[at(v)] == 0)
+    for (const Vertex v : mesh.all_vertices())
+        if (leaving[v] >= 0 && boundary[v] == 0 && cuts[v] == 0)
             inner.push_back(v);
     return inner;
 }
@@ -71,7 +71,7 @@ public:
             result_.mean_displacement += moved / static_cast<double>(end.size());
         }
         for (const Index p : point_of_)
-            result_.points.push_back(end[at(p)]);
+            result_.points.push_back(end[p]);
         return std::move(result_);
     }
 
@@ -89,27 +89,27 @@ private:
     bool close_reflex_tips() {
         Mesh now = mesh_;
         for (std::size_t v = 0; v < now.points.size(); ++v)
-            now.points[v] = projection_.points()[at(point_of_[v])];
+            now.points[v] = projection_.points()[point_of_[v]];
         const std::vector<double> defect = mesh::angle_defects(now);
         const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh_);
         std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         std::vector<std::uint8_t>& seam = result_.charts.seam;
         const Index closed_before = result_.closed_edges;
         kept_open_.resize(mesh_.points.size(), 0);
-        for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-            if (boundary[at(v)] != 0 || cuts[at(v)] != 1 || kept_open_[at(v)] != 0 ||
-                !(defect[at(v)] < -options_.tolerance) || defect[at(v)] < -most_inner_defect)
+        for (const Vertex v : mesh_.all_vertices()) {
+            if (boundary[v] != 0 || cuts[v] != 1 || kept_open_[v] != 0 ||
+                !(defect[v] < -options_.tolerance) || defect[v] < -most_inner_defect)
                 continue;
-            Index edge = -1;
-            mesh::visit_star(mesh_, leaving_[at(v)],
-                             [&](Index h) { edge = seam[at(h)] != 0 ? h : edge; });
-            const Index other = mesh_.target(edge);
-            if (boundary[at(other)] == 0 && cuts[at(other)] == 1)
+            HalfEdge edge;
+            mesh::visit_star(mesh_, leaving_[v],
+                             [&](HalfEdge h) { edge = seam[h] != 0 ? h : edge; });
+            const Vertex other = mesh_.target(edge);
+            if (boundary[other] == 0 && cuts[other] == 1)
                 continue; // the last cut of a closed chart
-            seam[at(edge)] = seam[at(mesh_.twin[at(edge)])] = 0;
-            cuts[at(v)] = 0;
-            --cuts[at(other)];
-            kept_open_[at(v)] = 1; // if it is cut again, it stays so
+            seam[edge] = seam[mesh_.twin[edge]] = 0;
+            cuts[v] = 0;
+            --cuts[other];
+            kept_open_[v] = 1; // if it is cut again, it stays so
             ++result_.closed_edges;
         }
         if (result_.closed_edges == closed_before)
@@ -128,32 +128,30 @@ private:
     // Where few charts are left with defects, these are all that has to move.
     bool focus() {
         std::vector<std::uint8_t> open(at(result_.charts.count), 0);
-        const auto chart_of = [&](Index v) {
-            return result_.charts.chart[at(leaving_[at(v)] / 3)];
-        };
+        const auto chart_of = [&](Vertex v) { return result_.charts.chart[leaving_[v] / 3]; };
         for (Index r = 0; r < projection_.defects().size(); ++r)
             if (std::abs(projection_.defects()[r]) > focus_share * options_.tolerance)
-                open[at(chart_of(rows_[at(r)]))] = 1;
+                open[chart_of(rows_[r])] = 1;
         std::vector<std::uint8_t> near(mesh_.points.size(), 0);
         std::size_t count = 0;
-        for (const Index v : rows_) {
-            near[at(v)] = open[at(chart_of(v))];
-            count += near[at(v)];
+        for (const Vertex v : rows_) {
+            near[v] = open[chart_of(v)];
+            count += near[v];
         }
         if (static_cast<double>(count) > most_in_focus * static_cast<double>(rows_.size()))
             return false;
         std::vector<std::uint8_t> outside(mesh_.points.size(), 0);
         std::vector<Index> rows;
-        for (const Index v : rows_)
-            if (near[at(v)] != 0)
+        for (const Vertex v : rows_)
+            if (near[v] != 0)
                 rows.push_back(v);
             else
-                outside[at(v)] = 1;
+                outside[v] = 1;
         std::vector<std::uint8_t> fixed(projection_.points().size(), 0);
         for (const Triangle& t : mesh_.faces)
-            if ((outside[at(t[0])] | outside[at(t[1])] | outside[at(t[2])]) != 0)
-                for (const Index v : t)
-                    fixed[at(point_of_[at(v)])] = 1;
+            if ((outside[t[0]] | outside[t[1]] | outside[t[2]]) != 0)
+                for (const Vertex v : t)
+                    fixed[point_of_[v]] = 1;
         rows_ = std::move(rows);
         projection_.constrain(rows_, fixed);
         focused_ = true;
@@ -233,7 +231,7 @@ private:
         const Eigen::VectorXd& defects = projection_.defects();
         for (Index r = 0; r < defects.size(); ++r)
             if (std::abs(defects[r]) > least && projection_.block(r) >= rounds)
-                worst.emplace_back(-std::abs(defects[r]), rows_[at(r)]);
+                worst.emplace_back(-std::abs(defects[r]), rows_[r]);
         std::sort(worst.begin(), worst.end());
         worst.resize(std::min(worst.size(), most));
         std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh_);
@@ -243,13 +241,13 @@ private:
         std::vector<std::uint8_t> relieved(mesh_.points.size(), 0);
         bool any = false;
         for (const auto& [size, v] : worst) {
-            if (on_border[at(v)] != 0 || relieved[at(v)] != 0 || !cut_to_border(v, on_border))
+            if (on_border[v] != 0 || relieved[v] != 0 || !cut_to_border(v, on_border))
                 continue;
             ++result_.added_slits;
             any = true;
             if (least < most_inner_defect)
-                mesh::visit_star(mesh_, leaving_[at(v)],
-                                 [&](Index h) { relieved[at(mesh_.target(h))] = 1; });
+                mesh::visit_star(mesh_, leaving_[v],
+                                 [&](HalfEdge h) { relieved[mesh_.target(h)] = 1; });
         }
         if (any)
             constrain_all();
@@ -257,16 +255,16 @@ private:
     }
 
     // False where the vertex has no way to the border of its chart.
-    bool cut_to_border(Index v, std::vector<std::uint8_t>& on_border) {
+    bool cut_to_border(Vertex v, std::vector<std::uint8_t>& on_border) {
         const std::vector<Index>& chart = result_.charts.chart;
         std::vector<Index> faces;
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            if (chart[at(f)] == chart[at(leaving_[at(v)] / 3)])
+        for (const Face f : mesh_.all_faces())
+            if (chart[f] == chart[leaving_[v] / 3])
                 faces.push_back(f);
         const std::vector<Index> path = atlas::path_to_border(mesh_, faces, result_.charts.seam, v);
         atlas::mark_cuts(mesh_, path, result_.charts.seam);
-        for (const Index h : path)
-            on_border[at(mesh_.origin(h))] = on_border[at(mesh_.target(h))] = 1;
+        for (const HalfEdge h : path)
+            on_border[mesh_.origin(h)] = on_border[mesh_.target(h)] = 1;
         return !path.empty();
     }
 
@@ -293,10 +291,10 @@ std::vector<std::pair<Index, Index>> new_crossings(const std::vector<Triangle>& 
     std::vector<std::uint8_t> crossed(before.size(), 0); // by point
     for (const auto& [f, g] : find_intersections(before, faces, progress))
         for (std::size_t k = 0; k < 3; ++k)
-            crossed[at(faces[at(f)][k])] = crossed[at(faces[at(g)][k])] = 1;
-    const auto had_crossed = [&](Index f) {
-        const Triangle& t = faces[at(f)];
-        return (crossed[at(t[0])] | crossed[at(t[1])] | crossed[at(t[2])]) != 0;
+            crossed[faces[f][k]] = crossed[faces[g][k]] = 1;
+    const auto had_crossed = [&](Face f) {
+        const Triangle& t = faces[f];
+        return (crossed[t[0]] | crossed[t[1]] | crossed[t[2]]) != 0;
     };
     std::vector<std::pair<Index, Index>> added;
     for (const auto& [f, g] : find_intersections(after, faces, progress))
@@ -331,12 +329,12 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
                                std::to_string(options.max_iterations));
     std::vector<Triangle> faces;
     for (const Triangle& t : mesh.faces)
-        faces.push_back({point_of[at(t[0])], point_of[at(t[1])], point_of[at(t[2])]});
+        faces.push_back({point_of[t[0]], point_of[t[1]], point_of[t[2]]});
     const auto by_point = [&](const std::vector<Vec3>& vertices) {
         std::vector<Vec3> points(at(*std::max_element(point_of.begin(), point_of.end())) + 1,
                                  Vec3::Zero());
         for (std::size_t v = 0; v < point_of.size(); ++v)
-            points[at(point_of[v])] = vertices[v];
+            points[point_of[v]] = vertices[v];
         return points;
     };
     const std::vector<Vec3> before = by_point(mesh.points);
@@ -357,8 +355,7 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
             break;
         for (const auto& [f, g] : added) // once more, with these held back
             for (std::size_t k = 0; k < 3; ++k)
-                ease[at(faces[at(f)][k])] = ease[at(faces[at(g)][k])] =
-                    std::pow(held_back, attempt + 1);
+                ease[faces[f][k]] = ease[faces[g][k]] = std::pow(held_back, attempt + 1);
     }
     if (!options.keep_unfinished)
         check(result, options);

@@ -52,8 +52,8 @@ bool cross(const std::vector<Vec3>& points, const Triangle& s, const Triangle& t
             // An edge that starts on the other triangle meets it there and nowhere else.
             if (std::count(through.begin(), through.end(), p) == 0 &&
                 std::count(through.begin(), through.end(), q) == 0 &&
-                pierces(points[at(p)], points[at(q)], points[at(through[0])],
-                        points[at(through[1])], points[at(through[2])]))
+                pierces(points[p], points[q], points[through[0]], points[through[1]],
+                        points[through[2]]))
                 return true;
         }
         return false;
@@ -68,24 +68,24 @@ public:
         : boxes_(faces.size()), order_(faces.size()) {
         for (std::size_t f = 0; f < faces.size(); ++f) {
             order_[f] = static_cast<Index>(f);
-            for (const Index v : faces[f])
-                boxes_[f].add(points[at(v)]);
+            for (const Vertex v : faces[f])
+                boxes_[f].add(points[v]);
         }
         nodes_.reserve(2 * faces.size() / leaf_size + 2);
         build(0, faces.size());
     }
 
     template <class Visit>
-    void visit_meeting(Index f, Visit visit) const {
+    void visit_meeting(Face f, Visit visit) const {
         std::vector<std::size_t> stack{0};
         while (!stack.empty()) {
             const Node& node = nodes_[stack.back()];
             stack.pop_back();
-            if (!node.box.meets(boxes_[at(f)]))
+            if (!node.box.meets(boxes_[f]))
                 continue;
             if (node.left == 0) {
                 for (std::size_t i = node.begin; i < node.end; ++i)
-                    if (order_[i] > f && boxes_[at(order_[i])].meets(boxes_[at(f)]))
+                    if (order_[i] > f && boxes_[order_[i]].meets(boxes_[f]))
                         visit(order_[i]);
             } else {
                 stack.push_back(node.left);
@@ -106,8 +106,8 @@ private:
         nodes_.emplace_back();
         Box box;
         for (std::size_t i = begin; i < end; ++i) {
-            box.add(boxes_[at(order_[i])].low);
-            box.add(boxes_[at(order_[i])].high);
+            box.add(boxes_[order_[i]].low);
+            box.add(boxes_[order_[i]].high);
         }
         std::size_t left = 0;
         std::size_t right = 0;
@@ -115,9 +115,7 @@ private:
             Eigen::Index axis = 0;
             (box.high - box.low).maxCoeff(&axis);
             const std::size_t middle = (begin + end) / 2;
-            const auto key = [&](Index f) {
-                return boxes_[at(f)].low[axis] + boxes_[at(f)].high[axis];
-            };
+            const auto key = [&](Face f) { return boxes_[f].low[axis] + boxes_[f].high[axis]; };
             std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(begin),
                              order_.begin() + static_cast<std::ptrdiff_t>(middle),
                              order_.begin() + static_cast<std::ptrdiff_t>(end),
@@ -145,7 +143,7 @@ std::vector<std::pair<Index, Index>> find_intersections(const std::vector<Vec3>&
         if (f % 1024 == 0)
             progress.check();
         tree.visit_meeting(static_cast<Index>(f), [&](Index g) {
-            if (cross(points, faces[f], faces[at(g)]))
+            if (cross(points, faces[f], faces[g]))
                 pairs.emplace_back(static_cast<Index>(f), g);
         });
     }

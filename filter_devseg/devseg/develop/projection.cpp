@@ -17,7 +17,7 @@ constexpr double least_damping = 1e-13;
 constexpr double most_damping = 1e3;
 
 Vec3 face_vector(const std::vector<Vec3>& p, const Triangle& t) {
-    return (p[at(t[1])] - p[at(t[0])]).cross(p[at(t[2])] - p[at(t[0])]);
+    return (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
 }
 
 } // namespace
@@ -30,22 +30,22 @@ Projection::Projection(const Mesh& mesh, const std::vector<Index>& point_of,
         count = std::max(count, p + 1);
     points_.assign(at(count), Vec3::Zero());
     for (std::size_t v = 0; v < point_of.size(); ++v)
-        points_[at(point_of[v])] = mesh.points[v];
+        points_[point_of[v]] = mesh.points[v];
     for (const Triangle& t : mesh.faces)
-        faces_.push_back({point_of[at(t[0])], point_of[at(t[1])], point_of[at(t[2])]});
+        faces_.push_back({point_of[t[0]], point_of[t[1]], point_of[t[2]]});
     for (const Triangle& t : faces_)
         start_normal_.push_back(face_vector(points_, t));
     valence_.assign(points_.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin > h)
             continue;
-        edges_.push_back({point_of[at(mesh.origin(h))], point_of[at(mesh.target(h))]});
-        ++valence_[at(edges_.back()[0])];
-        ++valence_[at(edges_.back()[1])];
+        edges_.push_back({point_of[mesh.origin(h)], point_of[mesh.target(h)]});
+        ++valence_[edges_.back()[0]];
+        ++valence_[edges_.back()[1]];
         if (twin >= 0)
-            hinges_.push_back({h / 3, twin / 3,
-                               mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)])});
+            hinges_.push_back(
+                {h / 3, twin / 3, mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3])});
     }
     edge_ = std::sqrt(4.0 / std::sqrt(3.0) * mesh.total_area / mesh.face_count());
 }
@@ -71,7 +71,7 @@ int Projection::longest_block() const {
 int Projection::block(Index r) const {
     int longest = 0;
     for (const Index* p = constraints_.first_point(r); p != constraints_.last_point(r); ++p)
-        longest = std::max(longest, block_[at(*p)]);
+        longest = std::max(longest, block_[*p]);
     return longest;
 }
 
@@ -82,17 +82,17 @@ void Projection::limit_tearing(Field& step) const {
         torn.assign(points_.size(), 0);
         bool any = false;
         for (const auto& [a, b] : edges_)
-            if ((step[at(a)] - step[at(b)]).squaredNorm() >
-                largest_tear * largest_tear * (points_[at(a)] - points_[at(b)]).squaredNorm()) {
-                torn[at(a)] = torn[at(b)] = 1;
+            if ((step[a] - step[b]).squaredNorm() >
+                largest_tear * largest_tear * (points_[a] - points_[b]).squaredNorm()) {
+                torn[a] = torn[b] = 1;
                 any = true;
             }
         if (!any)
             return;
         Field sum(points_.size(), Vec3::Zero());
         for (const auto& [a, b] : edges_) {
-            sum[at(a)] += step[at(b)];
-            sum[at(b)] += step[at(a)];
+            sum[a] += step[b];
+            sum[b] += step[a];
         }
         for (std::size_t p = 0; p < step.size(); ++p)
             if (torn[p] != 0 && mobility_[p] > 0.0)
@@ -117,8 +117,8 @@ bool Projection::face_spoilt(std::size_t f, const Field& moved) const {
 bool Projection::edge_folded(std::size_t e, const Field& moved) const {
     const Hinge& hinge = hinges_[e];
     const auto cosine = [&](const Field& p) {
-        const Vec3 a = face_vector(p, faces_[at(hinge.f)]);
-        const Vec3 b = face_vector(p, faces_[at(hinge.g)]);
+        const Vec3 a = face_vector(p, faces_[hinge.f]);
+        const Vec3 b = face_vector(p, faces_[hinge.g]);
         return a.dot(b) / std::sqrt(a.squaredNorm() * b.squaredNorm());
     };
     const double then = cosine(moved);
@@ -134,10 +134,10 @@ Index Projection::mark_bad(const Field& moved, const Eigen::VectorXd* after,
     const auto mark = [&](const Index* first, const Index* last) {
         ++count;
         for (; first != last; ++first)
-            bad[at(*first)] = 1;
+            bad[*first] = 1;
     };
     const auto has_changed = [&](const Triangle& t) {
-        return (changed[at(t[0])] | changed[at(t[1])] | changed[at(t[2])]) != 0;
+        return (changed[t[0]] | changed[t[1]] | changed[t[2]]) != 0;
     };
     if (after != nullptr)
         for (Index r = 0; r < after->size(); ++r)
@@ -147,8 +147,8 @@ Index Projection::mark_bad(const Field& moved, const Eigen::VectorXd* after,
         if (has_changed(faces_[f]) && face_spoilt(f, moved))
             mark(faces_[f].data(), faces_[f].data() + 3);
     for (std::size_t e = 0; e < hinges_.size(); ++e) {
-        const Triangle& s = faces_[at(hinges_[e].f)];
-        const Triangle& t = faces_[at(hinges_[e].g)];
+        const Triangle& s = faces_[hinges_[e].f];
+        const Triangle& t = faces_[hinges_[e].g];
         if ((has_changed(s) || has_changed(t)) && edge_folded(e, moved)) {
             mark(s.data(), s.data() + 3);
             mark(t.data(), t.data() + 3);
@@ -238,14 +238,14 @@ void Projection::relax_blocked(int rounds) {
     Field step(points_.size(), Vec3::Zero());
     std::vector<std::uint8_t> area(points_.size(), 0);
     for (const auto& [a, b] : edges_)
-        if (block_[at(a)] >= rounds || block_[at(b)] >= rounds)
-            area[at(a)] = area[at(b)] = 1;
+        if (block_[a] >= rounds || block_[b] >= rounds)
+            area[a] = area[b] = 1;
     Field relaxed = points_;
     for (int round = 0; round < 3; ++round) {
         Field sum(points_.size(), Vec3::Zero());
         for (const auto& [a, b] : edges_) {
-            sum[at(a)] += relaxed[at(b)];
-            sum[at(b)] += relaxed[at(a)];
+            sum[a] += relaxed[b];
+            sum[b] += relaxed[a];
         }
         for (std::size_t p = 0; p < relaxed.size(); ++p)
             if (area[p] != 0 && mobility_[p] > 0.0)

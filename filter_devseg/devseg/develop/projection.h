@@ -56,7 +56,7 @@ private:
     std::vector<Index> point_of_;
     std::vector<Triangle> faces_; // by points
     struct Hinge {
-        Index f, g; // faces
+        Face f, g; // faces
         double cosine;
     };
     std::vector<Hinge> hinges_;

@@ -3,11 +3,12 @@
 
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/metrics/circle_maps.h"
 #include "devseg/metrics/gauss_area.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -26,8 +27,7 @@ constexpr const char* circle_help =
     "<b>\"Intrinsic Parameterizations of Surface Meshes\"</b><br>"
     "Computer Graphics Forum 21(3), 2002, doi:10.1111/1467-8659.00580";
 
-declare::FilterOutput run_circle_maps(const declare::FilterInput& input, const declare::NoOptions&,
-                                      Progress& progress) {
+FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("mapping charts to discs", 1.0);
     std::vector<double> stretch = metrics::circle_map_stretch(
         input.mesh, atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress).charts,
@@ -38,7 +38,7 @@ declare::FilterOutput run_circle_maps(const declare::FilterInput& input, const d
         mean += s / static_cast<double>(stretch.size());
         largest = std::max(largest, s);
     }
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {
         {"charts_number", static_cast<int>(stretch.size())},
         {"circle_l2_stretch", mean},
@@ -52,10 +52,9 @@ declare::FilterOutput run_circle_maps(const declare::FilterInput& input, const d
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> circle_map_filters() {
-    return {declare::Declare<declare::NoOptions>("Charts: Measure Maps to the Circle",
-                                                 "get_circle_map_measures",
-                                                 declare::FilterCategory::measure, circle_help)
+std::vector<FilterDeclaration> circle_map_filters() {
+    return {Declare<NoOptions>("Charts: Measure Maps to the Circle", "get_circle_map_measures",
+                               FilterCategory::measure, circle_help)
                 .result("charts_number", "charts")
                 .result("circle_l2_stretch", "mean over the charts, 1 for an isometry")
                 .result("circle_l2_stretch_std", "standard deviation over the charts")

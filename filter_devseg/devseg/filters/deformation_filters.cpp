@@ -4,9 +4,10 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
 #include "devseg/develop/deform.h"
-#include "devseg/filters/filter_groups.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -38,14 +39,14 @@ std::vector<Index> shared_points(const std::vector<Index>& source_vertex) {
     return point_of;
 }
 
-declare::FilterOutput run_deform(const declare::FilterInput& input,
-                                 const develop::DeformOptions& options, Progress& progress) {
+FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& options,
+                        Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.02);
     const atlas::DiskCuts cuts =
         atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
     develop::DeformResult result = develop::deform_to_developable(
         input.mesh, cuts.charts, shared_points(input.source_vertex), options, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {
         {"charts_number", result.charts.count},
@@ -75,12 +76,11 @@ declare::FilterOutput run_deform(const declare::FilterInput& input,
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> deformation_filters() {
+std::vector<FilterDeclaration> deformation_filters() {
     using O = develop::DeformOptions;
     return {
-        declare::Declare<O>("Charts: Deform to Exact Developability",
-                            "apply_coord_developable_charts", declare::FilterCategory::remeshing,
-                            deform_help)
+        Declare<O>("Charts: Deform to Exact Developability", "apply_coord_developable_charts",
+                   FilterCategory::remeshing, deform_help)
             .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
                      "Rounds of the projection; one for a part of the charts counts by that part. "
                      "It ends when only rounding is left.")
@@ -93,7 +93,7 @@ std::vector<declare::FilterDeclaration> deformation_filters() {
             .boolean(&O::keep_unfinished, "keep_unfinished", "Keep the best state",
                      "Where the tolerance is not reached, take the best state instead of leaving "
                      "the mesh as it is.")
-            .writes(declare::writes_charts | declare::writes_points)
+            .writes(writes_charts | writes_points)
             .result("charts_number", "charts, each a disk")
             .result("inner_vertices_number", "vertices inside of charts, whose angles count")
             .result("initial_residual", "largest difference of an inner vertex from 360 degrees "

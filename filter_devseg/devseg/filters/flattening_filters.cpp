@@ -4,12 +4,13 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/base/errors.h"
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/filters/sheet_layout.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/pack/pack.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -57,8 +58,8 @@ constexpr const char* pack_help =
     "Charts are read from the texture coordinates and keep their shape; they are turned, but never "
     "mirrored.";
 
-declare::FilterOutput run_flatten(const declare::FilterInput& input, const FlattenOptions& options,
-                                  Progress& progress) {
+FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
+                         Progress& progress) {
     progress.begin_phase("cutting charts to disks", 0.05);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
     progress.begin_phase("flattening charts", 0.75);
@@ -68,7 +69,7 @@ declare::FilterOutput run_flatten(const declare::FilterInput& input, const Flatt
     const SheetLayout layout = lay_out(input.mesh, flattened.flat, pack::PackOptions{},
                                        options.pack ? 1.0 : 0.0, progress);
 
-    declare::FilterOutput output;
+    FilterOutput output;
     int mended = 0;
     int pushed = 0;
     int developed = 0;
@@ -114,11 +115,11 @@ flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
     chart.uv.resize(surface.vertex.size());
     double plane = 0.0;
     double area = 0.0;
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        chart.uv[at(surface.origin(h))] = uv[at(surface.mesh_half_edge(h))];
-    for (const Index f : surface.face) {
+    for (const HalfEdge h : surface.all_half_edges())
+        chart.uv[surface.origin(h)] = uv[surface.mesh_half_edge(h)];
+    for (const Face f : surface.face) {
         plane += std::abs(plane::uv_area(uv, f));
-        area += mesh.face_areas[at(f)];
+        area += mesh.face_areas[f];
     }
     if (!(plane > 0.0))
         throw InvalidMesh("expected charts with an area in the plane, found one of " +
@@ -132,26 +133,25 @@ flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
     return chart;
 }
 
-declare::FilterOutput run_pack(const declare::FilterInput& input, const pack::PackOptions& options,
-                               Progress& progress) {
+FilterOutput run_pack(const FilterInput& input, const pack::PackOptions& options,
+                      Progress& progress) {
     progress.begin_phase("packing charts", 1.0);
     const atlas::ChartMap charts = atlas::charts_from_uv(input.mesh, *input.uv);
     std::vector<flatten::FlatChart> flat;
     for (atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts))
         flat.push_back(read_flat_chart(input.mesh, *input.uv, std::move(surface)));
     const SheetLayout layout = lay_out(input.mesh, flat, options, 1.0, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {{"charts_number", charts.count}};
     note_unsettled(layout, output);
     output.uv = layout.uv;
     return output;
 }
 
-declare::FilterDeclaration flatten() {
+FilterDeclaration flatten() {
     using O = FlattenOptions;
-    return declare::Declare<O>("Charts: Flatten",
-                               "compute_texcoord_parametrization_charts_per_wedge",
-                               declare::FilterCategory::texture, flatten_help)
+    return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
+                      FilterCategory::texture, flatten_help)
         .choice(&O::method, "method", "Method",
                 {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
                 "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
@@ -161,7 +161,7 @@ declare::FilterDeclaration flatten() {
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in model units.")
-        .writes(declare::writes_charts | declare::writes_uv)
+        .writes(writes_charts | writes_uv)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut first")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
@@ -175,24 +175,24 @@ declare::FilterDeclaration flatten() {
         .runs(run_flatten);
 }
 
-declare::FilterDeclaration pack() {
+FilterDeclaration pack() {
     using O = pack::PackOptions;
-    return declare::Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
-                               declare::FilterCategory::texture, pack_help)
+    return Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
+                      FilterCategory::texture, pack_help)
         .real(&O::padding, "padding", "Padding", 0.0, 0.1,
               "Least distance of two charts, as a share of the square's side.")
         .boolean(&O::allow_rotation, "allow_rotation", "Allow rotation",
                  "Turn charts to their best box and by quarter turns; off keeps the direction of "
                  "the texture.")
         .needs_uv()
-        .writes(declare::writes_uv)
+        .writes(writes_uv)
         .result("charts_number", "charts that were packed")
         .runs(run_pack);
 }
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> flattening_filters() {
+std::vector<FilterDeclaration> flattening_filters() {
     return {flatten(), pack()};
 }
 

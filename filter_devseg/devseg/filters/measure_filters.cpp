@@ -1,9 +1,10 @@
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/metrics/parametrization.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -33,12 +34,11 @@ std::vector<double> column(const std::vector<Record>& records, Number number) {
     return values;
 }
 
-declare::FilterOutput run_segmentation(const declare::FilterInput& input, const declare::NoOptions&,
-                                       Progress& progress) {
+FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("measuring charts", 1.0);
     const metrics::SegmentationMeasures m =
         metrics::measure_segmentation(input.mesh, find_charts(input));
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
@@ -52,12 +52,11 @@ declare::FilterOutput run_segmentation(const declare::FilterInput& input, const 
     return output;
 }
 
-declare::FilterOutput run_parametrization(const declare::FilterInput& input,
-                                          const declare::NoOptions&, Progress& progress) {
+FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Progress& progress) {
     progress.begin_phase("measuring texture coordinates", 1.0);
     const metrics::ParametrizationMeasures m =
         metrics::measure_parametrization(input.mesh, *input.uv);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
@@ -81,7 +80,7 @@ declare::FilterOutput run_parametrization(const declare::FilterInput& input,
                                     [&](const metrics::ChartMeasures& c) {
                                         return c.worst_face < 0
                                                    ? -1.0
-                                                   : double(input.source_face[at(c.worst_face)]);
+                                                   : double(input.source_face[c.worst_face]);
                                     })},
         {"seam_chart_a", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_a; })},
         {"seam_chart_b", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_b; })},
@@ -97,10 +96,9 @@ declare::FilterOutput run_parametrization(const declare::FilterInput& input,
     return output;
 }
 
-declare::FilterDeclaration segmentation_measures() {
-    return declare::Declare<declare::NoOptions>("Charts: Measure Segmentation",
-                                                "get_segmentation_measures",
-                                                declare::FilterCategory::measure, segmentation_help)
+FilterDeclaration segmentation_measures() {
+    return Declare<NoOptions>("Charts: Measure Segmentation", "get_segmentation_measures",
+                              FilterCategory::measure, segmentation_help)
         .result("charts_number", "charts")
         .result("disk_charts_number", "charts that are disks once cut along the seams")
         .result("gauss_area_std", "standard deviation of the charts' Gauss areas, steradians")
@@ -114,10 +112,9 @@ declare::FilterDeclaration segmentation_measures() {
         .runs(run_segmentation);
 }
 
-declare::FilterDeclaration parametrization_measures() {
-    return declare::Declare<declare::NoOptions>(
-               "Charts: Measure Flattening", "get_parametrization_measures",
-               declare::FilterCategory::measure, parametrization_help)
+FilterDeclaration parametrization_measures() {
+    return Declare<NoOptions>("Charts: Measure Flattening", "get_parametrization_measures",
+                              FilterCategory::measure, parametrization_help)
         .needs_uv()
         .result("charts_number", "charts, as the texture coordinates show them")
         .result("disk_charts_number", "charts that are disks")
@@ -149,7 +146,7 @@ declare::FilterDeclaration parametrization_measures() {
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> measure_filters() {
+std::vector<FilterDeclaration> measure_filters() {
     return {segmentation_measures(), parametrization_measures()};
 }
 

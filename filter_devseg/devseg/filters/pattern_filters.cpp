@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/filters/sheet_layout.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
@@ -11,6 +10,8 @@
 #include "devseg/plane/overlap.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -49,7 +50,7 @@ struct LayerOptions : pattern::PatternOptions {
 };
 
 template <class O>
-declare::Declare<O> with_scale(declare::Declare<O> filter) {
+Declare<O> with_scale(Declare<O> filter) {
     return filter
         .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
               "Size on paper of one unit of the model, in millimetres: 1 for a model in "
@@ -63,7 +64,7 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
 }
 
 template <class O>
-declare::Declare<O> with_seams(declare::Declare<O> filter) {
+Declare<O> with_seams(Declare<O> filter) {
     return filter
         .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
@@ -85,41 +86,39 @@ std::uint8_t faded(double share) {
 }
 
 // The faces of all pieces where they lie on the sheet; vertices are shared within a piece.
-declare::LayerMesh lay_out_faces(const declare::FilterInput& input, const pattern::Pattern& pattern,
-                                 const std::vector<pattern::FaceStrain>& strain,
-                                 double strain_range) {
+LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& pattern,
+                        const std::vector<pattern::FaceStrain>& strain, double strain_range) {
     const CornerUv& uv = *input.uv;
-    declare::LayerMesh layer;
+    LayerMesh layer;
     layer.name = "pattern pieces";
     std::vector<int> piece_id;
     std::vector<int> source_face;
     atlas::ChartMap charts = atlas::make_chart_map(
         input.mesh, pattern.face_piece, atlas::charts_from_uv(input.mesh, uv).seam, false);
     for (const atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts)) {
-        const Index p = pattern.face_piece[at(surface.face.front())];
+        const Index p = pattern.face_piece[surface.face.front()];
         if (p < 0)
             continue; // charts too small to be cut out
         const Index first = static_cast<Index>(layer.geometry.points.size());
         layer.geometry.points.resize(at(first) + surface.vertex.size());
-        for (Index f = 0; f < surface.face_count(); ++f) {
-            const Index source = surface.face[at(f)];
+        for (const Face f : surface.all_faces()) {
+            const Index source = surface.face[f];
             Triangle corners{};
             for (Index k = 0; k < 3; ++k) {
-                corners[at(k)] = first + surface.corners[at(f)][at(k)];
-                const Vec2& position = pattern.corner_place[at(3 * source + k)];
-                layer.geometry.points[at(corners[at(k)])] = Vec3(position.x(), position.y(), 0.0);
+                corners[k] = first + surface.corners[f][k];
+                const Vec2& position = pattern.corner_place[3 * source + k];
+                layer.geometry.points[corners[k]] = Vec3(position.x(), position.y(), 0.0);
             }
-            if (pattern.pieces[at(p)].place.scale.x() < 0.0)
+            if (pattern.pieces[p].place.scale.x() < 0.0)
                 std::swap(corners[1], corners[2]); // turned over: faces upwards again
             layer.geometry.faces.push_back(corners);
-            const pattern::FaceStrain& own = strain[at(source)];
+            const pattern::FaceStrain& own = strain[source];
             const std::uint8_t fade = faded(own.largest() / strain_range);
             const bool longer = own.extension >= own.compression;
-            layer.face_color.push_back(longer ? declare::Color{255, fade, fade}
-                                              : declare::Color{fade, fade, 255});
+            layer.face_color.push_back(longer ? Color{255, fade, fade} : Color{fade, fade, 255});
             layer.face_quality.push_back(longer ? own.extension : -own.compression);
             piece_id.push_back(p);
-            source_face.push_back(input.source_face[at(source)]);
+            source_face.push_back(input.source_face[source]);
         }
     }
     layer.face_attributes = {{"piece_id", std::move(piece_id)},
@@ -127,11 +126,10 @@ declare::LayerMesh lay_out_faces(const declare::FilterInput& input, const patter
     return layer;
 }
 
-declare::FilterOutput run_pieces(const declare::FilterInput& input, const LayerOptions& options,
-                                 Progress& progress) {
+FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, Progress& progress) {
     const pattern::Pattern pattern =
         pattern::make_pattern(input.mesh, *input.uv, options, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.notes = pattern.notes;
     const double scale = 1.0 / (pattern.mm_per_unit * input.mesh.unit_length);
     output.layer = lay_out_faces(input, pattern,
@@ -164,7 +162,7 @@ double total(const std::vector<double>& values) {
 
 using Piece = pattern::PatternPiece;
 
-declare::ResultValues measure_pieces(const pattern::Pattern& pattern) {
+ResultValues measure_pieces(const pattern::Pattern& pattern) {
     const std::vector<Piece>& pieces = pattern.pieces;
     const auto areas = column(pieces, [](const Piece& p) { return p.area; });
     const auto lengths = column(pieces, [](const Piece& p) { return p.long_side; });
@@ -199,7 +197,7 @@ declare::ResultValues measure_pieces(const pattern::Pattern& pattern) {
          column(pieces, [](const Piece& p) { return static_cast<double>(p.model); })}};
 }
 
-declare::ResultValues measure_seams(const pattern::Pattern& pattern) {
+ResultValues measure_seams(const pattern::Pattern& pattern) {
     const std::vector<pattern::Seam>& seams = pattern.seams;
     const auto mismatches =
         column(seams, [](const pattern::Seam& s) { return std::abs(s.mismatch()); });
@@ -228,11 +226,11 @@ declare::ResultValues measure_seams(const pattern::Pattern& pattern) {
         {"seam_mismatch_mm", column(seams, [](const pattern::Seam& s) { return s.mismatch(); })}};
 }
 
-declare::FilterOutput run_measures(const declare::FilterInput& input,
-                                   const pattern::PatternOptions& options, Progress& progress) {
+FilterOutput run_measures(const FilterInput& input, const pattern::PatternOptions& options,
+                          Progress& progress) {
     const pattern::Pattern pattern =
         pattern::make_pattern(input.mesh, *input.uv, options, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.notes = pattern.notes;
     output.values = measure_pieces(pattern);
     for (auto& value : measure_seams(pattern))
@@ -250,10 +248,10 @@ bool lies_in_unit_square(const CornerUv& uv) {
                        [](const Vec2& p) { return p.minCoeff() >= 0.0 && p.maxCoeff() <= 1.0; });
 }
 
-declare::FilterOutput run_optimize(const declare::FilterInput& input,
-                                   const pattern::OptimizeOptions& options, Progress& progress) {
+FilterOutput run_optimize(const FilterInput& input, const pattern::OptimizeOptions& options,
+                          Progress& progress) {
     const Mesh& mesh = input.mesh;
-    declare::FilterOutput output;
+    FilterOutput output;
     CornerUv uv = *input.uv;
     progress.begin_phase("removing overlaps", 0.2);
     pattern::FlatLayout layout = pattern::read_layout(mesh, uv);
@@ -285,11 +283,11 @@ declare::FilterOutput run_optimize(const declare::FilterInput& input,
     return output;
 }
 
-declare::FilterDeclaration optimize() {
+FilterDeclaration optimize() {
     using O = pattern::OptimizeOptions;
-    return declare::Declare<O>("Pattern: Optimize for Fabrication",
-                               "apply_texcoord_pattern_optimization_per_wedge",
-                               declare::FilterCategory::texture, optimize_help)
+    return Declare<O>("Pattern: Optimize for Fabrication",
+                      "apply_texcoord_pattern_optimization_per_wedge", FilterCategory::texture,
+                      optimize_help)
         .boolean(&O::remove_overlaps, "remove_overlaps", "Remove overlaps",
                  "Cut off the parts of a chart that lie on other parts of it.")
         .boolean(&O::reattach_gussets, "reattach_gussets", "Reattach small charts",
@@ -303,7 +301,7 @@ declare::FilterDeclaration optimize() {
         .real(&O::max_dart_angle, "max_dart_angle", "Narrowest dart (degrees)", 0.0, 180.0,
               "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
         .needs_uv()
-        .writes(declare::writes_charts | declare::writes_uv)
+        .writes(writes_charts | writes_uv)
         .result("charts_number", "charts afterwards")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
         .result("reattached_charts_number", "small charts that were joined to a neighbour")
@@ -312,27 +310,26 @@ declare::FilterDeclaration optimize() {
         .runs(run_optimize);
 }
 
-declare::FilterDeclaration pieces() {
+FilterDeclaration pieces() {
     using O = LayerOptions;
-    return with_scale(declare::Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
-                                          declare::FilterCategory::texture, pieces_help))
+    return with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
+                                 FilterCategory::texture, pieces_help))
         .real(&O::strain_range, "strain_range", "Strain in full colour", 1e-6, 10.0,
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
         .needs_uv()
         .joins_borders()
-        .writes(declare::writes_layer)
+        .writes(writes_layer)
         .result("pieces_number", "pieces on the new layer")
         .result("width_mm", "width of the layout in mm")
         .result("height_mm", "height of the layout in mm")
         .runs(run_pieces);
 }
 
-declare::FilterDeclaration measures() {
+FilterDeclaration measures() {
     using O = pattern::PatternOptions;
-    return with_seams(
-               with_scale(declare::Declare<O>("Pattern: Measure", "get_pattern_measures",
-                                              declare::FilterCategory::measure, measures_help)))
+    return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
+                                            FilterCategory::measure, measures_help)))
         .needs_uv()
         .joins_borders()
         .result("pieces_number", "pieces")
@@ -367,7 +364,7 @@ declare::FilterDeclaration measures() {
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> pattern_filters() {
+std::vector<FilterDeclaration> pattern_filters() {
     return {optimize(), pieces(), measures()};
 }
 

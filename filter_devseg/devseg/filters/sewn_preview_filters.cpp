@@ -2,10 +2,11 @@
 #include <utility>
 
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/pattern/sewn_preview.h"
 
 namespace devseg::filters {
+
+using namespace declare;
 
 namespace {
 
@@ -23,8 +24,8 @@ constexpr const char* preview_help =
     "<b>\"Projective Dynamics: Fusing Constraint Projections for Fast Simulation\"</b><br>"
     "ACM Transactions on Graphics (SIGGRAPH), 2014, doi:10.1145/2601097.2601116";
 
-declare::FilterOutput run_preview(const declare::FilterInput& input,
-                                  const pattern::SewnOptions& options, Progress& progress) {
+FilterOutput run_preview(const FilterInput& input, const pattern::SewnOptions& options,
+                         Progress& progress) {
     const Mesh& mesh = input.mesh;
     progress.begin_phase("sewing and stuffing", 1.0);
     const pattern::SewnPreview preview =
@@ -32,21 +33,21 @@ declare::FilterOutput run_preview(const declare::FilterInput& input,
     Eigen::AlignedBox3d box;
     for (const Vec3& p : mesh.points)
         box.extend(p);
-    declare::LayerMesh layer;
+    LayerMesh layer;
     layer.name = "sewn preview";
     for (const Vec3& p : preview.points)
         layer.geometry.points.push_back(input.to_model(p));
     layer.geometry.faces = mesh.faces;
     for (const Triangle& t : mesh.faces) {
         double distance = 0.0;
-        for (const Index v : t)
-            distance += preview.distance[at(v)] / 3.0;
+        for (const Vertex v : t)
+            distance += preview.distance[v] / 3.0;
         const double share = std::min(1.0, distance / (red_at * box.diagonal().norm()));
         const auto fade = static_cast<std::uint8_t>(255.0 * (1.0 - share));
         layer.face_color.push_back({255, fade, fade});
         layer.face_quality.push_back(distance * mesh.unit_length);
     }
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {{"mean_distance_share", preview.mean_distance},
                      {"largest_distance_share", preview.largest_distance},
                      {"rounds_number", preview.rounds},
@@ -61,10 +62,10 @@ declare::FilterOutput run_preview(const declare::FilterInput& input,
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> sewn_preview_filters() {
+std::vector<FilterDeclaration> sewn_preview_filters() {
     using O = pattern::SewnOptions;
-    return {declare::Declare<O>("Pattern: Sewn Preview", "generate_sewn_preview",
-                                declare::FilterCategory::texture, preview_help)
+    return {Declare<O>("Pattern: Sewn Preview", "generate_sewn_preview", FilterCategory::texture,
+                       preview_help)
                 .real(&O::stuffing, "stuffing", "Stuffing", 0.0, 0.2,
                       "How much the stuffing stretches the cloth of a ball of the model's size, as "
                       "a share: 0.01 = 1 %.")
@@ -72,7 +73,7 @@ std::vector<declare::FilterDeclaration> sewn_preview_filters() {
                          "The simulation ends here at the latest; usually the cloth is at rest "
                          "before.")
                 .needs_uv()
-                .writes(declare::writes_layer)
+                .writes(writes_layer)
                 .result("mean_distance_share", "mean distance of the sewn toy from the model, as a "
                                                "share of the model's diagonal")
                 .result("largest_distance_share", "largest distance, as a share of the diagonal")

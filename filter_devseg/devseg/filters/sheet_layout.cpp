@@ -8,6 +8,8 @@
 
 namespace devseg::filters {
 
+using namespace declare;
+
 SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
                     const pack::PackOptions& options, double scale_to_side, Progress& progress) {
     std::vector<pack::PackItem> items;
@@ -25,13 +27,13 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
         for (Vec2& p : chart.uv)
             p = scale * packed.placements[c](p);
         layout.unsettled += flatten::snap_to_single(chart.surface.corners, chart.uv);
-        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
-            layout.uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+        for (const HalfEdge h : chart.surface.all_half_edges())
+            layout.uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     }
     return layout;
 }
 
-void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output) {
+void note_unsettled(const SheetLayout& layout, FilterOutput& output) {
     if (layout.unsettled > 0)
         output.notes.push_back(std::to_string(layout.unsettled) +
                                " faces are too thin for 32-bit texture coordinates and lost their "

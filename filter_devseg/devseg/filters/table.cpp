@@ -1,42 +1,53 @@
+#include "devseg/filters/table.h"
+
+#include <algorithm>
 #include <iterator>
-#include <locale>
-#include <sstream>
+#include <utility>
 
-#include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
+namespace devseg {
 
-namespace devseg::filters {
+using Filters = std::vector<declare::FilterDeclaration>;
 
-const std::vector<declare::FilterDeclaration>& filter_table() {
-    static const std::vector<declare::FilterDeclaration> table = [] {
-        std::vector<declare::FilterDeclaration> all;
-        for (auto group :
-             {segmentation_filters(), t_flooding_filters(), plush_filters(), papercraft_filters(),
-              baseline_filters(), deformation_filters(), flattening_filters(), pattern_filters(),
-              sewn_preview_filters(), measure_filters(), circle_map_filters()})
+// Each method declares its filters in its own folder.
+namespace dcharts {
+Filters filters();
+}
+namespace t_flooding {
+Filters filters();
+}
+namespace plush {
+Filters filters();
+}
+namespace papercraft {
+Filters filters();
+}
+namespace baselines {
+Filters filters();
+}
+
+namespace filters {
+
+// Each stage declares its filters in a source of this folder.
+Filters chart_filters();
+Filters deformation_filters();
+Filters flattening_filters();
+Filters pattern_filters();
+Filters sewn_preview_filters();
+Filters measure_filters();
+Filters circle_map_filters();
+
+const Filters& filter_table() {
+    static const Filters table = [] {
+        Filters all;
+        for (Filters group :
+             {dcharts::filters(), t_flooding::filters(), plush::filters(), papercraft::filters(),
+              baselines::filters(), chart_filters(), deformation_filters(), flattening_filters(),
+              pattern_filters(), sewn_preview_filters(), measure_filters(), circle_map_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();
     return table;
 }
 
-double checked(const std::string& name, double minimum, double maximum, double value) {
-    if (value >= minimum && value <= maximum)
-        return value;
-    std::ostringstream text;
-    text.imbue(std::locale::classic());
-    text << name << ": expected a number from " << minimum << " to " << maximum << ", found "
-         << value;
-    throw InvalidParameter(text.str());
-}
-
-atlas::ChartMap find_charts(const declare::FilterInput& input) {
-    if (input.charts)
-        return *input.charts;
-    if (input.uv)
-        return atlas::charts_from_uv(input.mesh, *input.uv);
-    return atlas::make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {},
-                                 false);
-}
-
-} // namespace devseg::filters
+} // namespace filters
+} // namespace devseg

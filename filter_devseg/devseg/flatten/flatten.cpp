@@ -42,8 +42,8 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vect
     std::vector<std::uint8_t> seam = result.charts.seam;
     for (const std::vector<Index>& cut : cuts) {
         result.cuts += cut.empty() ? 0 : 1;
-        for (const Index h : cut)
-            seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
+        for (const HalfEdge h : cut)
+            seam[h] = seam[mesh.twin[h]] = 1;
     }
     result.charts = atlas::cut_charts_to_disks(
                         mesh, atlas::make_chart_map(mesh, old_chart, seam, true), progress)
@@ -51,7 +51,7 @@ std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vect
     std::vector<FlatChart> flat;
     std::vector<std::size_t> open;
     for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, result.charts)) {
-        const std::size_t old = at(old_chart[at(surface.face.front())]);
+        const std::size_t old = at(old_chart[surface.face.front()]);
         if (cuts[old].empty()) {
             flat.push_back(std::move(result.flat[old]));
         } else {

@@ -105,8 +105,8 @@ void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& proble
     if (problem.faces.size() == 1) { // needles leave a solver no digits, and need none
         const Triangle& t = problem.faces.front();
         chart.uv.assign(3, Vec2::Zero());
-        chart.uv[at(t[1])] = problem.edges.front().col(0);
-        chart.uv[at(t[2])] = problem.edges.front().col(1);
+        chart.uv[t[1]] = problem.edges.front().col(0);
+        chart.uv[t[2]] = problem.edges.front().col(1);
         return;
     }
     bool refined = false;
@@ -191,10 +191,10 @@ std::vector<Index> halve(const Mesh& mesh, const atlas::ChartSurface& surface) {
     std::vector<Index> reached{0};
     seen[0] = 1;
     for (std::size_t i = 0; i < reached.size(); ++i)
-        for (Index h = 3 * reached[i]; h < 3 * reached[i] + 3; ++h) {
-            const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && seen[at(twin / 3)] == 0) {
-                seen[at(twin / 3)] = 1;
+        for (const HalfEdge h : half_edges_of(reached[i])) {
+            const HalfEdge twin = surface.twin[h];
+            if (twin >= 0 && seen[twin / 3] == 0) {
+                seen[twin / 3] = 1;
                 reached.push_back(twin / 3);
             }
         }

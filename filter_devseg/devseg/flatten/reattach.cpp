@@ -50,10 +50,10 @@ public:
 
     bool hinge(Index part, double least) {
         std::vector<std::pair<double, Index>> hinges;
-        for (const Index f : flat(part).surface.face)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && result_.charts.chart[at(twin / 3)] != part &&
+        for (const Face f : flat(part).surface.face)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin >= 0 && result_.charts.chart[twin / 3] != part &&
                     mesh_.edge_length(h) >= least)
                     hinges.emplace_back(mesh_.edge_length(h), h);
             }
@@ -68,12 +68,12 @@ public:
         const std::vector<Index> old = result_.charts.chart;
         result_.charts = atlas::make_chart_map(mesh_, old, result_.charts.seam, false);
         for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh_, result_.charts))
-            flat.push_back(std::move(result_.flat[at(old[at(surface.face.front())])]));
+            flat.push_back(std::move(result_.flat[old[surface.face.front()]]));
         result_.flat = std::move(flat);
     }
 
 private:
-    FlatChart& flat(Index chart) { return result_.flat[at(chart)]; }
+    FlatChart& flat(Index chart) { return result_.flat[chart]; }
 
     // Along the whole common border: the map of both is made anew.
     bool try_to_glue(Index part, Index other, FlattenMethod method, Progress& progress) {
@@ -102,13 +102,13 @@ private:
     }
 
     // Across one edge: an exact development stays one.
-    bool try_hinge(Index part, Index h) {
-        const Index twin = mesh_.twin[at(h)];
-        const Index other = result_.charts.chart[at(twin / 3)];
+    bool try_hinge(Index part, HalfEdge h) {
+        const HalfEdge twin = mesh_.twin[h];
+        const Index other = result_.charts.chart[twin / 3];
         if (!flat(other).developed)
             return false;
         std::vector<std::uint8_t>& seam = result_.charts.seam;
-        seam[at(h)] = seam[at(twin)] = 0;
+        seam[h] = seam[twin] = 0;
         std::vector<Index> faces = flat(other).surface.face;
         const std::vector<Index>& added = flat(part).surface.face;
         faces.insert(faces.end(), added.begin(), added.end());
@@ -117,7 +117,7 @@ private:
         joined.surface = atlas::extract_surface(mesh_, std::move(faces), seam);
         if (!develop(mesh_, make_flattening_problem(mesh_, joined.surface), joined) ||
             !overlapping_pairs(joined.surface, joined.uv, tolerance_).empty()) {
-            seam[at(h)] = seam[at(twin)] = 1;
+            seam[h] = seam[twin] = 1;
             return false;
         }
         joined.cut_off = flat(other).cut_off;
@@ -126,8 +126,8 @@ private:
     }
 
     void replace(Index part, Index other, FlatChart joined) {
-        for (const Index f : flat(part).surface.face)
-            result_.charts.chart[at(f)] = other;
+        for (const Face f : flat(part).surface.face)
+            result_.charts.chart[f] = other;
         flat(other) = std::move(joined);
     }
 
@@ -166,8 +166,7 @@ int reattach_parts(const Mesh& mesh, double tolerance, FlattenResult& result, Pr
     int number = 0;
     for (const auto& [area, part] : reattachment.parts()) {
         progress.update(0.0);
-        if (result.flat[at(part)].developed &&
-            reattachment.hinge(part, least_hinge * std::sqrt(area)))
+        if (result.flat[part].developed && reattachment.hinge(part, least_hinge * std::sqrt(area)))
             ++number;
     }
     if (number > 0)

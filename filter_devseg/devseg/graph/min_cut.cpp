@@ -23,9 +23,9 @@ void MinCut::raise(Index link, double weight) {
     const std::size_t new_arcs = added_.size();
     const std::size_t old_links = arc_.size() - new_arcs / 2;
     std::vector<Arc>& arcs = at(link) < old_links ? arcs_ : added_;
-    Arc& arc = arcs[at(link) < old_links ? at(arc_[at(link)]) : 2 * (at(link) - old_links)];
+    Arc& arc = arcs[at(link) < old_links ? at(arc_[link]) : 2 * (at(link) - old_links)];
     arc.capacity += weight;
-    arcs[at(arc.partner)].capacity += weight;
+    arcs[arc.partner].capacity += weight;
     saturated_ = std::max(saturated_, rounding * arc.capacity);
 }
 
@@ -38,7 +38,7 @@ void MinCut::sort_new_arcs() {
     };
     begin_.assign(sides_.size() + 1, 0);
     for (const Arc& arc : added_)
-        ++begin_[at(added_[at(arc.partner)].to) + 1];
+        ++begin_[at(added_[arc.partner].to) + 1];
     for (std::size_t v = 0; v < sides_.size(); ++v)
         begin_[v + 1] += begin_[v] + old_count(v);
     arcs_.resize(old.size() + added_.size());
@@ -46,17 +46,17 @@ void MinCut::sort_new_arcs() {
     std::vector<Index> moved(old.size()); // new places of the arcs that were there
     for (std::size_t v = 0; v < sides_.size(); ++v)
         for (Index k = 0; k < old_count(v); ++k)
-            moved[at(old_begin[v] + k)] = place[v]++;
+            moved[old_begin[v] + k] = place[v]++;
     for (std::size_t i = 0; i < old.size(); ++i)
-        arcs_[at(moved[i])] = {old[i].to, moved[at(old[i].partner)], old[i].capacity};
+        arcs_[moved[i]] = {old[i].to, moved[old[i].partner], old[i].capacity};
     const std::size_t old_links = arc_.size() - added_.size() / 2;
     for (std::size_t k = 0; k < old_links; ++k)
-        arc_[k] = moved[at(arc_[k])];
+        arc_[k] = moved[arc_[k]];
     for (std::size_t i = 0; i < added_.size(); i += 2) {
-        const Index there = place[at(added_[i + 1].to)]++;
-        const Index back = place[at(added_[i].to)]++;
-        arcs_[at(there)] = {added_[i].to, back, added_[i].capacity};
-        arcs_[at(back)] = {added_[i + 1].to, there, added_[i + 1].capacity};
+        const Index there = place[added_[i + 1].to]++;
+        const Index back = place[added_[i].to]++;
+        arcs_[there] = {added_[i].to, back, added_[i].capacity};
+        arcs_[back] = {added_[i + 1].to, there, added_[i + 1].capacity};
         arc_[old_links + i / 2] = there;
     }
     added_.clear();
@@ -75,14 +75,14 @@ bool MinCut::rank_nodes() {
     bool reached = false;
     for (std::size_t i = 0; i < queue.size(); ++i) {
         const Index v = queue[i];
-        for (Index k = begin_[at(v)]; k < begin_[at(v) + 1]; ++k) {
-            const Arc& arc = arcs_[at(k)];
-            if (!(arc.capacity > saturated_) || rank_[at(arc.to)] >= 0)
+        for (Index k = begin_[v]; k < begin_[at(v) + 1]; ++k) {
+            const Arc& arc = arcs_[k];
+            if (!(arc.capacity > saturated_) || rank_[arc.to] >= 0)
                 continue;
-            const bool is_sink = sides_[at(arc.to)] == CutSide::sink;
+            const bool is_sink = sides_[arc.to] == CutSide::sink;
             if (reached && !is_sink)
                 continue;
-            rank_[at(arc.to)] = rank_[at(v)] + 1;
+            rank_[arc.to] = rank_[v] + 1;
             reached = reached || is_sink;
             if (!is_sink)
                 queue.push_back(arc.to);
@@ -97,38 +97,38 @@ void MinCut::push(Index source) {
     path_.clear();
     Index v = source;
     while (true) {
-        if (sides_[at(v)] == CutSide::sink) {
+        if (sides_[v] == CutSide::sink) {
             double flow = std::numeric_limits<double>::max();
             for (const Index i : path_)
-                flow = std::min(flow, arcs_[at(i)].capacity);
+                flow = std::min(flow, arcs_[i].capacity);
             std::size_t first_full = path_.size();
             for (std::size_t k = path_.size(); k-- > 0;) {
-                arcs_[at(path_[k])].capacity -= flow;
-                arcs_[at(arcs_[at(path_[k])].partner)].capacity += flow;
-                if (arcs_[at(path_[k])].capacity <= saturated_)
+                arcs_[path_[k]].capacity -= flow;
+                arcs_[arcs_[path_[k]].partner].capacity += flow;
+                if (arcs_[path_[k]].capacity <= saturated_)
                     first_full = k;
             }
             // The path up to its first full arc serves again.
-            v = arcs_[at(arcs_[at(path_[first_full])].partner)].to;
+            v = arcs_[arcs_[path_[first_full]].partner].to;
             path_.resize(first_full);
         }
-        Index& k = cursor_[at(v)];
+        Index& k = cursor_[v];
         while (k < begin_[at(v) + 1]) {
-            const Arc& arc = arcs_[at(k)];
-            if (arc.capacity > saturated_ && rank_[at(arc.to)] == rank_[at(v)] + 1)
+            const Arc& arc = arcs_[k];
+            if (arc.capacity > saturated_ && rank_[arc.to] == rank_[v] + 1)
                 break;
             ++k;
         }
         if (k < begin_[at(v) + 1]) {
             path_.push_back(k);
-            v = arcs_[at(path_.back())].to;
+            v = arcs_[path_.back()].to;
             continue;
         }
         if (path_.empty())
             return;
         // A dead end: step back, and do not come here again.
-        v = arcs_[at(arcs_[at(path_.back())].partner)].to;
-        ++cursor_[at(v)];
+        v = arcs_[arcs_[path_.back()].partner].to;
+        ++cursor_[v];
         path_.pop_back();
     }
 }

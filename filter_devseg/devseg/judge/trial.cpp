@@ -48,19 +48,19 @@ std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const Tria
 std::vector<Index> local_maxima(const atlas::ChartSurface& surface,
                                 const std::vector<double>& stretch) {
     std::vector<Index> maxima;
-    for (Index f = 0; f < surface.face_count(); ++f) {
+    for (const Face f : surface.all_faces()) {
         bool highest = true;
-        for (Index h = 3 * f; h < 3 * f + 3 && highest; ++h)
+        for (HalfEdge h = 3 * f; h < 3 * f + 3 && highest; ++h)
             mesh::visit_star(surface.twin, h, [&](Index k) {
                 const Index g = k / 3;
-                if (stretch[at(g)] > stretch[at(f)] || (stretch[at(g)] == stretch[at(f)] && g < f))
+                if (stretch[g] > stretch[f] || (stretch[g] == stretch[f] && g < f))
                     highest = false;
             });
         if (highest)
             maxima.push_back(f);
     }
     std::stable_sort(maxima.begin(), maxima.end(),
-                     [&](Index a, Index b) { return stretch[at(a)] > stretch[at(b)]; });
+                     [&](Index a, Index b) { return stretch[a] > stretch[b]; });
     return maxima;
 }
 
@@ -93,8 +93,8 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
                    const Progress& progress) {
     TrialMap map;
-    for (const Index f : faces)
-        map.area += mesh.face_areas[at(f)];
+    for (const Face f : faces)
+        map.area += mesh.face_areas[f];
     std::vector<std::uint8_t> marks = atlas::enclose(mesh, faces, seam);
     const atlas::ChartSurface surface = atlas::cut_to_disk(
         mesh, atlas::extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
@@ -118,8 +118,8 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     const std::vector<double> stretch = measure_stretch(problem, uv, map);
     map.worst_faces = local_maxima(surface, stretch);
     for (Index& f : map.worst_faces) {
-        map.peaks.push_back(stretch[at(f)]);
-        f = surface.face[at(f)];
+        map.peaks.push_back(stretch[f]);
+        f = surface.face[f];
     }
     return map;
 }

@@ -4,10 +4,10 @@ namespace devseg::mesh {
 
 std::vector<double> angle_defects(const Mesh& mesh) {
     std::vector<double> defect(mesh.points.size(), 2.0 * pi);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        defect[at(mesh.origin(h))] -=
-            corner_angle(mesh.points[at(mesh.origin(h))], mesh.points[at(mesh.target(h))],
-                         mesh.points[at(mesh.origin(Mesh::previous(h)))]);
+    for (const HalfEdge h : mesh.all_half_edges())
+        defect[mesh.origin(h)] -=
+            corner_angle(mesh.points[mesh.origin(h)], mesh.points[mesh.target(h)],
+                         mesh.points[mesh.origin(Mesh::previous(h))]);
     const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
     for (std::size_t v = 0; v < defect.size(); ++v)
         if (boundary[v] != 0)
@@ -17,17 +17,17 @@ std::vector<double> angle_defects(const Mesh& mesh) {
 
 std::vector<Index> leaving_half_edges(const Mesh& mesh) {
     std::vector<Index> leaving(mesh.points.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (leaving[at(mesh.origin(h))] < 0 || mesh.twin[at(h)] < 0)
-            leaving[at(mesh.origin(h))] = h;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (leaving[mesh.origin(h)] < 0 || mesh.twin[h] < 0)
+            leaving[mesh.origin(h)] = h;
     return leaving;
 }
 
 std::vector<std::uint8_t> boundary_vertices(const Mesh& mesh) {
     std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] < 0)
-            boundary[at(mesh.origin(h))] = boundary[at(mesh.target(h))] = 1;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] < 0)
+            boundary[mesh.origin(h)] = boundary[mesh.target(h)] = 1;
     return boundary;
 }
 

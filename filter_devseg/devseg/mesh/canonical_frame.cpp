@@ -14,9 +14,9 @@ constexpr double least_area = 1e-200; // internal units: below, sums of squares 
 constexpr double area_loss = 0.01;
 constexpr double grid = 0x1p-24; // units of the frame
 
-double weight(const Mesh& mesh, Index f) {
+double weight(const Mesh& mesh, Face f) {
     const double spread = golden_ratio * f - std::floor(golden_ratio * f);
-    return mesh.face_areas[at(f)] * (1.0 + unevenness * (spread - 0.5));
+    return mesh.face_areas[f] * (1.0 + unevenness * (spread - 0.5));
 }
 
 } // namespace
@@ -24,8 +24,8 @@ double weight(const Mesh& mesh, Index f) {
 CanonicalFrame canonical_frame(const Mesh& mesh, const Progress& progress) {
     CanonicalFrame frame;
     double total = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        frame.center += weight(mesh, f) * mesh.face_centers[at(f)];
+    for (const Face f : mesh.all_faces()) {
+        frame.center += weight(mesh, f) * mesh.face_centers[f];
         total += weight(mesh, f);
     }
     if (!(total > least_area))
@@ -34,8 +34,8 @@ CanonicalFrame canonical_frame(const Mesh& mesh, const Progress& progress) {
     frame.unit = std::sqrt(mesh.total_area);
     progress.check();
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const Vec3 d = mesh.face_centers[at(f)] - frame.center;
+    for (const Face f : mesh.all_faces()) {
+        const Vec3 d = mesh.face_centers[f] - frame.center;
         spread += weight(mesh, f) * d * d.transpose();
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
@@ -43,8 +43,8 @@ CanonicalFrame canonical_frame(const Mesh& mesh, const Progress& progress) {
         progress.check();
         const Vec3 axis = solver.eigenvectors().col(2 - k);
         double third = 0.0;
-        for (Index f = 0; f < mesh.face_count(); ++f) {
-            const double d = axis.dot(mesh.face_centers[at(f)] - frame.center);
+        for (const Face f : mesh.all_faces()) {
+            const double d = axis.dot(mesh.face_centers[f] - frame.center);
             third += weight(mesh, f) * d * d * d;
         }
         frame.axes.row(k) = third < 0.0 ? -axis : axis;

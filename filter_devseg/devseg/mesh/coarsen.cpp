@@ -63,9 +63,9 @@ public:
         : points_(points), s_(surface), outgoing_(points.size(), -1), quadric_(points.size()),
           best_(points.size()), stale_(points.size(), 1), touched_(points.size(), 0),
           shared_(shared) {
-        for (Index h = 0; h < static_cast<Index>(s_.twin.size()); ++h)
-            outgoing_[at(origin(h))] = h;
-        for (Index f = 0; f < static_cast<Index>(s_.faces.size()); ++f)
+        for (HalfEdge h = 0; h < static_cast<Index>(s_.twin.size()); ++h)
+            outgoing_[origin(h)] = h;
+        for (Face f = 0; f < static_cast<Index>(s_.faces.size()); ++f)
             add_face_quadric(f);
     }
 
@@ -76,10 +76,10 @@ public:
         choose_candidates(removable, progress);
         std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
         Index removed = 0;
-        for (const Index v : order_) {
+        for (const Vertex v : order_) {
             if (removed == removable)
                 break;
-            if (touched_[at(v)] != 0 || !try_collapse(v))
+            if (touched_[v] != 0 || !try_collapse(v))
                 continue;
             if (++removed % check_every == 0)
                 progress.check();
@@ -97,35 +97,35 @@ public:
 private:
     struct Candidate {
         double cost = 0.0;
-        Index half_edge = -1;
+        HalfEdge half_edge = -1;
     };
 
-    Index origin(Index h) const { return s_.faces[at(h / 3)][at(h % 3)]; }
-    Index target(Index h) const { return origin(Mesh::next(h)); }
+    Index origin(HalfEdge h) const { return s_.faces[h / 3][h % 3]; }
+    Index target(HalfEdge h) const { return origin(Mesh::next(h)); }
 
-    void add_face_quadric(Index f) {
-        const Triangle& t = s_.faces[at(f)];
-        const Vec3& a = points_[at(t[0])];
-        const Vec3 normal = (points_[at(t[1])] - a).cross(points_[at(t[2])] - a);
+    void add_face_quadric(Face f) {
+        const Triangle& t = s_.faces[f];
+        const Vec3& a = points_[t[0]];
+        const Vec3 normal = (points_[t[1]] - a).cross(points_[t[2]] - a);
         const double length = normal.norm();
         if (!(length > 0.0))
             return;
         const Vec3 n = normal / length;
-        for (const Index v : t) {
-            quadric_[at(v)].add_plane(n, -n.dot(a), 0.5 * length);
-            quadric_[at(v)].area += 0.5 * length;
+        for (const Vertex v : t) {
+            quadric_[v].add_plane(n, -n.dot(a), 0.5 * length);
+            quadric_[v].area += 0.5 * length;
         }
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            if (s_.twin[at(h)] >= 0)
+        for (const HalfEdge h : half_edges_of(f)) {
+            if (s_.twin[h] >= 0)
                 continue;
-            const Vec3& p = points_[at(origin(h))];
-            const Vec3 edge = points_[at(target(h))] - p;
+            const Vec3& p = points_[origin(h)];
+            const Vec3 edge = points_[target(h)] - p;
             const Vec3 side = edge.cross(n);
             if (!(side.squaredNorm() > 0.0))
                 continue;
             const Vec3 m = side.normalized();
-            for (const Index v : {origin(h), target(h)})
-                quadric_[at(v)].add_plane(m, -m.dot(p), boundary_weight * edge.squaredNorm());
+            for (const Vertex v : {origin(h), target(h)})
+                quadric_[v].add_plane(m, -m.dot(p), boundary_weight * edge.squaredNorm());
         }
     }
 
@@ -133,12 +133,11 @@ private:
     void choose_candidates(Index removable, const Progress& progress) {
         refresh(progress);
         order_.clear();
-        for (Index v = 0; v < static_cast<Index>(points_.size()); ++v)
-            if (outgoing_[at(v)] >= 0 && best_[at(v)].half_edge >= 0)
+        for (Vertex v = 0; v < static_cast<Index>(points_.size()); ++v)
+            if (outgoing_[v] >= 0 && best_[v].half_edge >= 0)
                 order_.push_back(v);
         const auto cheaper = [&](Index a, Index b) {
-            return best_[at(a)].cost != best_[at(b)].cost ? best_[at(a)].cost < best_[at(b)].cost
-                                                          : a < b;
+            return best_[a].cost != best_[b].cost ? best_[a].cost < best_[b].cost : a < b;
         };
         // The dearer half waits: what goes next to a vertex may make it cheaper.
         const std::size_t count =
@@ -154,10 +153,10 @@ private:
         const Index count = static_cast<Index>(points_.size());
         const auto refresh_part = [&](int part) {
             progress.check();
-            for (Index v = part * check_every; v < std::min(count, (part + 1) * check_every); ++v)
-                if (outgoing_[at(v)] >= 0 && stale_[at(v)] != 0) {
-                    best_[at(v)] = cheapest_collapse(v);
-                    stale_[at(v)] = 0;
+            for (Vertex v = part * check_every; v < std::min(count, (part + 1) * check_every); ++v)
+                if (outgoing_[v] >= 0 && stale_[v] != 0) {
+                    best_[v] = cheapest_collapse(v);
+                    stale_[v] = 0;
                 }
         };
         const int parts = (count + check_every - 1) / check_every;
@@ -170,19 +169,19 @@ private:
     }
 
     // Legality is dearer than the cost: it is asked for in the order of costs.
-    Candidate cheapest_collapse(Index v) const {
+    Candidate cheapest_collapse(Vertex v) const {
         std::array<Candidate, most_neighbours> candidates;
         std::size_t count = 0;
         Ring around_v;
         const bool inner = gather_ring(v, around_v);
-        visit_star(s_.twin, outgoing_[at(v)], [&](Index h) {
-            if (count == candidates.size() || (!inner && s_.twin[at(h)] >= 0))
+        visit_star(s_.twin, outgoing_[v], [&](HalfEdge h) {
+            if (count == candidates.size() || (!inner && s_.twin[h] >= 0))
                 return;
-            const Vec3& p = points_[at(target(h))];
+            const Vec3& p = points_[target(h)];
             candidates[count].half_edge = h;
             candidates[count++].cost =
-                std::max(0.0, quadric_[at(v)](p) + quadric_[at(target(h))](p)) +
-                length_weight * quadric_[at(v)].area * (p - points_[at(v)]).squaredNorm();
+                std::max(0.0, quadric_[v](p) + quadric_[target(h)](p)) +
+                length_weight * quadric_[v].area * (p - points_[v]).squaredNorm();
         });
         for (auto end = candidates.begin() + static_cast<std::ptrdiff_t>(count);
              end != candidates.begin(); --end) {
@@ -199,25 +198,25 @@ private:
     struct Ring {
         std::array<Index, most_neighbours> vertex;
         std::size_t size = 0;
-        void add(Index v) {
+        void add(Vertex v) {
             if (size < vertex.size())
                 vertex[size++] = v;
         }
     };
-    bool is_legal(Index h) const {
+    bool is_legal(HalfEdge h) const {
         Ring around_v;
         const bool inner_v = gather_ring(origin(h), around_v);
         return is_legal(h, around_v, inner_v);
     }
-    bool is_legal(Index h, const Ring& around_v, bool inner_v) const {
+    bool is_legal(HalfEdge h, const Ring& around_v, bool inner_v) const {
         return keeps_topology(h, around_v, inner_v) && keeps_shape(h);
     }
 
     // The link condition: the ends of the edge have no common neighbours but the two opposite
     // vertices, which must keep three faces (a boundary vertex, one).
-    bool keeps_topology(Index h, const Ring& around_v, bool inner_v) const {
+    bool keeps_topology(HalfEdge h, const Ring& around_v, bool inner_v) const {
         const Index w = target(h);
-        const Index twin = s_.twin[at(h)];
+        const HalfEdge twin = s_.twin[h];
         if (!keeps_apex(h) || (twin >= 0 && !keeps_apex(twin)))
             return false;
         Ring around_w;
@@ -233,34 +232,34 @@ private:
         return common == (twin >= 0 ? 2 : 1);
     }
     bool gather_ring(Index u, Ring& ring) const {
-        return visit_star(s_.twin, outgoing_[at(u)], [&](Index k) {
+        return visit_star(s_.twin, outgoing_[u], [&](Index k) {
             ring.add(target(k));
-            if (s_.twin[at(Mesh::previous(k))] < 0)
+            if (s_.twin[Mesh::previous(k)] < 0)
                 ring.add(origin(Mesh::previous(k)));
         });
     }
     // The vertex opposite to the edge has a face besides this one, and an inner one three.
-    bool keeps_apex(Index h) const {
+    bool keeps_apex(HalfEdge h) const {
         const Index toward = Mesh::next(h);
         const Index back = Mesh::previous(h);
-        if (s_.twin[at(toward)] < 0 && s_.twin[at(back)] < 0)
+        if (s_.twin[toward] < 0 && s_.twin[back] < 0)
             return false;
         Index faces = 0;
         const bool inner = visit_star(s_.twin, back, [&](Index) { ++faces; });
         return !inner || faces > 3;
     }
-    bool keeps_shape(Index h) const {
-        const Index v = origin(h);
-        const Vec3& p = points_[at(target(h))];
-        const Index face = h / 3;
-        const Index other = s_.twin[at(h)] < 0 ? -1 : s_.twin[at(h)] / 3;
+    bool keeps_shape(HalfEdge h) const {
+        const Vertex v = origin(h);
+        const Vec3& p = points_[target(h)];
+        const Face face = h / 3;
+        const Index other = s_.twin[h] < 0 ? -1 : s_.twin[h] / 3;
         bool good = true;
         visit_star(s_.twin, h, [&](Index k) {
             if (!good || k / 3 == face || k / 3 == other)
                 return;
-            const Vec3& a = points_[at(target(k))];
-            const Vec3& b = points_[at(origin(Mesh::previous(k)))];
-            const Vec3 old = (a - points_[at(v)]).cross(b - points_[at(v)]);
+            const Vec3& a = points_[target(k)];
+            const Vec3& b = points_[origin(Mesh::previous(k))];
+            const Vec3 old = (a - points_[v]).cross(b - points_[v]);
             const Vec3 now = (a - p).cross(b - p);
             const double size = now.norm();
             const double lengths =
@@ -271,30 +270,30 @@ private:
         return good;
     }
 
-    bool try_collapse(Index v) {
-        const Index h = best_[at(v)].half_edge;
+    bool try_collapse(Vertex v) {
+        const HalfEdge h = best_[v].half_edge;
         const Index w = target(h);
         if (!is_legal(h)) { // a collapse nearby changed the surroundings of the kept vertex
-            stale_[at(v)] = 1;
+            stale_[v] = 1;
             return false;
         }
-        quadric_[at(w)].add(quadric_[at(v)]);
+        quadric_[w].add(quadric_[v]);
         visit_star(s_.twin, h, [&](Index k) {
             touch(target(k));
             touch(origin(Mesh::previous(k)));
         });
         collapse(h);
-        outgoing_[at(v)] = -1;
+        outgoing_[v] = -1;
         return true;
     }
-    void touch(Index v) { touched_[at(v)] = stale_[at(v)] = 1; }
+    void touch(Vertex v) { touched_[v] = stale_[v] = 1; }
 
-    void collapse(Index h) {
+    void collapse(HalfEdge h) {
         const Index w = target(h);
-        const Index twin = s_.twin[at(h)];
+        const HalfEdge twin = s_.twin[h];
         visit_star(s_.twin, h, [&](Index k) {
             if (k / 3 != h / 3 && (twin < 0 || k / 3 != twin / 3))
-                s_.faces[at(k / 3)][at(k % 3)] = w;
+                s_.faces[k / 3][k % 3] = w;
         });
         take_out(h);
         if (twin >= 0)
@@ -302,19 +301,19 @@ private:
         s_.collapses.push_back(h);
     }
     // Removes the face of h and joins its two other edges.
-    void take_out(Index h) {
-        const Index first = s_.twin[at(Mesh::next(h))];
-        const Index second = s_.twin[at(Mesh::previous(h))];
+    void take_out(HalfEdge h) {
+        const Index first = s_.twin[Mesh::next(h)];
+        const Index second = s_.twin[Mesh::previous(h)];
         if (first >= 0)
-            s_.twin[at(first)] = second;
+            s_.twin[first] = second;
         if (second >= 0)
-            s_.twin[at(second)] = first;
-        s_.alive[at(h / 3)] = 0;
+            s_.twin[second] = first;
+        s_.alive[h / 3] = 0;
         --s_.alive_faces;
         for (const Index k : {first, second})
             if (k >= 0) { // between the apex and the kept vertex
-                outgoing_[at(origin(k))] = k;
-                outgoing_[at(target(k))] = Mesh::next(k);
+                outgoing_[origin(k)] = k;
+                outgoing_[target(k)] = Mesh::next(k);
             }
     }
 
@@ -335,7 +334,7 @@ private:
 namespace {
 
 CoarseSurface coarsen_with(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
-                           const std::vector<Index>& twin, Index target_faces,
+                           const std::vector<HalfEdge>& twin, Index target_faces,
                            const Progress& progress, Progress* shared) {
     CoarseSurface surface;
     surface.faces = faces;
@@ -354,7 +353,7 @@ CoarseSurface coarsen_with(const std::vector<Vec3>& points, const std::vector<Tr
 } // namespace
 
 CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
-                      const std::vector<Index>& twin, Index target_faces,
+                      const std::vector<HalfEdge>& twin, Index target_faces,
                       const Progress& progress) {
     return coarsen_with(points, faces, twin, target_faces, progress, nullptr);
 }
@@ -364,20 +363,20 @@ CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress
 }
 
 Index undo_collapse(CoarseSurface& s) {
-    const Index h = s.collapses.back();
+    const HalfEdge h = s.collapses.back();
     s.collapses.pop_back();
-    const Index twin = s.twin[at(h)];
+    const HalfEdge twin = s.twin[h];
     for (const Index side : {twin, h}) {
         if (side < 0)
             continue;
-        s.alive[at(side / 3)] = 1;
+        s.alive[side / 3] = 1;
         ++s.alive_faces;
         for (const Index k : {Mesh::next(side), Mesh::previous(side)})
-            if (s.twin[at(k)] >= 0)
-                s.twin[at(s.twin[at(k)])] = k;
+            if (s.twin[k] >= 0)
+                s.twin[s.twin[k]] = k;
     }
-    const Index v = s.faces[at(h / 3)][at(h % 3)];
-    visit_star(s.twin, h, [&](Index k) { s.faces[at(k / 3)][at(k % 3)] = v; });
+    const Vertex v = s.faces[h / 3][h % 3];
+    visit_star(s.twin, h, [&](Index k) { s.faces[k / 3][k % 3] = v; });
     return h;
 }
 
@@ -385,27 +384,27 @@ CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface) {
     CoarseMesh result;
     std::vector<Index> number(surface.faces.size(), -1);
     std::vector<Index> vertex(fine.points.size(), -1);
-    for (Index f = 0; f < fine.face_count(); ++f) {
-        if (surface.alive[at(f)] == 0)
+    for (const Face f : fine.all_faces()) {
+        if (surface.alive[f] == 0)
             continue;
-        number[at(f)] = static_cast<Index>(result.face.size());
+        number[f] = static_cast<Index>(result.face.size());
         result.face.push_back(f);
         Triangle t{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Index v = surface.faces[at(f)][k];
-            if (vertex[at(v)] < 0) {
-                vertex[at(v)] = static_cast<Index>(result.vertex.size());
+            const Vertex v = surface.faces[f][k];
+            if (vertex[v] < 0) {
+                vertex[v] = static_cast<Index>(result.vertex.size());
                 result.vertex.push_back(v);
-                result.mesh.points.push_back(fine.points[at(v)]);
+                result.mesh.points.push_back(fine.points[v]);
             }
-            t[k] = vertex[at(v)];
+            t[k] = vertex[v];
         }
         result.mesh.faces.push_back(t);
     }
-    for (const Index f : result.face)
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = surface.twin[at(h)];
-            result.mesh.twin.push_back(twin < 0 ? -1 : 3 * number[at(twin / 3)] + twin % 3);
+    for (const Face f : result.face)
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge twin = surface.twin[h];
+            result.mesh.twin.push_back(twin < 0 ? -1 : 3 * number[twin / 3] + twin % 3);
         }
     result.mesh.unit_length = fine.unit_length;
     compute_face_geometry(result.mesh);
@@ -415,20 +414,18 @@ CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface) {
 namespace {
 
 // Length of the borders around the two faces beside h, had they these labels.
-double border_length(const std::vector<Vec3>& points, const CoarseSurface& s, Index h,
+double border_length(const std::vector<Vec3>& points, const CoarseSurface& s, HalfEdge h,
                      const std::vector<Index>& label, Index here, Index there) {
     const auto length = [&](Index k) {
-        return (points[at(s.faces[at(k / 3)][at(k % 3)])] -
-                points[at(s.faces[at(k / 3)][at(Mesh::next(k) % 3)])])
-            .norm();
+        return (points[s.faces[k / 3][k % 3]] - points[s.faces[k / 3][Mesh::next(k) % 3]]).norm();
     };
-    const Index twin = s.twin[at(h)];
+    const HalfEdge twin = s.twin[h];
     double sum = twin >= 0 && here != there ? length(h) : 0.0;
     for (const auto& [side, own] : {std::pair(h, here), std::pair(twin, there)})
         if (side >= 0)
             for (const Index k : {Mesh::next(side), Mesh::previous(side)}) {
-                const Index across = s.twin[at(k)];
-                if (across >= 0 && label[at(across / 3)] != own)
+                const Index across = s.twin[k];
+                if (across >= 0 && label[across / 3] != own)
                     sum += length(k);
             }
     return sum;
@@ -440,13 +437,13 @@ std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface 
                                  std::vector<Index> label, const Progress& progress) {
     Heartbeat beat(progress);
     const auto across = [&](Index k) {
-        const Index twin = surface.twin[at(k)];
-        return twin < 0 ? -1 : label[at(twin / 3)];
+        const HalfEdge twin = surface.twin[k];
+        return twin < 0 ? -1 : label[twin / 3];
     };
     while (!surface.collapses.empty()) {
         beat();
-        const Index h = undo_collapse(surface);
-        const Index twin = surface.twin[at(h)];
+        const HalfEdge h = undo_collapse(surface);
+        const HalfEdge twin = surface.twin[h];
         double shortest = -1.0;
         Index best_here = -1;
         Index best_there = -1;
@@ -462,9 +459,9 @@ std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface 
                     best_there = b;
                 }
             }
-        label[at(h / 3)] = best_here;
+        label[h / 3] = best_here;
         if (twin >= 0)
-            label[at(twin / 3)] = best_there;
+            label[twin / 3] = best_there;
     }
     return label;
 }

@@ -19,7 +19,7 @@ namespace devseg::mesh {
 /// faces and half-edges keep their numbers, and a removed face keeps the corners and twins it had.
 struct CoarseSurface {
     std::vector<Triangle> faces;     // #F
-    std::vector<Index> twin;         // 3 #F
+    std::vector<HalfEdge> twin;      // 3 #F
     std::vector<std::uint8_t> alive; // #F
     std::vector<Index> collapses;    // half-edges, removed → kept vertex, in their order
     std::vector<std::size_t> rounds; // number of collapses at the end of each round
@@ -30,7 +30,8 @@ struct CoarseSurface {
 /// are left, or no vertex can go. The topology stays; boundary vertices move along the boundary
 /// only. A round removes vertices that are not neighbours of each other.
 CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
-                      const std::vector<Index>& twin, Index target_faces, const Progress& progress);
+                      const std::vector<HalfEdge>& twin, Index target_faces,
+                      const Progress& progress);
 
 /// The same with all cores; not from within a task of parallel_for.
 CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress);

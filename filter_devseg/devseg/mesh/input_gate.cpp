@@ -29,7 +29,7 @@ void require_faces(const RawMesh& raw) {
 void require_valid_indices(const RawMesh& raw) {
     const Index count = static_cast<Index>(raw.points.size());
     for (std::size_t f = 0; f < raw.faces.size(); ++f)
-        for (const Index v : raw.faces[f])
+        for (const Vertex v : raw.faces[f])
             if (v < 0 || v >= count)
                 throw InvalidMesh("expected vertex indices from 0 to " + std::to_string(count - 1) +
                                       ", found " + std::to_string(v) + " in face " +
@@ -41,8 +41,8 @@ void require_finite(const RawMesh& raw) {
     std::vector<Index> bad;
     Index first_vertex = -1;
     for (std::size_t f = 0; f < raw.faces.size(); ++f)
-        for (const Index v : raw.faces[f])
-            if (!raw.points[at(v)].allFinite()) {
+        for (const Vertex v : raw.faces[f])
+            if (!raw.points[v].allFinite()) {
                 if (first_vertex < 0)
                     first_vertex = v;
                 bad.push_back(static_cast<Index>(f));
@@ -65,9 +65,9 @@ Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
     Vec3 high = -low;
     for (const Triangle& t : raw.faces)
-        for (const Index v : t) {
-            low = low.cwiseMin(raw.points[at(v)]);
-            high = high.cwiseMax(raw.points[at(v)]);
+        for (const Vertex v : t) {
+            low = low.cwiseMin(raw.points[v]);
+            high = high.cwiseMax(raw.points[v]);
         }
     const double size = (high / 2.0 - low / 2.0).maxCoeff() * 2.0;
     if (!(size > 0.0) || !std::isfinite(size))
@@ -103,9 +103,9 @@ Buckets<Item> sort_into_buckets(Index item_count, Index bucket_count, BucketOf b
     result.items.resize(at(item_count));
     std::vector<Index> cursor(result.begin.begin(), result.begin.end() - 1);
     for (Index i = 0; i < item_count; ++i)
-        result.items[at(cursor[at(bucket_of(i))]++)] = make_item(i);
+        result.items[cursor[bucket_of(i)]++] = make_item(i);
     for (Index b = 0; b < bucket_count; ++b)
-        std::sort(result.items.begin() + result.begin[at(b)],
+        std::sort(result.items.begin() + result.begin[b],
                   result.items.begin() + result.begin[at(b) + 1]);
     return result;
 }
@@ -119,8 +119,8 @@ struct FaceSelection {
 
 FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vertex_count) {
     const Index count = static_cast<Index>(faces.size());
-    const auto sorted = [&](Index f) {
-        Triangle t = faces[at(f)];
+    const auto sorted = [&](Face f) {
+        Triangle t = faces[f];
         std::sort(t.begin(), t.end());
         return t;
     };
@@ -131,8 +131,8 @@ FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vert
         }
     };
     const auto buckets = sort_into_buckets<Key>(
-        count, vertex_count, [&](Index f) { return sorted(f)[0]; },
-        [&](Index f) {
+        count, vertex_count, [&](Face f) { return sorted(f)[0]; },
+        [&](Face f) {
             const Triangle t = sorted(f);
             return Key{t[1], t[2], f};
         });
@@ -141,20 +141,20 @@ FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vert
     result.duplicate_of.assign(at(count), -1);
     for (std::size_t b = 0; b + 1 < buckets.begin.size(); ++b)
         for (Index i = buckets.begin[b] + 1; i < buckets.begin[b + 1]; ++i) {
-            const Key& before = buckets.items[at(i - 1)];
-            const Key& key = buckets.items[at(i)];
+            const Key& before = buckets.items[i - 1];
+            const Key& key = buckets.items[i];
             if (key.middle != before.middle || key.largest != before.largest)
                 continue;
-            const Index first = result.duplicate_of[at(before.face)];
-            result.duplicate_of[at(key.face)] = first >= 0 ? first : before.face;
+            const Index first = result.duplicate_of[before.face];
+            result.duplicate_of[key.face] = first >= 0 ? first : before.face;
         }
     result.kept.reserve(at(count));
-    for (Index f = 0; f < count; ++f) {
+    for (Face f = 0; f < count; ++f) {
         const Triangle t = sorted(f);
         if (t[0] == t[1] || t[1] == t[2]) {
-            result.duplicate_of[at(f)] = -1;
+            result.duplicate_of[f] = -1;
             ++result.repeated;
-        } else if (result.duplicate_of[at(f)] >= 0) {
+        } else if (result.duplicate_of[f] >= 0) {
             ++result.duplicates;
         } else {
             result.kept.push_back(f);
@@ -169,28 +169,29 @@ std::vector<Index> neighbours_regardless_of_direction(const std::vector<Triangle
                                                       std::vector<std::uint8_t>& cut,
                                                       Index& crowded_edges) {
     std::vector<Index> neighbour(3 * faces.size(), -1);
-    const auto ends = [&](Index h) {
-        const Triangle& t = faces[at(h / 3)];
-        return std::minmax({t[at(h % 3)], t[at((h % 3 + 1) % 3)]});
+    const auto ends = [&](HalfEdge h) {
+        const Triangle& t = faces[h / 3];
+        return std::minmax({t[h % 3], t[(h % 3 + 1) % 3]});
     };
     using Use = std::pair<Index, Index>; // (larger vertex, half-edge)
     const auto buckets = sort_into_buckets<Use>(
-        static_cast<Index>(neighbour.size()), vertex_count, [&](Index h) { return ends(h).first; },
-        [&](Index h) { return Use(ends(h).second, h); });
-    for (Index v = 0; v < vertex_count; ++v) {
-        const auto first = buckets.items.begin() + buckets.begin[at(v)];
+        static_cast<Index>(neighbour.size()), vertex_count,
+        [&](HalfEdge h) { return ends(h).first; },
+        [&](HalfEdge h) { return Use(ends(h).second, h); });
+    for (Vertex v = 0; v < vertex_count; ++v) {
+        const auto first = buckets.items.begin() + buckets.begin[v];
         const auto last = buckets.items.begin() + buckets.begin[at(v) + 1];
         for (auto run = first; run != last;) {
             auto end = run;
             while (end != last && end->first == run->first)
                 ++end;
             if (end - run == 2) {
-                neighbour[at(run->second)] = (run + 1)->second;
-                neighbour[at((run + 1)->second)] = run->second;
+                neighbour[run->second] = (run + 1)->second;
+                neighbour[(run + 1)->second] = run->second;
             } else if (end - run > 2) {
                 ++crowded_edges;
                 for (auto use = run; use != end; ++use)
-                    cut[at(use->second)] = 1;
+                    cut[use->second] = 1;
             }
             run = end;
         }
@@ -208,41 +209,41 @@ struct Orientation {
 Orientation orient(const std::vector<Triangle>& faces, std::vector<Index>& neighbour,
                    std::vector<std::uint8_t>& cut) {
     const Index count = static_cast<Index>(faces.size());
-    const auto start_vertex = [&](Index h) { return faces[at(h / 3)][at(h % 3)]; };
+    const auto start_vertex = [&](HalfEdge h) { return faces[h / 3][h % 3]; };
     Orientation result;
     result.flipped.assign(at(count), 2); // 2 = not reached yet
     std::vector<Index> component;
     for (Index seed = 0; seed < count; ++seed) {
-        if (result.flipped[at(seed)] != 2)
+        if (result.flipped[seed] != 2)
             continue;
         component.assign(1, seed);
-        result.flipped[at(seed)] = 0;
+        result.flipped[seed] = 0;
         Index turned = 0;
         for (std::size_t i = 0; i < component.size(); ++i) {
-            const Index f = component[i];
-            turned += result.flipped[at(f)];
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index opposite = neighbour[at(h)];
+            const Face f = component[i];
+            turned += result.flipped[f];
+            for (const HalfEdge h : half_edges_of(f)) {
+                const Index opposite = neighbour[h];
                 if (opposite < 0)
                     continue;
                 // Two faces that run along their edge in the same direction disagree.
                 const bool disagree = start_vertex(h) == start_vertex(opposite);
-                const std::uint8_t wanted = result.flipped[at(f)] ^ (disagree ? 1 : 0);
-                std::uint8_t& state = result.flipped[at(opposite / 3)];
+                const std::uint8_t wanted = result.flipped[f] ^ (disagree ? 1 : 0);
+                std::uint8_t& state = result.flipped[opposite / 3];
                 if (state == 2) {
                     state = wanted;
                     component.push_back(opposite / 3);
                 } else if (state != wanted) {
                     ++result.one_sided_edges;
-                    cut[at(h)] = cut[at(opposite)] = 1;
-                    neighbour[at(h)] = neighbour[at(opposite)] = -1;
+                    cut[h] = cut[opposite] = 1;
+                    neighbour[h] = neighbour[opposite] = -1;
                 }
             }
         }
         const Index size = static_cast<Index>(component.size());
         if (2 * turned > size) {
-            for (const Index f : component)
-                result.flipped[at(f)] ^= 1;
+            for (const Face f : component)
+                result.flipped[f] ^= 1;
             turned = size - turned;
         }
         result.turned += turned;
@@ -257,31 +258,30 @@ Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
     std::vector<std::uint8_t> used(mesh.points.size(), 0);
     Index added = 0;
     for (Index start = 0; start < corners; ++start) {
-        if (corner_vertex[at(start)] >= 0)
+        if (corner_vertex[start] >= 0)
             continue;
-        Index v = mesh.origin(start);
-        if (used[at(v)] != 0) {
-            mesh.points.push_back(mesh.points[at(v)]);
-            source_vertex.push_back(source_vertex[at(v)]);
+        Vertex v = mesh.origin(start);
+        if (used[v] != 0) {
+            mesh.points.push_back(mesh.points[v]);
+            source_vertex.push_back(source_vertex[v]);
             v = mesh.vertex_count() - 1;
             ++added;
         } else {
-            used[at(v)] = 1;
+            used[v] = 1;
         }
         // Corner h of a face is the origin of half-edge h. Around the vertex: across the edge
         // that ends here, and across the edge that starts here.
-        for (Index h = start; h >= 0 && corner_vertex[at(h)] < 0;
-             h = mesh.twin[at(Mesh::previous(h))])
-            corner_vertex[at(h)] = v;
-        for (Index back = mesh.twin[at(start)]; back >= 0; back = mesh.twin[at(Mesh::next(back))]) {
-            const Index h = Mesh::next(back);
-            if (corner_vertex[at(h)] >= 0)
+        for (HalfEdge h = start; h >= 0 && corner_vertex[h] < 0; h = mesh.twin[Mesh::previous(h)])
+            corner_vertex[h] = v;
+        for (Index back = mesh.twin[start]; back >= 0; back = mesh.twin[Mesh::next(back)]) {
+            const HalfEdge h = Mesh::next(back);
+            if (corner_vertex[h] >= 0)
                 break;
-            corner_vertex[at(h)] = v;
+            corner_vertex[h] = v;
         }
     }
-    for (Index h = 0; h < corners; ++h)
-        mesh.faces[at(h / 3)][at(h % 3)] = corner_vertex[at(h)];
+    for (HalfEdge h = 0; h < corners; ++h)
+        mesh.faces[h / 3][h % 3] = corner_vertex[h];
     return added;
 }
 
@@ -289,21 +289,21 @@ Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
 void drop_unused_points(Mesh& mesh, std::vector<Index>& source_vertex) {
     std::vector<Index> renamed(mesh.points.size(), -1);
     for (const Triangle& t : mesh.faces)
-        for (const Index v : t)
-            renamed[at(v)] = 0;
+        for (const Vertex v : t)
+            renamed[v] = 0;
     Index count = 0;
     for (std::size_t v = 0; v < renamed.size(); ++v)
         if (renamed[v] == 0) {
             renamed[v] = count;
-            mesh.points[at(count)] = mesh.points[v];
-            source_vertex[at(count)] = source_vertex[v];
+            mesh.points[count] = mesh.points[v];
+            source_vertex[count] = source_vertex[v];
             ++count;
         }
     mesh.points.resize(at(count));
     source_vertex.resize(at(count));
     for (Triangle& t : mesh.faces)
         for (Index& v : t)
-            v = renamed[at(v)];
+            v = renamed[v];
 }
 
 // Source faces that were left out take the results of a face on the same vertices, or of a face
@@ -312,22 +312,22 @@ void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count
                     const std::vector<Index>& duplicate_of, GatedMesh& gated) {
     gated.stand_in.assign(faces.size(), -1);
     for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        gated.stand_in[at(gated.source_face[f])] = static_cast<Index>(f);
+        gated.stand_in[gated.source_face[f]] = static_cast<Index>(f);
     if (gated.source_face.size() == faces.size())
         return;
     std::vector<Index> face_at_vertex(vertex_count, -1);
     for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        for (const Index v : faces[at(gated.source_face[f])])
-            face_at_vertex[at(v)] = static_cast<Index>(f);
+        for (const Vertex v : faces[gated.source_face[f]])
+            face_at_vertex[v] = static_cast<Index>(f);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         Index& stand_in = gated.stand_in[f];
         if (stand_in >= 0)
             continue;
         if (duplicate_of[f] >= 0)
-            stand_in = gated.stand_in[at(duplicate_of[f])];
-        for (const Index v : faces[f])
+            stand_in = gated.stand_in[duplicate_of[f]];
+        for (const Vertex v : faces[f])
             if (stand_in < 0)
-                stand_in = face_at_vertex[at(v)];
+                stand_in = face_at_vertex[v];
         if (stand_in < 0)
             stand_in = 0;
     }
@@ -352,8 +352,8 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
     progress.check();
     FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
     gated.source_face = std::move(selection.kept);
-    for (const Index f : gated.source_face)
-        mesh.faces.push_back(faces[at(f)]);
+    for (const Face f : gated.source_face)
+        mesh.faces.push_back(faces[f]);
 
     progress.check();
     gated.cut.assign(3 * mesh.faces.size(), 0);
@@ -366,15 +366,15 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
 
     progress.check();
     // Turn faces over: corners (a, b, c) become (a, c, b), so edge e becomes edge 2 − e.
-    const auto moved = [&](Index h) {
-        return gated.flipped[at(h / 3)] != 0 ? h / 3 * 3 + 2 - h % 3 : h;
+    const auto moved = [&](HalfEdge h) {
+        return gated.flipped[face_of(h)] != 0 ? half_edge_of(face_of(h), 2 - corner_of(h)) : h;
     };
     std::vector<std::uint8_t> cut(gated.cut.size());
     mesh.twin.assign(gated.cut.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        cut[at(moved(h))] = gated.cut[at(h)];
-        if (neighbour[at(h)] >= 0)
-            mesh.twin[at(moved(h))] = moved(neighbour[at(h)]);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        cut[moved(h)] = gated.cut[h];
+        if (neighbour[h] >= 0)
+            mesh.twin[moved(h)] = moved(neighbour[h]);
     }
     gated.cut = std::move(cut);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)

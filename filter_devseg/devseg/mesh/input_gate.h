@@ -35,11 +35,9 @@ struct GatedMesh {
     std::vector<std::string> notes; // what was worked around, one sentence each
 
     /// Source corner of corner k of face f; a turned face swaps its last two corners.
-    Index source_corner(Index f, Index k) const {
-        return flipped[at(f)] != 0 && k != 0 ? 3 - k : k;
-    }
+    Index source_corner(Face f, Index k) const { return flipped[f] != 0 && k != 0 ? 3 - k : k; }
     /// Source edge (edge e joins corners e and e + 1) of edge e of face f.
-    Index source_edge(Index f, Index e) const { return flipped[at(f)] != 0 ? 2 - e : e; }
+    Index source_edge(Face f, Index e) const { return flipped[f] != 0 ? 2 - e : e; }
 };
 
 /// Throws InvalidMesh where nothing sensible can be done: no faces, an index out of range,

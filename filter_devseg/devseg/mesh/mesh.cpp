@@ -12,12 +12,12 @@ void spread_normals(Mesh& mesh, std::vector<Index> missing) {
     while (!missing.empty()) {
         std::vector<std::pair<Index, Vec3>> found;
         std::vector<Index> still_missing;
-        for (const Index f : missing) {
+        for (const Face f : missing) {
             Vec3 sum = Vec3::Zero();
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index opposite = mesh.twin[at(h)];
+            for (const HalfEdge h : half_edges_of(f)) {
+                const Index opposite = mesh.twin[h];
                 if (opposite >= 0)
-                    sum += mesh.face_normals[at(opposite / 3)];
+                    sum += mesh.face_normals[opposite / 3];
             }
             if (sum.squaredNorm() > 0.0)
                 found.emplace_back(f, sum.normalized());
@@ -27,11 +27,11 @@ void spread_normals(Mesh& mesh, std::vector<Index> missing) {
         if (found.empty())
             break;
         for (const auto& [f, normal] : found)
-            mesh.face_normals[at(f)] = normal;
+            mesh.face_normals[f] = normal;
         missing = std::move(still_missing);
     }
-    for (const Index f : missing)
-        mesh.face_normals[at(f)] = Vec3::UnitZ(); // a component without any area: any direction
+    for (const Face f : missing)
+        mesh.face_normals[f] = Vec3::UnitZ(); // a component without any area: any direction
 }
 
 } // namespace
@@ -45,9 +45,9 @@ void compute_face_geometry(Mesh& mesh) {
     std::vector<Index> without_normal;
     for (std::size_t f = 0; f < count; ++f) {
         const Triangle& t = mesh.faces[f];
-        const Vec3& a = mesh.points[at(t[0])];
-        const Vec3& b = mesh.points[at(t[1])];
-        const Vec3& c = mesh.points[at(t[2])];
+        const Vec3& a = mesh.points[t[0]];
+        const Vec3& b = mesh.points[t[1]];
+        const Vec3& c = mesh.points[t[2]];
         const Vec3 normal = (b - a).cross(c - a);
         const double length = normal.norm();
         mesh.face_areas[f] = 0.5 * length;

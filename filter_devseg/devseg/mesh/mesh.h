@@ -18,13 +18,14 @@
 #include <Eigen/Geometry>
 
 #include "devseg/base/numbers.h"
+#include "devseg/mesh/handles.h"
 
 namespace devseg::mesh {
 
 struct Mesh {
     std::vector<Vec3> points;       // #V, in internal units
     std::vector<Triangle> faces;    // #F
-    std::vector<Index> twin;        // 3 #F: the opposite half-edge, −1 on a boundary
+    std::vector<HalfEdge> twin;     // 3 #F: the opposite half-edge, −1 on a boundary
     std::vector<double> face_areas; // #F, internal units squared
     std::vector<Vec3> face_normals; // #F, unit; faces without area take a neighbour's normal
     std::vector<Vec3> face_centers; // #F, centroids
@@ -34,14 +35,16 @@ struct Mesh {
     Index vertex_count() const { return static_cast<Index>(points.size()); }
     Index face_count() const { return static_cast<Index>(faces.size()); }
     Index half_edge_count() const { return 3 * face_count(); }
-    Index origin(Index h) const { return faces[at(h / 3)][at(h % 3)]; }
-    Index target(Index h) const { return origin(next(h)); }
-    double edge_length(Index h) const {
-        return (points[at(target(h))] - points[at(origin(h))]).norm();
-    }
+    Range<VertexKind> all_vertices() const { return {0, vertex_count()}; }
+    Range<FaceKind> all_faces() const { return {0, face_count()}; }
+    Range<HalfEdgeKind> all_half_edges() const { return {0, half_edge_count()}; }
 
-    static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
-    static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+    Vertex origin(HalfEdge h) const { return faces[face_of(h)][corner_of(h)]; }
+    Vertex target(HalfEdge h) const { return origin(next(h)); }
+    double edge_length(HalfEdge h) const { return (points[target(h)] - points[origin(h)]).norm(); }
+
+    static HalfEdge next(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
+    static HalfEdge previous(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
 };
 
 /// Fills areas, normals, centres and the total area from points and faces.
@@ -59,19 +62,19 @@ FaceComponents face_components(const Mesh& mesh, Connected connected) {
     FaceComponents result;
     result.label.assign(mesh.faces.size(), -1);
     std::vector<Index> stack;
-    for (Index start = 0; start < mesh.face_count(); ++start) {
-        if (result.label[at(start)] >= 0)
+    for (const Face start : mesh.all_faces()) {
+        if (result.label[start] >= 0)
             continue;
-        result.label[at(start)] = result.count;
+        result.label[start] = result.count;
         stack.push_back(start);
         while (!stack.empty()) {
-            const Index f = stack.back();
+            const Face f = stack.back();
             stack.pop_back();
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index opposite = mesh.twin[at(h)];
-                if (opposite < 0 || result.label[at(opposite / 3)] >= 0 || !connected(h))
+            for (const HalfEdge h : half_edges_of(f)) {
+                const Index opposite = mesh.twin[h];
+                if (opposite < 0 || result.label[opposite / 3] >= 0 || !connected(h))
                     continue;
-                result.label[at(opposite / 3)] = result.count;
+                result.label[opposite / 3] = result.count;
                 stack.push_back(opposite / 3);
             }
         }
@@ -83,20 +86,20 @@ FaceComponents face_components(const Mesh& mesh, Connected connected) {
 /// Calls visit(h) for the half-edges that leave the origin of `half_edge`, one for each face around
 /// it; returns whether the faces go all around, which is false on the boundary.
 template <class Visit>
-bool visit_star(const std::vector<Index>& twin, Index half_edge, Visit visit) {
-    Index leaving = half_edge;
+bool visit_star(const std::vector<HalfEdge>& twin, HalfEdge half_edge, Visit visit) {
+    HalfEdge leaving = half_edge;
     do {
         visit(leaving);
-        leaving = twin[at(Mesh::previous(leaving))];
+        leaving = twin[Mesh::previous(leaving)];
     } while (leaving >= 0 && leaving != half_edge);
     if (leaving == half_edge)
         return true;
-    for (Index back = twin[at(half_edge)]; back >= 0; back = twin[at(Mesh::next(back))])
+    for (Index back = twin[half_edge]; back >= 0; back = twin[Mesh::next(back)])
         visit(Mesh::next(back));
     return false;
 }
 template <class Visit>
-bool visit_star(const Mesh& mesh, Index half_edge, Visit visit) {
+bool visit_star(const Mesh& mesh, HalfEdge half_edge, Visit visit) {
     return visit_star(mesh.twin, half_edge, visit);
 }
 

@@ -47,7 +47,7 @@ private:
             return box.squaredExteriorDistance(p);
         }
         double minimumOnObject(Index i) {
-            const double d = (points[at(i)] - p).squaredNorm();
+            const double d = (points[i] - p).squaredNorm();
             if ((d < least || (d == least && i < best)) && accept(i)) {
                 least = d;
                 best = i;

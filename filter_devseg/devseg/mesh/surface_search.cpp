@@ -6,8 +6,8 @@ namespace devseg::mesh {
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     std::vector<Vec3> normal(mesh.points.size(), Vec3::Zero());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        normal[at(mesh.origin(h))] += mesh.face_areas[at(h / 3)] * mesh.face_normals[at(h / 3)];
+    for (const HalfEdge h : mesh.all_half_edges())
+        normal[mesh.origin(h)] += mesh.face_areas[h / 3] * mesh.face_normals[h / 3];
     for (Vec3& n : normal)
         n = n.stableNormalized();
     return normal;

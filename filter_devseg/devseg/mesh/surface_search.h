@@ -25,28 +25,28 @@ public:
     template <class Accept>
     Index vertex(const Vec3& p, const Vec3& n, Accept accept) const {
         constexpr double facing = 0.2; // least cosine between the normals
-        return points_.nearest(p, [&](Index v) {
-            return leaving_[at(v)] >= 0 && normal_[at(v)].dot(n) > facing && accept(v);
+        return points_.nearest(p, [&](Vertex v) {
+            return leaving_[v] >= 0 && normal_[v].dot(n) > facing && accept(v);
         });
     }
 
     /// The place on the faces around a vertex that is nearest to p, among those that are accepted.
     template <class Accept>
-    std::pair<Index, Vec3> on_faces(const Vec3& p, Index v, Accept accept) const {
-        std::pair<Index, Vec3> best{-1, mesh_.points[at(v)]};
-        visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+    std::pair<Index, Vec3> on_faces(const Vec3& p, Vertex v, Accept accept) const {
+        std::pair<Index, Vec3> best{-1, mesh_.points[v]};
+        visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
             if (!accept(h / 3))
                 return;
-            const Triangle& t = mesh_.faces[at(h / 3)];
-            const Vec3 q = nearest_in_triangle(p, mesh_.points[at(t[0])], mesh_.points[at(t[1])],
-                                               mesh_.points[at(t[2])]);
+            const Triangle& t = mesh_.faces[h / 3];
+            const Vec3 q =
+                nearest_in_triangle(p, mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]);
             if (best.first < 0 || (q - p).squaredNorm() < (best.second - p).squaredNorm())
                 best = {h / 3, q};
         });
         return best;
     }
-    const Vec3& normal(Index v) const { return normal_[at(v)]; }
-    Index leaving(Index v) const { return leaving_[at(v)]; }
+    const Vec3& normal(Vertex v) const { return normal_[v]; }
+    Index leaving(Vertex v) const { return leaving_[v]; }
 
 private:
     const Mesh& mesh_;

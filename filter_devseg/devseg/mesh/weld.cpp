@@ -45,14 +45,14 @@ public:
         std::iota(parent_.begin(), parent_.end(), 0);
     }
     Index find(Index i) {
-        while (parent_[at(i)] != i)
-            i = parent_[at(i)] = parent_[at(parent_[at(i)])];
+        while (parent_[i] != i)
+            i = parent_[i] = parent_[parent_[i]];
         return i;
     }
     void join(Index i, Index j) {
         const Index a = find(i);
         const Index b = find(j);
-        parent_[at(std::max(a, b))] = std::min(a, b);
+        parent_[std::max(a, b)] = std::min(a, b);
     }
 
 private:
@@ -78,13 +78,13 @@ Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
     std::vector<std::uint8_t> used(raw.points.size(), 0);
     std::vector<Index> corners;
     for (const Triangle& t : faces)
-        for (const Index v : t) {
-            if (used[at(v)]++ != 0)
+        for (const Vertex v : t) {
+            if (used[v]++ != 0)
                 return 0;
             corners.push_back(v);
         }
-    const auto key = [&](Index v) {
-        const Vec3& p = raw.points[at(v)];
+    const auto key = [&](Vertex v) {
+        const Vec3& p = raw.points[v];
         return std::make_tuple(p.x(), p.y(), p.z());
     };
     std::sort(corners.begin(), corners.end(), [&](Index a, Index b) {
@@ -94,17 +94,17 @@ Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
     Index less = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const bool same = i > 0 && key(corners[i]) == key(corners[i - 1]);
-        first[at(corners[i])] = same ? first[at(corners[i - 1])] : corners[i];
+        first[corners[i]] = same ? first[corners[i - 1]] : corners[i];
         less += same ? 1 : 0;
     }
     for (Triangle& t : faces)
         for (Index& v : t)
-            v = first[at(v)];
+            v = first[v];
     return less;
 }
 
 WeldedMesh weld_borders(const RawMesh& raw) {
-    const auto place = [&](Index v) -> const Vec3& { return raw.points[at(v)]; };
+    const auto place = [&](Vertex v) -> const Vec3& { return raw.points[v]; };
     std::vector<Edge> edges = border_edges(raw);
     for (Edge& edge : edges)
         if (before(place(edge.to), place(edge.from)))

@@ -38,8 +38,8 @@ Positions circle_positions(const flatten::FlatteningProblem& problem) {
 // Inner vertices first: numbers of all vertices in the order of the unknowns.
 std::vector<Index> unknowns_first(const flatten::FlatteningProblem& problem, Index& unknowns) {
     std::vector<Index> number(at(problem.vertex_count), 0);
-    for (const Index v : problem.boundary)
-        number[at(v)] = -1;
+    for (const Vertex v : problem.boundary)
+        number[v] = -1;
     unknowns = 0;
     for (Index& n : number)
         n = n < 0 ? n : unknowns++;
@@ -59,8 +59,8 @@ Positions conformal_positions(const flatten::FlatteningProblem& problem) {
             const double weight = problem.cotangent[f][k];
             const Index ends[2] = {problem.faces[f][k], problem.faces[f][(k + 1) % 3]};
             for (int side = 0; side < 2; ++side) {
-                const Index row = number[at(ends[side])];
-                const Index column = number[at(ends[1 - side])];
+                const Index row = number[ends[side]];
+                const Index column = number[ends[1 - side]];
                 if (row < 0)
                     continue;
                 entries.emplace_back(row, row, weight);
@@ -77,9 +77,9 @@ Positions conformal_positions(const flatten::FlatteningProblem& problem) {
     if (factors.info() != Eigen::Success || !inner.allFinite())
         throw NumericalFailure("expected a chart with a conformal map to the circle, found a "
                                "singular system; repair faces without area first");
-    for (Index v = 0; v < problem.vertex_count; ++v)
-        if (number[at(v)] >= 0)
-            positions.row(v) = inner.row(number[at(v)]);
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        if (number[v] >= 0)
+            positions.row(v) = inner.row(number[v]);
     return positions;
 }
 
@@ -111,8 +111,8 @@ std::vector<double> circle_map_stretch(const Mesh& mesh, const atlas::ChartMap& 
         static_cast<int>(surfaces.size()),
         [&](int c) {
             const flatten::FlatteningProblem problem =
-                flatten::make_flattening_problem(mesh, surfaces[at(c)]);
-            result[at(c)] = stretch(problem, conformal_positions(problem));
+                flatten::make_flattening_problem(mesh, surfaces[c]);
+            result[c] = stretch(problem, conformal_positions(problem));
         },
         progress);
     return result;

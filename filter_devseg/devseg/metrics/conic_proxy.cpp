@@ -39,9 +39,9 @@ ConicProxy fit_conic(const NormalMoments& moments) {
 
 std::vector<ConicProxy> fit_conics(const Mesh& mesh, const std::vector<Index>& chart, Index count) {
     std::vector<NormalMoments> moments(at(count));
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (chart[at(f)] >= 0)
-            moments[at(chart[at(f)])].add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+    for (const Face f : mesh.all_faces())
+        if (chart[f] >= 0)
+            moments[chart[f]].add(mesh.face_areas[f], mesh.face_normals[f]);
     std::vector<ConicProxy> proxies;
     for (const NormalMoments& m : moments)
         proxies.push_back(fit_conic(m));

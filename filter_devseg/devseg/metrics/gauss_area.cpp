@@ -27,9 +27,9 @@ double absolute_area(const std::vector<Vec3>& corners) {
 // the whole fan without turning back.
 std::vector<Index> first_half_edges(const Mesh& mesh) {
     std::vector<Index> first(mesh.points.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (first[at(mesh.origin(h))] < 0 || mesh.twin[at(h)] < 0)
-            first[at(mesh.origin(h))] = h;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (first[mesh.origin(h)] < 0 || mesh.twin[h] < 0)
+            first[mesh.origin(h)] = h;
     return first;
 }
 
@@ -42,11 +42,11 @@ struct Star {
 
 void walk_star(const Mesh& mesh, Index first, const std::vector<std::uint8_t>& crease, Star& star) {
     star.half_edges.clear();
-    star.closed = mesh::visit_star(mesh, first, [&](Index h) { star.half_edges.push_back(h); });
+    star.closed = mesh::visit_star(mesh, first, [&](HalfEdge h) { star.half_edges.push_back(h); });
     if (star.closed)
         std::rotate(star.half_edges.begin(),
                     std::find_if(star.half_edges.begin(), star.half_edges.end(),
-                                 [&](Index h) { return crease[at(h)] != 0; }),
+                                 [&](HalfEdge h) { return crease[h] != 0; }),
                     star.half_edges.end());
 }
 
@@ -54,15 +54,15 @@ void walk_star(const Mesh& mesh, Index first, const std::vector<std::uint8_t>& c
 Index count_parts(const Star& star, const std::vector<std::uint8_t>& crease) {
     Index parts = star.closed ? 0 : 1;
     for (std::size_t i = star.closed ? 0 : 1; i < star.half_edges.size(); ++i)
-        parts += crease[at(star.half_edges[i])] != 0 ? 1 : 0;
+        parts += crease[star.half_edges[i]] != 0 ? 1 : 0;
     return std::max(parts, Index{1});
 }
 
 // The normal of a corner with the weight of [Max 1999]; zero where an edge has no length.
-Vec3 weighted_normal(const Mesh& mesh, Index h) {
-    const Vec3& corner = mesh.points[at(mesh.origin(h))];
-    const Vec3 a = mesh.points[at(mesh.target(h))] - corner;
-    const Vec3 b = mesh.points[at(mesh.origin(Mesh::previous(h)))] - corner;
+Vec3 weighted_normal(const Mesh& mesh, HalfEdge h) {
+    const Vec3& corner = mesh.points[mesh.origin(h)];
+    const Vec3 a = mesh.points[mesh.target(h)] - corner;
+    const Vec3 b = mesh.points[mesh.origin(Mesh::previous(h))] - corner;
     const double scale = a.squaredNorm() * b.squaredNorm();
     return scale > 0.0 ? Vec3(a.cross(b) / scale) : Vec3::Zero();
 }
@@ -74,7 +74,7 @@ Vec3 part_normal(const Mesh& mesh, const Index* begin, const Index* end) {
     const double length = sum.norm();
     if (length > 0.0 && std::isfinite(length))
         return sum / length;
-    return mesh.face_normals[at(*begin / 3)]; // all weights vanish: any of the faces
+    return mesh.face_normals[*begin / 3]; // all weights vanish: any of the faces
 }
 
 // Calls visit(begin, end) for the smooth parts around a vertex.
@@ -88,7 +88,7 @@ void visit_parts(const Star& star, const std::vector<std::uint8_t>& crease, Visi
     }
     for (const Index* from = begin; from != end;) {
         const Index* to = from + 1;
-        while (to != end && crease[at(*to)] == 0)
+        while (to != end && crease[*to] == 0)
             ++to;
         visit(from, to);
         from = to;
@@ -107,11 +107,10 @@ double signed_spherical_area(const std::vector<Vec3>& corners) {
 std::vector<std::uint8_t> find_creases(const Mesh& mesh, double angle) {
     const double cosine = std::cos(angle);
     std::vector<std::uint8_t> crease(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin >= 0)
-            crease[at(h)] =
-                mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)]) < cosine ? 1 : 0;
+            crease[h] = mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3]) < cosine ? 1 : 0;
     }
     return crease;
 }
@@ -126,7 +125,7 @@ std::vector<Vec3> split_normals(const Mesh& mesh, const std::vector<std::uint8_t
         visit_parts(star, crease, [&](const Index* begin, const Index* end) {
             const Vec3 normal = part_normal(mesh, begin, end);
             for (const Index* h = begin; h != end; ++h)
-                normals[at(*h)] = normal;
+                normals[*h] = normal;
         });
     }
     return normals;
@@ -137,21 +136,21 @@ std::vector<std::uint8_t> long_creases(const Mesh& mesh, const std::vector<std::
     const double length = 0.75 * std::sqrt(mesh.total_area / charts);
     std::vector<Index> root(mesh.points.size());
     std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](Index v) {
-        while (root[at(v)] != v)
-            v = root[at(v)] = root[at(root[at(v)])];
+    const auto find = [&](Vertex v) {
+        while (root[v] != v)
+            v = root[v] = root[root[v]];
         return v;
     };
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (crease[at(h)] != 0)
-            root[at(find(mesh.origin(h)))] = find(mesh.target(h));
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (crease[h] != 0)
+            root[find(mesh.origin(h))] = find(mesh.target(h));
     std::vector<double> chain(mesh.points.size(), 0.0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (crease[at(h)] != 0)
-            chain[at(find(mesh.origin(h)))] += 0.5 * mesh.edge_length(h);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (crease[h] != 0)
+            chain[find(mesh.origin(h))] += 0.5 * mesh.edge_length(h);
     std::vector<std::uint8_t> result(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        result[at(h)] = crease[at(h)] != 0 && chain[at(find(mesh.origin(h)))] >= length ? 1 : 0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        result[h] = crease[h] != 0 && chain[find(mesh.origin(h))] >= length ? 1 : 0;
     return result;
 }
 
@@ -163,17 +162,16 @@ GaussAreas compute_gauss_areas(const Mesh& mesh, double crease_angle) {
     result.edge.assign(mesh.twin.size(), 0.0);
     result.vertex.assign(mesh.points.size(), 0.0);
     std::vector<Vec3> corners(3);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         corners.assign(normals.begin() + 3 * f, normals.begin() + 3 * f + 3);
-        result.total += result.face[at(f)] = absolute_area(corners);
+        result.total += result.face[f] = absolute_area(corners);
     }
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
-        if (result.crease[at(h)] == 0 || h > twin)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
+        if (result.crease[h] == 0 || h > twin)
             continue;
-        corners = {normals[at(h)], normals[at(Mesh::next(h))], normals[at(twin)],
-                   normals[at(Mesh::next(twin))]};
-        result.total += result.edge[at(h)] = result.edge[at(twin)] = absolute_area(corners);
+        corners = {normals[h], normals[Mesh::next(h)], normals[twin], normals[Mesh::next(twin)]};
+        result.total += result.edge[h] = result.edge[twin] = absolute_area(corners);
     }
     Star star;
     for (const Index first : first_half_edges(mesh)) {
@@ -181,11 +179,10 @@ GaussAreas compute_gauss_areas(const Mesh& mesh, double crease_angle) {
             continue;
         walk_star(mesh, first, result.crease, star);
         corners.clear();
-        visit_parts(star, result.crease, [&](const Index* begin, const Index*) {
-            corners.push_back(normals[at(*begin)]);
-        });
+        visit_parts(star, result.crease,
+                    [&](const Index* begin, const Index*) { corners.push_back(normals[*begin]); });
         if (star.closed)
-            result.total += result.vertex[at(mesh.origin(first))] = absolute_area(corners);
+            result.total += result.vertex[mesh.origin(first)] = absolute_area(corners);
     }
     return result;
 }
@@ -195,19 +192,19 @@ std::vector<double> chart_gauss_areas(const Mesh& mesh, const GaussAreas& areas,
     constexpr Index shared = -2;
     std::vector<double> sums(at(count), 0.0);
     std::vector<Index> owner(mesh.points.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index c = chart[at(h / 3)];
-        Index& first = owner[at(mesh.origin(h))];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index c = chart[h / 3];
+        Index& first = owner[mesh.origin(h)];
         first = first == -1 || first == c ? c : shared;
-        const Index twin = mesh.twin[at(h)];
-        if (h < twin && chart[at(twin / 3)] == c)
-            sums[at(c)] += areas.edge[at(h)];
+        const HalfEdge twin = mesh.twin[h];
+        if (h < twin && chart[twin / 3] == c)
+            sums[c] += areas.edge[h];
     }
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        sums[at(chart[f])] += areas.face[f];
+        sums[chart[f]] += areas.face[f];
     for (std::size_t v = 0; v < owner.size(); ++v)
         if (owner[v] >= 0)
-            sums[at(owner[v])] += areas.vertex[v];
+            sums[owner[v]] += areas.vertex[v];
     return sums;
 }
 

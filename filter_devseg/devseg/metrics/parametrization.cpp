@@ -23,29 +23,29 @@ struct Corner3 {
     Vec3 a, b, c;
 };
 
-Corner3 corners_on_surface(const Mesh& mesh, Index f) {
-    const Triangle& t = mesh.faces[at(f)];
-    return {mesh.points[at(t[0])], mesh.points[at(t[1])], mesh.points[at(t[2])]};
+Corner3 corners_on_surface(const Mesh& mesh, Face f) {
+    const Triangle& t = mesh.faces[f];
+    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
 }
 
-bool has_area(const Mesh& mesh, Index f) {
+bool has_area(const Mesh& mesh, Face f) {
     const Corner3 p = corners_on_surface(mesh, f);
     const double longest =
         std::max({(p.b - p.a).squaredNorm(), (p.c - p.b).squaredNorm(), (p.a - p.c).squaredNorm()});
-    return mesh.face_areas[at(f)] > no_area * longest;
+    return mesh.face_areas[f] > no_area * longest;
 }
 
 // Singular values of the affine map from the plane to the surface on one face, Γ first.
-std::array<double, 2> singular_values(const Mesh& mesh, const CornerUv& uv, Index f) {
+std::array<double, 2> singular_values(const Mesh& mesh, const CornerUv& uv, Face f) {
     const Corner3 p = corners_on_surface(mesh, f);
     const double base = (p.b - p.a).norm();
     const double x = (p.c - p.a).dot(p.b - p.a) / base;
-    const double y = 2.0 * mesh.face_areas[at(f)] / base;
+    const double y = 2.0 * mesh.face_areas[f] / base;
     Eigen::Matrix2d surface;
     surface << base, x, 0.0, y;
     Eigen::Matrix2d plane;
-    plane.col(0) = uv[at(3 * f + 1)] - uv[at(3 * f)];
-    plane.col(1) = uv[at(3 * f + 2)] - uv[at(3 * f)];
+    plane.col(0) = uv[3 * f + 1] - uv[3 * f];
+    plane.col(1) = uv[3 * f + 2] - uv[3 * f];
     const Eigen::Matrix2d j = surface * plane.inverse();
     const double e = std::hypot(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
     const double g = std::hypot(j(0, 0) - j(1, 1), j(1, 0) + j(0, 1));
@@ -62,15 +62,14 @@ double angle_at(const Vec& corner, const Vec& p, const Vec& q) {
     return std::atan2(sine, dot);
 }
 
-double squared_angle_change(const Mesh& mesh, const CornerUv& uv, Index f) {
-    const Triangle& t = mesh.faces[at(f)];
+double squared_angle_change(const Mesh& mesh, const CornerUv& uv, Face f) {
+    const Triangle& t = mesh.faces[f];
     double sum = 0.0;
     for (Index k = 0; k < 3; ++k) {
         const Index n = (k + 1) % 3;
         const Index m = (k + 2) % 3;
-        const double change = angle_at(uv[at(3 * f + k)], uv[at(3 * f + n)], uv[at(3 * f + m)]) -
-                              angle_at(mesh.points[at(t[at(k)])], mesh.points[at(t[at(n)])],
-                                       mesh.points[at(t[at(m)])]);
+        const double change = angle_at(uv[3 * f + k], uv[3 * f + n], uv[3 * f + m]) -
+                              angle_at(mesh.points[t[k]], mesh.points[t[n]], mesh.points[t[m]]);
         sum += change * change;
     }
     return sum / 3.0;
@@ -86,10 +85,10 @@ ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
     const std::size_t count = at(charts.count);
     ChartAreas areas{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0),
                      std::vector<double>(count, 0.0)};
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::size_t c = at(charts.chart[at(f)]);
+    for (const Face f : mesh.all_faces()) {
+        const std::size_t c = at(charts.chart[f]);
         const double area = plane::uv_area(uv, f);
-        areas.surface[c] += mesh.face_areas[at(f)];
+        areas.surface[c] += mesh.face_areas[f];
         areas.plane[c] += std::abs(area);
         areas.balance[c] += area;
     }
@@ -117,9 +116,9 @@ struct Sums {
 };
 
 // Adds one face with an area on both sides; `scale` is the chart's area ratio, surface to plane.
-void add_face(const Mesh& mesh, const CornerUv& uv, Index f, double scale, bool flipped,
+void add_face(const Mesh& mesh, const CornerUv& uv, Face f, double scale, bool flipped,
               ParametrizationMeasures& result, Sums& all, Sums& own, ChartMeasures& chart) {
-    const double area = mesh.face_areas[at(f)];
+    const double area = mesh.face_areas[f];
     const auto [large, small] = singular_values(mesh, uv, f);
     // Γ² and γ² after the chart's lengths in the plane are multiplied by √scale.
     const double large2 = large * large / scale;
@@ -159,16 +158,16 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     Sums all;
     std::vector<Sums> own(at(charts.count));
     double covered = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::size_t c = at(charts.chart[at(f)]);
+    for (const Face f : mesh.all_faces()) {
+        const std::size_t c = at(charts.chart[f]);
         const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
-        const bool flipped = !(
-            sign * flatten::orientation(uv[at(3 * f)], uv[at(3 * f + 1)], uv[at(3 * f + 2)]) > 0.0);
+        const bool flipped =
+            !(sign * flatten::orientation(uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]) > 0.0);
         result.flipped_faces_number += flipped ? 1 : 0;
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(plane::uv_area(uv, f));
         covered += flat;
-        if (has_area(mesh, f) && flat * scale > collapsed * mesh.face_areas[at(f)])
+        if (has_area(mesh, f) && flat * scale > collapsed * mesh.face_areas[f])
             add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
     }
     result.l2_stretch = all.l2_stretch();

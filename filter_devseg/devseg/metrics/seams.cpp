@@ -8,19 +8,17 @@ namespace devseg::metrics {
 std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                         const CornerUv& uv) {
     const double scale = atlas::layout_scale(mesh, charts, uv) * mesh.unit_length;
-    const auto flat_length = [&](Index h) {
-        return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm();
-    };
+    const auto flat_length = [&](HalfEdge h) { return scale * (uv[Mesh::next(h)] - uv[h]).norm(); };
     std::map<std::pair<Index, Index>, SeamMeasures> seams;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
-        if (charts.seam[at(h)] == 0 || h > twin)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
+        if (charts.seam[h] == 0 || h > twin)
             continue;
         Index a = h; // the side in the chart with the lower number
         Index b = twin;
-        if (charts.chart[at(a / 3)] > charts.chart[at(b / 3)])
+        if (charts.chart[a / 3] > charts.chart[b / 3])
             std::swap(a, b);
-        const std::pair<Index, Index> key(charts.chart[at(a / 3)], charts.chart[at(b / 3)]);
+        const std::pair<Index, Index> key(charts.chart[a / 3], charts.chart[b / 3]);
         SeamMeasures& seam = seams[key];
         seam.chart_a = key.first;
         seam.chart_b = key.second;

@@ -16,11 +16,11 @@ double share_of_creases(const Mesh& mesh, const std::vector<std::uint8_t>& creas
                         const std::vector<std::uint8_t>& seam) {
     double all = 0.0;
     double cut = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        if (crease[at(h)] == 0)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (crease[h] == 0)
             continue;
         all += mesh.edge_length(h);
-        cut += seam[at(h)] != 0 ? mesh.edge_length(h) : 0.0;
+        cut += seam[h] != 0 ? mesh.edge_length(h) : 0.0;
     }
     return all > 0.0 ? cut / all : 1.0;
 }
@@ -34,12 +34,12 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const atlas::ChartMa
     for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
         result.disk_charts_number += surface.is_disk() ? 1 : 0;
         NormalMoments moments;
-        for (const Index f : surface.face)
-            moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+        for (const Face f : surface.face)
+            moments.add(mesh.face_areas[f], mesh.face_normals[f]);
         const ConicProxy proxy = fit_conic(moments);
-        for (const Index f : surface.face)
+        for (const Face f : surface.face)
             result.max_fitting_error =
-                std::max(result.max_fitting_error, proxy.fitting_error(mesh.face_normals[at(f)]));
+                std::max(result.max_fitting_error, proxy.fitting_error(mesh.face_normals[f]));
         result.largest_chart_area_share =
             std::max(result.largest_chart_area_share, moments.area / mesh.total_area);
     }
@@ -54,8 +54,8 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const atlas::ChartMa
 
 double seam_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (charts.seam[at(h)] != 0 && h < mesh.twin[at(h)])
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (charts.seam[h] != 0 && h < mesh.twin[h])
             sum += mesh.edge_length(h);
     return sum * mesh.unit_length;
 }

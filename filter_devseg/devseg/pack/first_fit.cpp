@@ -82,7 +82,7 @@ public:
         for (const CellRun& run : image.cells.runs) {
             Word* row = level(place.y + run.row, 0);
             for (Index x = place.x + run.first; x < place.x + run.last; ++x)
-                row[at(x / word_bits)] |= Word{1} << (x % word_bits);
+                row[x / word_bits] |= Word{1} << (x % word_bits);
         }
         for (Index y = place.y; y < place.y + image.cells.height; ++y)
             bring_up_to_date(y);
@@ -125,10 +125,10 @@ private:
         Index longest = 0;
         Index free = 0;
         for (Index x = 0; x < width_; ++x) {
-            free = (row[at(x / word_bits)] >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
+            free = (row[x / word_bits] >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
             longest = std::max(longest, free);
         }
-        room_[at(y)] = longest;
+        room_[y] = longest;
     }
 
     // Marks the places in row y where the image lies on others; false if none is left.
@@ -137,7 +137,7 @@ private:
             const Index row = y + run.row;
             if (row >= static_cast<Index>(room_.size()))
                 continue;
-            if (run.last - run.first > room_[at(row)])
+            if (run.last - run.first > room_[row])
                 return false;
         }
         last_ = width_ - image.cells.width;
@@ -164,7 +164,7 @@ private:
 
     Index first_free() const {
         for (Index x = 0; x <= last_; x += word_bits) {
-            Word open = ~blocked_[at(x / word_bits)];
+            Word open = ~blocked_[x / word_bits];
             for (Index i = x; open != 0 && i <= last_; ++i, open >>= 1)
                 if ((open & 1) != 0)
                     return i;
@@ -197,13 +197,13 @@ Images make_images(const std::vector<Outline>& outlines, double cell, double mar
     parallel_for(
         static_cast<int>(outlines.size()),
         [&](int i) {
-            const double base = allow_rotation ? best_box_angle(outlines[at(i)]) : 0.0;
+            const double base = allow_rotation ? best_box_angle(outlines[i]) : 0.0;
             for (int k = 0; k < (allow_rotation ? orientations : 1); ++k) {
                 Image image;
                 image.cells =
-                    rasterize(outlines[at(i)], base + 2.0 * pi * k / orientations, cell, margin);
+                    rasterize(outlines[i], base + 2.0 * pi * k / orientations, cell, margin);
                 image.runs = spread_out(image.cells.runs);
-                images.poses[at(i)].push_back(std::move(image));
+                images.poses[i].push_back(std::move(image));
             }
         },
         progress);
@@ -277,7 +277,7 @@ std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
             std::vector<Found> found(tried.size());
             parallel_for(
                 static_cast<int>(tried.size()),
-                [&](int k) { found[at(k)] = fill(images, tried[at(k)], progress); }, progress);
+                [&](int k) { found[k] = fill(images, tried[k], progress); }, progress);
             return found;
         };
         Found best = fill_some({side}).front();

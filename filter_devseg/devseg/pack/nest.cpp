@@ -203,13 +203,12 @@ void prepare(NestProblem& problem, Progress& progress) {
     parallel_for(
         static_cast<int>(n),
         [&](int i) {
-            const Outline& outline = problem.outlines[at(i)];
+            const Outline& outline = problem.outlines[i];
             const double base = problem.allow_rotation ? best_box_angle(outline) : 0.0;
             for (int k = 0; k < turns; ++k)
-                problem.poses[at(i)].push_back(
-                    coarsen(rasterize(outline, base + 2.0 * pi * k / turns,
-                                      problem.cell / supersampling, margin),
-                            supersampling));
+                problem.poses[i].push_back(coarsen(rasterize(outline, base + 2.0 * pi * k / turns,
+                                                             problem.cell / supersampling, margin),
+                                                   supersampling));
         },
         progress);
 }

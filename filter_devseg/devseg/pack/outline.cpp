@@ -53,13 +53,12 @@ Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>
     std::vector<Link> links(3 * faces.size());
     std::vector<std::size_t> end(start.begin(), start.end() - 1);
     for (const Triangle& t : faces) {
-        const double twice =
-            plane::cross(points[at(t[1])] - points[at(t[0])], points[at(t[2])] - points[at(t[0])]);
+        const double twice = plane::cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]);
         outline.area += 0.5 * std::abs(twice);
         const Index orientation = twice < 0.0 ? -1 : 1;
         for (std::size_t k = 0; k < 3; ++k) {
             const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-            links[end[at(low)]++] = {high, low == t[k] ? orientation : -orientation};
+            links[end[low]++] = {high, low == t[k] ? orientation : -orientation};
         }
     }
     std::vector<Vec2> corners;
@@ -74,7 +73,7 @@ Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>
                 sum += link->sign;
             for (; sum != 0; sum += sum > 0 ? -1 : 1) {
                 const Vec2& a = points[v];
-                const Vec2& b = points[at(other)];
+                const Vec2& b = points[other];
                 outline.edges.push_back(sum > 0 ? OutlineEdge{a, b} : OutlineEdge{b, a});
                 corners.push_back(a);
                 corners.push_back(b);

@@ -102,8 +102,8 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
     parallel_for(
         static_cast<int>(begun.size()),
         [&](int k) {
-            begun[at(k)] = begin_nesting(problem, few ? few_aspects[k] : 1.0,
-                                         static_cast<std::uint64_t>(k) + 1, progress);
+            begun[k] = begin_nesting(problem, few ? few_aspects[k] : 1.0,
+                                     static_cast<std::uint64_t>(k) + 1, progress);
         },
         progress);
     if (!few) {
@@ -117,7 +117,7 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
     std::vector<std::vector<Placement>> found(begun.size());
     parallel_for(
         static_cast<int>(found.size()),
-        [&](int k) { found[at(k)] = finish_nesting(problem, begun[at(k)], progress); }, progress);
+        [&](int k) { found[k] = finish_nesting(problem, begun[k], progress); }, progress);
     const auto bad = [&](const std::vector<Placement>& placements) {
         return badness(box_of(problem.outlines, placements).size());
     };
@@ -165,9 +165,7 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     problem.outlines.resize(items.size());
     parallel_for(
         static_cast<int>(items.size()),
-        [&](int i) {
-            problem.outlines[at(i)] = find_outline(*items[at(i)].faces, *items[at(i)].points);
-        },
+        [&](int i) { problem.outlines[i] = find_outline(*items[i].faces, *items[i].points); },
         progress);
     problem.side = guess_side(problem.outlines, options);
     if (items.size() == 1 || items.size() > most_fitted)

@@ -49,7 +49,7 @@ public:
 
     /// Distance of two points along the polyline, the shorter way round where it is closed.
     double between(Index i, Index j) const {
-        const double d = std::abs(arc_[at(i)] - arc_[at(j)]);
+        const double d = std::abs(arc_[i] - arc_[j]);
         return closed_ ? std::min(d, length() - d) : d;
     }
 
@@ -59,7 +59,7 @@ public:
         Vec2 sum = Vec2::Zero();
         Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
         double weight = 0.0;
-        const Vec2 origin = points_[at(i)];
+        const Vec2 origin = points_[i];
         Vec2 here = Vec2::Zero();
         for (Index steps = 0; steps < last_ && weight < reach; ++steps) {
             Index next = i + step;
@@ -68,7 +68,7 @@ public:
                     break;
                 next = next < 0 ? last_ - 1 : 1;
             }
-            Vec2 along = points_[at(next)] - origin - here;
+            Vec2 along = points_[next] - origin - here;
             const double length = along.norm();
             if (length > reach - weight)
                 along *= (reach - weight) / length;

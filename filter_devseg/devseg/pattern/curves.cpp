@@ -313,7 +313,7 @@ void fit_curves(std::vector<PatternPiece>& pieces, const std::vector<Chain>& cha
         }
     for (const auto& [key, count] : sides) {
         const auto& [piece, l, first] = key;
-        PiecePath& path = pieces[at(piece)].path(l);
+        PiecePath& path = pieces[piece].path(l);
         std::vector<Vec2> points;
         for (Index k = 0; k <= count; ++k)
             points.push_back(path.points[at(first + k) % path.points.size()]);

@@ -57,8 +57,8 @@ using Targets = std::vector<std::vector<std::vector<double>>>; // piece, path, e
 
 void set_target(const std::vector<PatternPiece>& pieces, const SeamSide& side, Index k,
                 double length, Targets& targets) {
-    const PiecePath& path = pieces[at(side.piece)].path(side.path);
-    std::vector<double>& own = targets[at(side.piece)][at(side.path)];
+    const PiecePath& path = pieces[side.piece].path(side.path);
+    std::vector<double>& own = targets[side.piece][side.path];
     if (own.empty())
         for (std::size_t i = 0; i < path.points.size(); ++i)
             own.push_back((path.points[(i + 1) % path.points.size()] - path.points[i]).norm());
@@ -80,14 +80,14 @@ double target_length(const std::vector<PatternPiece>& pieces, const Chain& chain
     for (const SeamSide& side : chain.sides) {
         const double length = edge_length(pieces, side, k);
         both += length;
-        if (freedom[at(side.piece)] != Freedom::free) {
+        if (freedom[side.piece] != Freedom::free) {
             sum += length;
             ++held;
         }
     }
     if (held > 0)
         return sum / held;
-    return is_true ? chain.true_length[at(k)] : 0.5 * both;
+    return is_true ? chain.true_length[k] : 0.5 * both;
 }
 
 // `always_true`: as on the model even where neither side is.
@@ -104,8 +104,8 @@ Targets find_targets(const std::vector<PatternPiece>& pieces, const std::vector<
         if (!differ(side_length(pieces, a), side_length(pieces, b), good_enough))
             continue;
         const auto may_move = [&](const SeamSide& side) {
-            return freedom[at(side.piece)] == Freedom::free ||
-                   (freedom[at(side.piece)] == Freedom::own_seams && a.piece == b.piece);
+            return freedom[side.piece] == Freedom::free ||
+                   (freedom[side.piece] == Freedom::own_seams && a.piece == b.piece);
         };
         const double on_model =
             std::accumulate(chain.true_length.begin(), chain.true_length.end(), 0.0);
@@ -299,8 +299,7 @@ bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& ta
         PatternPiece changed = piece;
         bool closed = true;
         for (Index l = 0; l < piece.path_count() && closed; ++l)
-            closed = targets[at(l)].empty() ||
-                     close_path(changed.path(l), targets[at(l)], how, progress);
+            closed = targets[l].empty() || close_path(changed.path(l), targets[l], how, progress);
         if (!closed || (crosses_itself(changed, depth) && !crossed))
             continue;
         piece = std::move(changed);

@@ -26,7 +26,7 @@ struct MovedRing {
 MovedRing moved_ring(const PiecePath& path, const PaperMap& place, const CornerUv& uv) {
     MovedRing ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        ring.points.push_back(place(uv[at(path.half_edge[i])]));
+        ring.points.push_back(place(uv[path.half_edge[i]]));
         ring.moves.push_back(path.points[i] - ring.points.back());
     }
     return ring;
@@ -73,19 +73,19 @@ std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
     std::vector<std::pair<Vec2, Vec2>> known; // before and after
     std::vector<Index> entry(any ? mesh.points.size() : 0, -1);
     std::vector<Vec2> corners;
-    for (const Index f : faces)
+    for (const Face f : faces)
         for (Index k = 0; k < 3; ++k) {
-            const Vec2 p = piece.place(uv[at(3 * f + k)]);
+            const Vec2 p = piece.place(uv[3 * f + k]);
             if (!any) {
                 corners.push_back(p);
                 continue;
             }
-            Index& last = entry[at(mesh.faces[at(f)][at(k)])];
-            if (last < 0 || known[at(last)].first != p) {
+            Index& last = entry[mesh.faces[f][k]];
+            if (last < 0 || known[last].first != p) {
                 last = static_cast<Index>(known.size());
                 known.emplace_back(p, p + interpolated(moved, p));
             }
-            corners.push_back(known[at(last)].second);
+            corners.push_back(known[last].second);
         }
     return corners;
 }

@@ -27,11 +27,11 @@ flatten::FlatChart read_chart(const CornerUv& uv, double scale, atlas::ChartSurf
     flatten::FlatChart chart;
     chart.uv.resize(surface.vertex.size());
     double area = 0.0;
-    for (const Index f : surface.face)
+    for (const Face f : surface.face)
         area += plane::uv_area(uv, f);
-    for (Index h = 0; h < 3 * surface.face_count(); ++h) {
-        const Vec2 p = scale * uv[at(surface.mesh_half_edge(h))];
-        chart.uv[at(surface.origin(h))] = area < 0.0 ? Vec2(-p.x(), p.y()) : p;
+    for (const HalfEdge h : surface.all_half_edges()) {
+        const Vec2 p = scale * uv[surface.mesh_half_edge(h)];
+        chart.uv[surface.origin(h)] = area < 0.0 ? Vec2(-p.x(), p.y()) : p;
     }
     chart.surface = std::move(surface);
     return chart;
@@ -40,8 +40,8 @@ flatten::FlatChart read_chart(const CornerUv& uv, double scale, atlas::ChartSurf
 CornerUv spread(const Mesh& mesh, const std::vector<flatten::FlatChart>& flat) {
     CornerUv uv(mesh.twin.size(), Vec2::Zero());
     for (const flatten::FlatChart& chart : flat)
-        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
-            uv[at(chart.surface.mesh_half_edge(h))] = chart.uv[at(chart.surface.origin(h))];
+        for (const HalfEdge h : chart.surface.all_half_edges())
+            uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     return uv;
 }
 
@@ -56,11 +56,11 @@ void rebuild(const Mesh& mesh, const CornerUv& uv, const std::vector<std::uint8_
 }
 
 bool keeps_lengths(const Mesh& mesh, const FlatLayout& layout, const CornerUv& uv) {
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        if (layout.charts.seam[at(h)] == 0)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (layout.charts.seam[h] == 0)
             continue;
         const double length = mesh.edge_length(h);
-        if (std::abs((uv[at(Mesh::next(h))] - uv[at(h)]).norm() - length) > same_length * length)
+        if (std::abs((uv[Mesh::next(h)] - uv[h]).norm() - length) > same_length * length)
             return false;
     }
     return true;
@@ -89,9 +89,9 @@ bool flatten_whole(const Mesh& mesh, flatten::FlattenMethod method, flatten::Fla
         return false;
     const flatten::FlatChart& flat = result.flat.front();
     chart.uv.resize(chart.surface.vertex.size());
-    for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
-        chart.uv[at(chart.surface.origin(flat.surface.mesh_half_edge(h)))] =
-            flat.uv[at(flat.surface.origin(h))];
+    for (const HalfEdge h : chart.surface.all_half_edges())
+        chart.uv[chart.surface.origin(flat.surface.mesh_half_edge(h))] =
+            flat.uv[flat.surface.origin(h)];
     return true;
 }
 
@@ -100,12 +100,12 @@ double joint_error(const Mesh& mesh, const atlas::ChartSurface& small,
                    const atlas::ChartSurface& neighbour) {
     metrics::NormalMoments moments;
     for (const atlas::ChartSurface* surface : {&small, &neighbour})
-        for (const Index f : surface->face)
-            moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+        for (const Face f : surface->face)
+            moments.add(mesh.face_areas[f], mesh.face_normals[f]);
     const metrics::ConicProxy proxy = metrics::fit_conic(moments);
     double error = 0.0;
-    for (const Index f : small.face)
-        error += mesh.face_areas[at(f)] * proxy.fitting_error(mesh.face_normals[at(f)]);
+    for (const Face f : small.face)
+        error += mesh.face_areas[f] * proxy.fitting_error(mesh.face_normals[f]);
     return error / atlas::area_of(mesh, small);
 }
 
@@ -150,8 +150,8 @@ private:
             !flatten_whole(mesh_, method_, both, [&] { return go_on(); }) ||
             energy_of(mesh_, both) > limit)
             return false;
-        for (const Index f : small.surface.face)
-            label_[at(f)] = static_cast<Index>(n);
+        for (const Face f : small.surface.face)
+            label_[f] = static_cast<Index>(n);
         layout_.charts.seam = std::move(seam);
         layout_.flat[n] = std::move(both);
         layout_.flat[c] = flatten::FlatChart{};
@@ -204,8 +204,8 @@ void remove_overlaps(const Mesh& mesh, FlatLayout& layout, Progress& progress) {
             if (pairs.empty())
                 continue;
             for (const Index local : flatten::separating_path(mesh, chart.surface, pairs)) {
-                const Index h = chart.surface.mesh_half_edge(local);
-                seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1;
+                const HalfEdge h = chart.surface.mesh_half_edge(local);
+                seam[h] = seam[mesh.twin[h]] = 1;
             }
             ++layout.overlap_cuts;
             again = true;

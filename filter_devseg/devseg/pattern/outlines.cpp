@@ -19,9 +19,9 @@ constexpr double no_area = 1e-12;
 PiecePath trace(const atlas::ChartSurface& surface, const std::vector<Index>& loop,
                 const CornerUv& uv, const PaperMap& place) {
     PiecePath path;
-    for (const Index h : loop) {
+    for (const HalfEdge h : loop) {
         path.half_edge.push_back(surface.mesh_half_edge(h));
-        path.points.push_back(place(uv[at(path.half_edge.back())]));
+        path.points.push_back(place(uv[path.half_edge.back()]));
     }
     path.area = signed_area(path.points);
     return path;

@@ -144,11 +144,11 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::Cha
     areas.plane.assign(at(charts.count), 0.0);
     areas.covered.assign(at(charts.count), 0.0);
     areas.surface_total = mesh.total_area;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         const double area = plane::uv_area(uv, f);
-        areas.surface[at(charts.chart[at(f)])] += mesh.face_areas[at(f)];
-        areas.plane[at(charts.chart[at(f)])] += area;
-        areas.covered[at(charts.chart[at(f)])] += std::abs(area);
+        areas.surface[charts.chart[f]] += mesh.face_areas[f];
+        areas.plane[charts.chart[f]] += area;
+        areas.covered[charts.chart[f]] += std::abs(area);
         areas.plane_total += std::abs(area);
     }
     if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
@@ -182,7 +182,7 @@ void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
     }
     std::vector<Index> faces;
     for (std::size_t f = 0; f < charts.chart.size(); ++f)
-        if (is_bad[at(charts.chart[f])] != 0)
+        if (is_bad[charts.chart[f]] != 0)
             faces.push_back(static_cast<Index>(f));
     throw InvalidMesh("expected charts that lie flat in the texture coordinates, found " +
                           std::to_string(count) + " of " + std::to_string(charts.count) +
@@ -207,8 +207,8 @@ void note_folds(Pattern& pattern, const ChartAreas& areas) {
             " no area in the texture coordinates: left out "
             "('Charts: Flatten' unfolds all)");
     const auto is_folded = [&](const PatternPiece& piece) {
-        const double whole = areas.covered[at(piece.chart)];
-        return whole - std::abs(areas.plane[at(piece.chart)]) > fold_tolerance * whole;
+        const double whole = areas.covered[piece.chart];
+        return whole - std::abs(areas.plane[piece.chart]) > fold_tolerance * whole;
     };
     const auto count = std::count_if(pattern.pieces.begin(), pattern.pieces.end(), is_folded);
     if (count > 0)
@@ -304,7 +304,7 @@ void set_length_scales(const Mesh& mesh, const ChartAreas& areas, double mm, Pat
         double on_paper = 0.0;
         for (Index l = 0; l < piece.path_count(); ++l) {
             on_paper += perimeter(piece.path(l).points);
-            for (const Index h : piece.path(l).half_edge)
+            for (const HalfEdge h : piece.path(l).half_edge)
                 on_model += mm * mesh.edge_length(h);
         }
         if (!(areas.surface[c] > 0.0) || !(on_model > 0.0))
@@ -341,7 +341,7 @@ void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part
         pattern.notes.push_back(std::to_string(split.too_large) +
                                 " faces alone are larger than max_piece_mm and were not split");
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        if (is_part[at(pieces[i].chart)] != 0)
+        if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
     shelve(pieces, moved);
     const std::vector<std::size_t> others = overlapping_pieces(pieces);
@@ -358,7 +358,7 @@ std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
     std::vector<std::uint8_t> is_part(at(split.charts.count), 0);
     for (std::size_t h = 0; h < split.cut.size(); ++h)
         if (split.cut[h] != 0)
-            is_part[at(split.charts.chart[h / 3])] = 1;
+            is_part[split.charts.chart[h / 3]] = 1;
     return is_part;
 }
 
@@ -379,7 +379,7 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
         const std::vector<Index> faces = faces_of(pattern.pieces[i]);
         const std::vector<Vec2> corners = place_corners(mesh, uv, faces, pattern.pieces[i]);
         for (std::size_t k = 0; k < faces.size(); ++k) {
-            pattern.face_piece[at(faces[k])] = static_cast<Index>(i);
+            pattern.face_piece[faces[k]] = static_cast<Index>(i);
             for (std::size_t corner = 0; corner < 3; ++corner)
                 pattern.corner_place[at(3 * faces[k]) + corner] = corners[3 * k + corner];
         }

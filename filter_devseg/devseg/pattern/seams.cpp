@@ -25,25 +25,25 @@ public:
             for (Index l = 0; l < pieces[p].path_count(); ++l) {
                 const std::vector<Index>& half_edges = pieces[p].path(l).half_edge;
                 for (std::size_t e = 0; e < half_edges.size(); ++e)
-                    place_[at(half_edges[e])] = {static_cast<Index>(p), l, static_cast<Index>(e)};
+                    place_[half_edges[e]] = {static_cast<Index>(p), l, static_cast<Index>(e)};
             }
     }
 
-    const EdgePlace& place(Index h) const { return place_[at(h)]; }
+    const EdgePlace& place(HalfEdge h) const { return place_[h]; }
 
     // The half-edge that h is sewn to, −1 where there is none on paper.
-    Index partner(Index h) const {
-        const Index twin = mesh_.twin[at(h)];
-        return twin >= 0 && place_[at(twin)].piece >= 0 ? twin : -1;
+    HalfEdge partner(HalfEdge h) const {
+        const HalfEdge twin = mesh_.twin[h];
+        return twin >= 0 && place_[twin].piece >= 0 ? twin : HalfEdge();
     }
 
-    Index next(Index h) const {
+    Index next(HalfEdge h) const {
         const std::vector<Index>& half_edges = path_of(h).half_edge;
-        return half_edges[(at(place_[at(h)].edge) + 1) % half_edges.size()];
+        return half_edges[(at(place_[h].edge) + 1) % half_edges.size()];
     }
 
     // Whether the outline after h goes on along the same seam, which must not turn back at a tip.
-    bool goes_on(Index h) const {
+    bool goes_on(HalfEdge h) const {
         const Index after = next(h);
         const Index here = partner(h);
         const Index there = partner(after);
@@ -52,10 +52,10 @@ public:
         return here != after && next(there) == here && is_cut(h) == is_cut(after);
     }
 
-    bool is_cut(Index h) const { return !cut_.empty() && cut_[at(h)] != 0; }
+    bool is_cut(HalfEdge h) const { return !cut_.empty() && cut_[h] != 0; }
 
-    const PiecePath& path_of(Index h) const {
-        return pieces_[at(place_[at(h)].piece)].path(place_[at(h)].path);
+    const PiecePath& path_of(HalfEdge h) const {
+        return pieces_[place_[h].piece].path(place_[h].path);
     }
 
 private:
@@ -115,13 +115,13 @@ std::vector<Chain> find_chains(const Mesh& mesh, const std::vector<PatternPiece>
     std::vector<std::uint8_t> done(mesh.twin.size(), 0);
     std::vector<Chain> chains;
     const auto add_run = [&](const std::vector<Index>& run, bool closed) {
-        if (done[at(run.front())] != 0)
+        if (done[run.front()] != 0)
             return;
         chains.push_back(chain_along(edges, run, closed));
-        for (const Index h : run) {
-            done[at(h)] = 1;
+        for (const HalfEdge h : run) {
+            done[h] = 1;
             if (edges.partner(h) >= 0)
-                done[at(edges.partner(h))] = 1;
+                done[edges.partner(h)] = 1;
         }
     };
     for (const PatternPiece& piece : pieces)
@@ -151,11 +151,11 @@ void measure_surface(const Mesh& mesh, const std::vector<PatternPiece>& pieces, 
                      std::vector<Chain>& chains) {
     for (Chain& chain : chains) {
         const SeamSide& side = chain.sides[0];
-        const PiecePath& path = pieces[at(side.piece)].path(side.path);
+        const PiecePath& path = pieces[side.piece].path(side.path);
         chain.surface_length = 0.0;
         chain.true_length.clear();
         for (Index k = 0; k < chain.count(); ++k) {
-            const Index h = path.half_edge[subscript(path, side, k)];
+            const HalfEdge h = path.half_edge[subscript(path, side, k)];
             chain.true_length.push_back(mm * mesh.edge_length(h));
             chain.surface_length += chain.true_length.back();
         }
@@ -163,7 +163,7 @@ void measure_surface(const Mesh& mesh, const std::vector<PatternPiece>& pieces, 
 }
 
 Vec2 side_point(const std::vector<PatternPiece>& pieces, const SeamSide& side, Index k) {
-    const PiecePath& path = pieces[at(side.piece)].path(side.path);
+    const PiecePath& path = pieces[side.piece].path(side.path);
     return path.points[subscript(path, side, k)];
 }
 
@@ -172,9 +172,9 @@ Chain part_of(const std::vector<PatternPiece>& pieces, const Chain& chain, Index
     part.is_closed = false;
     part.is_dart = chain.is_dart && to == chain.count();
     for (int s = 0; s < chain.side_count; ++s) {
-        const SeamSide& side = chain.sides[at(s)];
-        const PiecePath& path = pieces[at(side.piece)].path(side.path);
-        SeamSide& own = part.sides[at(s)];
+        const SeamSide& side = chain.sides[s];
+        const PiecePath& path = pieces[side.piece].path(side.path);
+        SeamSide& own = part.sides[s];
         own.first = static_cast<Index>(subscript(path, side, side.reversed ? to : from));
         own.count = to - from;
     }
@@ -190,7 +190,7 @@ std::vector<double> kept_lengths(const std::vector<PatternPiece>& pieces, const 
     for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
         double length = 0.0;
         for (Index k = kept[i]; k < kept[i + 1]; ++k)
-            length += chain.true_length[at(k)];
+            length += chain.true_length[k];
         double shorter = 0.0;
         for (std::size_t s = 0; s < at(chain.side_count); ++s) {
             double path = 0.0;
@@ -231,8 +231,8 @@ void keep_points(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
     for (const auto& [key, value] : order) {
         SeamSide& side = chains[value.first].sides[value.second];
         const std::vector<Index>& points = kept[value.first];
-        const PiecePath& from = old[at(side.piece)].path(side.path);
-        PiecePath& path = pieces[at(side.piece)].path(side.path);
+        const PiecePath& from = old[side.piece].path(side.path);
+        PiecePath& path = pieces[side.piece].path(side.path);
         const Index first = static_cast<Index>(path.points.size());
         for (std::size_t i = 0; i + 1 < points.size(); ++i) {
             const Index k = side.reversed ? points[points.size() - 1 - i] : points[i];
@@ -254,8 +254,8 @@ void drop_empty_edges(std::vector<PatternPiece>& pieces, std::vector<Chain>& cha
             for (std::size_t e = 0; e < size; ++e) {
                 const bool empty = path.points[e] == path.points[(e + 1) % size];
                 if (!empty && at(place[e]) != e) {
-                    path.points[at(place[e])] = path.points[e];
-                    path.half_edge[at(place[e])] = path.half_edge[e];
+                    path.points[place[e]] = path.points[e];
+                    path.half_edge[place[e]] = path.half_edge[e];
                 }
                 place[e + 1] = place[e] + (empty ? 0 : 1);
             }
@@ -274,9 +274,9 @@ void drop_empty_edges(std::vector<PatternPiece>& pieces, std::vector<Chain>& cha
             const std::vector<Index>& place = changed->second;
             const Index size = static_cast<Index>(place.size()) - 1;
             const Index end = side.first + side.count;
-            const Index last = end <= size ? place[at(end)] : place.back() + place[at(end - size)];
-            side.count = last - place[at(side.first)];
-            side.first = place.back() > 0 ? place[at(side.first)] % place.back() : 0;
+            const Index last = end <= size ? place[end] : place.back() + place[end - size];
+            side.count = last - place[side.first];
+            side.first = place.back() > 0 ? place[side.first] % place.back() : 0;
         }
 }
 
@@ -296,8 +296,8 @@ void set_seams(Pattern& pattern, const std::vector<Chain>& chains) {
         seam.is_dart = chain.is_dart;
         seam.is_closed = chain.is_closed;
         for (int s = 0; s < 2; ++s) {
-            const SeamSide& side = seam.sides[at(s)];
-            PiecePath& path = pattern.pieces[at(side.piece)].path(side.path);
+            const SeamSide& side = seam.sides[s];
+            PiecePath& path = pattern.pieces[side.piece].path(side.path);
             for (Index e = 0; e < side.count; ++e)
                 path.edges[at(side.first + e) % path.edges.size()] = {seam.number - 1, s};
         }

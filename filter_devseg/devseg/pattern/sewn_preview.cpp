@@ -33,9 +33,9 @@ struct Spring {
 
 std::vector<Spring> make_springs(const Mesh& mesh, const CornerUv& uv, double scale) {
     std::vector<Spring> springs;
-    const auto flat = [&](Index h) { return scale * (uv[at(Mesh::next(h))] - uv[at(h)]).norm(); };
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    const auto flat = [&](HalfEdge h) { return scale * (uv[Mesh::next(h)] - uv[h]).norm(); };
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin < h) // also where there is none
             springs.push_back({mesh.origin(h), mesh.target(h),
                                twin < 0 ? flat(h) : 0.5 * (flat(h) + flat(twin))});
@@ -52,7 +52,7 @@ Eigen::SparseMatrix<double> spring_matrix(Index count, const std::vector<Spring>
         entries.emplace_back(s.a, s.b, -weight);
         entries.emplace_back(s.b, s.a, -weight);
     }
-    for (Index v = 0; v < count; ++v)
+    for (Vertex v = 0; v < count; ++v)
         entries.emplace_back(v, v, diagonal);
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
@@ -74,7 +74,7 @@ Points pressure_on(const Mesh& mesh, const Points& x, double pressure) {
         const Eigen::RowVector3d p = x.row(t[1]) - x.row(t[0]);
         const Eigen::RowVector3d q = x.row(t[2]) - x.row(t[0]);
         const Eigen::RowVector3d share = pressure / 6.0 * p.cross(q);
-        for (const Index v : t)
+        for (const Vertex v : t)
             force.row(v) += share;
     }
     return force;
@@ -83,8 +83,8 @@ Points pressure_on(const Mesh& mesh, const Points& x, double pressure) {
 // Moves and turns x onto the surface, vertex to vertex.
 void align(const Mesh& mesh, Points& x) {
     Eigen::Matrix3Xd to(3, x.rows());
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        to.col(v) = mesh.points[at(v)];
+    for (const Vertex v : mesh.all_vertices())
+        to.col(v) = mesh.points[v];
     const Eigen::Matrix4d motion = Eigen::umeyama(Eigen::Matrix3Xd(x.transpose()), to, false);
     const Eigen::Matrix3d turn = motion.topLeftCorner<3, 3>();
     const Eigen::RowVector3d shift = motion.topRightCorner<3, 1>().transpose();
@@ -95,19 +95,18 @@ void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
     const mesh::SurfaceSearch search(mesh);
     result.distance.assign(mesh.points.size(), 0.0);
     const std::vector<Vec3> normals = mesh::vertex_normals(mesh);
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    for (const Vertex v : mesh.all_vertices()) {
         if (search.leaving(v) < 0)
             continue;
-        const Vec3& p = result.points[at(v)];
+        const Vec3& p = result.points[v];
         const auto any = [](Index) { return true; };
-        const Index near = search.vertex(p, normals[at(v)], any);
+        const Index near = search.vertex(p, normals[v], any);
         if (near >= 0)
-            result.distance[at(v)] = (search.on_faces(p, near, any).second - p).norm();
-        result.largest_distance = std::max(result.largest_distance, result.distance[at(v)]);
+            result.distance[v] = (search.on_faces(p, near, any).second - p).norm();
+        result.largest_distance = std::max(result.largest_distance, result.distance[v]);
     }
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        result.mean_distance +=
-            mesh.face_areas[at(h / 3)] / 3.0 * result.distance[at(mesh.origin(h))];
+    for (const HalfEdge h : mesh.all_half_edges())
+        result.mean_distance += mesh.face_areas[h / 3] / 3.0 * result.distance[mesh.origin(h)];
     result.mean_distance /= mesh.total_area * diagonal;
     result.largest_distance /= diagonal;
 }
@@ -124,9 +123,9 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
                           "'Charts: Flatten' again");
     Eigen::AlignedBox3d box;
     Points x(mesh.vertex_count(), 3);
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
-        x.row(v) = mesh.points[at(v)].transpose();
-        box.extend(mesh.points[at(v)]);
+    for (const Vertex v : mesh.all_vertices()) {
+        x.row(v) = mesh.points[v].transpose();
+        box.extend(mesh.points[v]);
     }
     const double diagonal = box.diagonal().norm();
     const std::vector<Spring> springs = make_springs(mesh, uv, scale);
@@ -171,8 +170,8 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
                                "remesh or clean the mesh first");
     align(mesh, x);
     result.points.resize(mesh.points.size());
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        result.points[at(v)] = x.row(v).transpose();
+    for (const Vertex v : mesh.all_vertices())
+        result.points[v] = x.row(v).transpose();
     measure(mesh, diagonal, result);
     return result;
 }

@@ -166,7 +166,7 @@ double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
     double area = infinite;
     for (std::size_t s = 0; s < at(chain.side_count); ++s) {
         const SeamSide& side = chain.sides[s];
-        area = std::min(area, std::abs(pieces[at(side.piece)].path(side.path).area));
+        area = std::min(area, std::abs(pieces[side.piece].path(side.path).area));
     }
     return std::sqrt(area);
 }
@@ -185,7 +185,7 @@ void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
     for (const Chain& chain : chains)
         for (std::size_t s = 0; s < at(chain.side_count); ++s) {
             const SeamSide& side = chain.sides[s];
-            PiecePath& path = pieces[at(side.piece)].path(side.path);
+            PiecePath& path = pieces[side.piece].path(side.path);
             const std::size_t size = path.points.size();
             const std::size_t i = at(side.first);
             if (!chain.is_closed && side.count > 0 &&

@@ -41,9 +41,8 @@ CutLine choose_line(const PieceBox& box, double start, double longest) {
 std::vector<graph::CutSide> sides_of(const atlas::ChartSurface& surface, const CornerUv& uv,
                                      const CutLine& line) {
     std::vector<double> place;
-    for (const Index f : surface.face)
-        place.push_back(line.along.dot(uv[at(3 * f)] + uv[at(3 * f + 1)] + uv[at(3 * f + 2)]) /
-                        3.0);
+    for (const Face f : surface.face)
+        place.push_back(line.along.dot(uv[3 * f] + uv[3 * f + 1] + uv[3 * f + 2]) / 3.0);
     const auto [first, last] = std::minmax_element(place.begin(), place.end());
     std::vector<graph::CutSide> sides(place.size(), graph::CutSide::open);
     for (std::size_t f = 0; f < place.size(); ++f)
@@ -55,17 +54,17 @@ std::vector<graph::CutSide> sides_of(const atlas::ChartSurface& surface, const C
     sides[static_cast<std::size_t>(first - place.begin())] = graph::CutSide::source;
     sides[static_cast<std::size_t>(last - place.begin())] = graph::CutSide::sink;
     graph::MinCut cut(sides);
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        if (surface.twin[at(h)] > h) {
-            const Index own = surface.mesh_half_edge(h);
-            const Vec2& from = uv[at(own)];
-            const Vec2& to = uv[at(Mesh::next(own))];
+    for (const HalfEdge h : surface.all_half_edges())
+        if (surface.twin[h] > h) {
+            const HalfEdge own = surface.mesh_half_edge(h);
+            const Vec2& from = uv[own];
+            const Vec2& to = uv[Mesh::next(own)];
             // −1 … 1 within the stretch, which rounding leaves empty if it is short and far away.
             const double off =
                 line.high > line.low
                     ? (line.along.dot(from + to) - line.low - line.high) / (line.high - line.low)
                     : 0.0;
-            cut.link(h / 3, surface.twin[at(h)] / 3,
+            cut.link(h / 3, surface.twin[h] / 3,
                      (1.0 + edge_cost * off * off) * (to - from).norm());
         }
     return cut.solve();
@@ -86,14 +85,14 @@ void join_crumbs(const atlas::ChartSurface& surface, const CornerUv& uv,
         part[start] = own;
         stack.push_back(static_cast<Index>(start));
         while (!stack.empty()) {
-            const Index f = stack.back();
+            const Face f = stack.back();
             stack.pop_back();
-            area.back() += std::abs(plane::uv_area(uv, surface.face[at(f)]));
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = surface.twin[at(h)];
-                if (twin < 0 || part[at(twin / 3)] >= 0 || sides[at(twin / 3)] != sides[at(f)])
+            area.back() += std::abs(plane::uv_area(uv, surface.face[f]));
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = surface.twin[h];
+                if (twin < 0 || part[twin / 3] >= 0 || sides[twin / 3] != sides[f])
                     continue;
-                part[at(twin / 3)] = own;
+                part[twin / 3] = own;
                 stack.push_back(twin / 3);
             }
         }
@@ -102,7 +101,7 @@ void join_crumbs(const atlas::ChartSurface& surface, const CornerUv& uv,
     const auto place = [&](std::size_t f) { return sides[f] == graph::CutSide::source ? 0U : 1U; };
     for (std::size_t f = 0; f < sides.size(); ++f) {
         Index& best = largest[place(f)];
-        if (best < 0 || area[at(part[f])] > area[at(best)])
+        if (best < 0 || area[part[f]] > area[best])
             best = part[f];
     }
     for (std::size_t f = 0; f < sides.size(); ++f)
@@ -114,13 +113,13 @@ void join_crumbs(const atlas::ChartSurface& surface, const CornerUv& uv,
 void mark_cut(const Mesh& mesh, const atlas::ChartSurface& surface,
               const std::vector<graph::CutSide>& sides, SplitCharts& result,
               std::vector<std::uint8_t>& seam) {
-    for (Index h = 0; h < 3 * surface.face_count(); ++h) {
-        const Index twin = surface.twin[at(h)];
-        if (twin < h || sides[at(h / 3)] == sides[at(twin / 3)])
+    for (const HalfEdge h : surface.all_half_edges()) {
+        const HalfEdge twin = surface.twin[h];
+        if (twin < h || sides[h / 3] == sides[twin / 3])
             continue;
-        const Index own = surface.mesh_half_edge(h);
-        for (const Index side : {own, mesh.twin[at(own)]})
-            seam[at(side)] = result.cut[at(side)] = 1;
+        const HalfEdge own = surface.mesh_half_edge(h);
+        for (const HalfEdge side : {own, mesh.twin[own]})
+            seam[side] = result.cut[side] = 1;
     }
 }
 
@@ -139,9 +138,9 @@ SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const atlas
         for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, result.charts)) {
             progress.check();
             std::vector<Vec2> points;
-            for (const Index f : surface.face)
+            for (const Face f : surface.face)
                 for (Index k = 0; k < 3; ++k)
-                    points.push_back(uv[at(3 * f + k)]);
+                    points.push_back(uv[3 * f + k]);
             const PieceBox box = least_box(points);
             if (!(box.long_side > longest))
                 continue;

@@ -14,8 +14,8 @@ constexpr double no_area = 1e-12;
 
 // Edges 0 → 1 and 0 → 2 of the face, laid into the plane.
 Eigen::Matrix2d rest_edges(const Mesh& mesh, const Triangle& t) {
-    const Vec3 p = mesh.points[at(t[1])] - mesh.points[at(t[0])];
-    const Vec3 q = mesh.points[at(t[2])] - mesh.points[at(t[0])];
+    const Vec3 p = mesh.points[t[1]] - mesh.points[t[0]];
+    const Vec3 q = mesh.points[t[2]] - mesh.points[t[0]];
     const double base = p.norm();
     Eigen::Matrix2d edges;
     edges << base, p.dot(q) / base, 0.0, p.cross(q).norm() / base;
@@ -43,11 +43,11 @@ FaceStrain strain_of(const Eigen::Matrix2d& rest, const Eigen::Matrix2d& paper) 
 std::vector<FaceStrain> measure_strain(const Mesh& mesh, const std::vector<Vec2>& corners,
                                        double scale) {
     std::vector<FaceStrain> strain;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         Eigen::Matrix2d paper;
-        paper.col(0) = scale * (corners[at(3 * f + 1)] - corners[at(3 * f)]);
-        paper.col(1) = scale * (corners[at(3 * f + 2)] - corners[at(3 * f)]);
-        strain.push_back(strain_of(rest_edges(mesh, mesh.faces[at(f)]), paper));
+        paper.col(0) = scale * (corners[3 * f + 1] - corners[3 * f]);
+        paper.col(1) = scale * (corners[3 * f + 2] - corners[3 * f]);
+        strain.push_back(strain_of(rest_edges(mesh, mesh.faces[f]), paper));
     }
     return strain;
 }
@@ -59,31 +59,31 @@ void measure_inside(const Mesh& mesh, const std::vector<Vec2>& corners,
     double area = 0.0;
     double sum = 0.0;
     double worst = -1.0;
-    for (const Index f : faces) {
-        const FaceStrain& own = strain[at(f)];
-        area += mesh.face_areas[at(f)];
-        sum += mesh.face_areas[at(f)] * own.largest();
+    for (const Face f : faces) {
+        const FaceStrain& own = strain[f];
+        area += mesh.face_areas[f];
+        sum += mesh.face_areas[f] * own.largest();
         piece.strain.extension = std::max(piece.strain.extension, own.extension);
         piece.strain.compression = std::max(piece.strain.compression, own.compression);
         if (own.largest() > worst) {
             worst = own.largest();
             piece.strain.worst_face = f;
             piece.strain.worst_place =
-                (corners[at(3 * f)] + corners[at(3 * f + 1)] + corners[at(3 * f + 2)]) / 3.0;
+                (corners[3 * f] + corners[3 * f + 1] + corners[3 * f + 2]) / 3.0;
         }
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = mesh.twin[at(h)];
-            if (twin < h || seam[at(h)] != 0)
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge twin = mesh.twin[h];
+            if (twin < h || seam[h] != 0)
                 continue;
-            const Vec3& normal = mesh.face_normals[at(f)];
-            const Vec3& other = mesh.face_normals[at(twin / 3)];
+            const Vec3& normal = mesh.face_normals[f];
+            const Vec3& other = mesh.face_normals[twin / 3];
             const double angle = std::atan2(normal.cross(other).norm(), normal.dot(other));
             if (!(angle > fold_angle))
                 continue;
-            const Vec3 across = mesh.points[at(mesh.origin(Mesh::previous(twin)))] -
-                                mesh.points[at(mesh.origin(h))];
-            piece.folds.push_back({corners[at(h)], corners[at(Mesh::next(h))],
-                                   normal.dot(across) < 0.0 ? angle : -angle});
+            const Vec3 across =
+                mesh.points[mesh.origin(Mesh::previous(twin))] - mesh.points[mesh.origin(h)];
+            piece.folds.push_back(
+                {corners[h], corners[Mesh::next(h)], normal.dot(across) < 0.0 ? angle : -angle});
         }
     }
     if (!(area > 0.0))

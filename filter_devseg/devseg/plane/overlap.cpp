@@ -20,7 +20,7 @@ constexpr double rounding_steps = 4.0;
 using Corners = std::array<Vec2, 3>;
 
 Corners corners_of(const CornerUv& uv, Index f) {
-    Corners t{uv[at(3 * f)], uv[at(3 * f + 1)], uv[at(3 * f + 2)]};
+    Corners t{uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]};
     if (uv_area(uv, f) < 0.0)
         std::swap(t[1], t[2]);
     return t;
@@ -58,12 +58,12 @@ bool overlap(const Corners& a, const Corners& b, double least) {
 class Grid {
 public:
     Grid(const CornerUv& uv, const std::vector<Index>& faces) {
-        Vec2 high = uv[at(3 * faces.front())];
+        Vec2 high = uv[3 * faces.front()];
         low_ = high;
         for (const Index f : faces)
             for (Index k = 0; k < 3; ++k) {
-                low_ = low_.cwiseMin(uv[at(3 * f + k)]);
-                high = high.cwiseMax(uv[at(3 * f + k)]);
+                low_ = low_.cwiseMin(uv[3 * f + k]);
+                high = high.cwiseMax(uv[3 * f + k]);
             }
         const Vec2 size = (high - low_).cwiseMax(1e-12 * (high - low_).maxCoeff());
         const double cells = std::max(1.0, static_cast<double>(faces.size()));
@@ -79,10 +79,10 @@ public:
         items_.resize(at(begin_.back()));
         std::vector<Index> cursor(begin_.begin(), begin_.end() - 1);
         for (const Index f : faces)
-            visit(corners_of(uv, f), [&](Index c) { items_[at(cursor[at(c)]++)] = f; });
+            visit(corners_of(uv, f), [&](Index c) { items_[cursor[c]++] = f; });
     }
     Index cell_count() const { return columns_ * rows_; }
-    const Index* first(Index c) const { return items_.data() + begin_[at(c)]; }
+    const Index* first(Index c) const { return items_.data() + begin_[c]; }
     const Index* last(Index c) const { return items_.data() + begin_[at(c) + 1]; }
 
     /// The cell that owns a pair of faces: the one with the lowest corner of their common box.
@@ -157,7 +157,7 @@ std::vector<std::uint8_t> find_overlapping_faces(const CornerUv& uv) {
     }
     std::vector<std::uint8_t> result(uv.size() / 3, 0);
     for (const auto& [f, g] : find_overlapping_pairs(uv, layout_tolerance((high - low).maxCoeff())))
-        result[at(f)] = result[at(g)] = 1;
+        result[f] = result[g] = 1;
     return result;
 }
 

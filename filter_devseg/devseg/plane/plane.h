@@ -12,7 +12,7 @@ inline double cross(const Vec2& p, const Vec2& q) {
 
 /// Signed area of face f in the plane, in squared units of `uv`.
 inline double uv_area(const CornerUv& uv, Index f) {
-    return 0.5 * cross(uv[at(3 * f + 1)] - uv[at(3 * f)], uv[at(3 * f + 2)] - uv[at(3 * f)]);
+    return 0.5 * cross(uv[3 * f + 1] - uv[3 * f], uv[3 * f + 2] - uv[3 * f]);
 }
 
 } // namespace devseg::plane

@@ -7,16 +7,16 @@
 
 namespace {
 
-using devseg::to_qstring;
+using devseg::host::to_qstring;
 
-const devseg::FilterDeclaration& declaration(int filter) {
-    return devseg::plugin_filters().at(static_cast<std::size_t>(filter));
+const devseg::declare::FilterDeclaration& declaration(int filter) {
+    return devseg::exporting::plugin_filters().at(static_cast<std::size_t>(filter));
 }
 
 } // namespace
 
 DevsegFilterPlugin::DevsegFilterPlugin() {
-    const int count = static_cast<int>(devseg::plugin_filters().size());
+    const int count = static_cast<int>(devseg::exporting::plugin_filters().size());
     for (int filter = 0; filter < count; ++filter) {
         typeList.push_back(filter);
         actionList.push_back(new QAction(filterName(filter), this));
@@ -40,7 +40,7 @@ QString DevsegFilterPlugin::filterInfo(FilterIDType filter) const {
 }
 
 MeshFilterInterface::FilterClass DevsegFilterPlugin::getClass(QAction* action) {
-    return devseg::filter_class<MeshFilterInterface>(declaration(ID(action)));
+    return devseg::host::filter_class<MeshFilterInterface>(declaration(ID(action)));
 }
 
 MeshFilterInterface::FILTER_ARITY DevsegFilterPlugin::filterArity(QAction*) const {
@@ -52,12 +52,12 @@ int DevsegFilterPlugin::getPreConditions(QAction*) const {
 }
 
 int DevsegFilterPlugin::postCondition(QAction* action) const {
-    return devseg::written_elements(declaration(ID(action)));
+    return devseg::host::written_elements(declaration(ID(action)));
 }
 
 void DevsegFilterPlugin::initParameterSet(QAction* action, MeshDocument&,
                                           RichParameterList& parameters) {
-    parameters = devseg::rich_parameters(declaration(ID(action)));
+    parameters = devseg::host::rich_parameters(declaration(ID(action)));
 }
 
 // Nothing in this host catches an exception: failures are told by the return value. The window
@@ -67,12 +67,12 @@ bool DevsegFilterPlugin::applyFilter(QAction* action, MeshDocument& document,
                                      vcg::CallBackPos* callback) {
     errorMessage.clear();
     try {
-        const devseg::HostRun run =
-            devseg::run_in_host(declaration(ID(action)), document, parameters, callback);
+        const devseg::host::HostRun run =
+            devseg::host::run_in_host(declaration(ID(action)), document, parameters, callback);
         for (const std::string& line : run.log)
             Log(GLLogStream::FILTER, line);
         return true;
-    } catch (const devseg::HostError& error) {
+    } catch (const devseg::host::HostError& error) {
         errorMessage = to_qstring(error.what());
         Log(GLLogStream::WARNING, std::string("error: ") + error.what());
         return false;

@@ -7,7 +7,7 @@
 
 namespace {
 
-using devseg::to_qstring;
+using devseg::host::to_qstring;
 
 const devseg::declare::FilterDeclaration& declaration(int filter) {
     return devseg::exporting::plugin_filters().at(static_cast<std::size_t>(filter));
@@ -58,7 +58,7 @@ QString DevsegFilterPlugin::filterInfo(ActionIDType filter) const {
 }
 
 FilterPlugin::FilterClass DevsegFilterPlugin::getClass(const QAction* action) const {
-    return devseg::filter_class<FilterPlugin>(declaration(ID(action)));
+    return devseg::host::filter_class<FilterPlugin>(declaration(ID(action)));
 }
 
 FilterPlugin::FilterArity DevsegFilterPlugin::filterArity(const QAction*) const {
@@ -70,11 +70,11 @@ int DevsegFilterPlugin::getPreConditions(const QAction*) const {
 }
 
 int DevsegFilterPlugin::postCondition(const QAction* action) const {
-    return devseg::written_elements(declaration(ID(action)));
+    return devseg::host::written_elements(declaration(ID(action)));
 }
 
 RichParameterList DevsegFilterPlugin::initParameterList(const QAction* action, const MeshModel&) {
-    return devseg::rich_parameters(declaration(ID(action)));
+    return devseg::host::rich_parameters(declaration(ID(action)));
 }
 
 std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* action,
@@ -83,8 +83,8 @@ std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* a
                                                                 unsigned int& post_condition_mask,
                                                                 vcg::CallBackPos* callback) {
     try {
-        const devseg::HostRun run =
-            devseg::run_in_host(declaration(ID(action)), document, parameters, callback);
+        const devseg::host::HostRun run =
+            devseg::host::run_in_host(declaration(ID(action)), document, parameters, callback);
         post_condition_mask = run.changed;
         for (const std::string& line : run.log)
             log(line);
@@ -92,7 +92,7 @@ std::map<std::string, QVariant> DevsegFilterPlugin::applyFilter(const QAction* a
         for (const auto& [name, value] : run.values)
             returned[name] = to_variant(value);
         return returned;
-    } catch (const devseg::HostError& error) {
+    } catch (const devseg::host::HostError& error) {
         throw MLException(to_qstring(error.what()));
     }
 }

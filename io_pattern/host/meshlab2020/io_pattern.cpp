@@ -25,7 +25,7 @@ void PatternIOPlugin::GetExportMaskCapability(QString&, int& capability, int& de
 }
 
 void PatternIOPlugin::initSaveParameter(const QString&, MeshModel&, RichParameterList& parameters) {
-    parameters = devseg::pattern_parameters();
+    parameters = devseg::host::pattern_parameters();
 }
 
 bool PatternIOPlugin::open(const QString&, const QString&, MeshModel&, int&,
@@ -39,11 +39,11 @@ bool PatternIOPlugin::save(const QString&, const QString& file_name, MeshModel& 
     clearErrorString();
     try {
         for (const std::string& note :
-             devseg::save_pattern(file_name.toStdString(), model, parameters, callback))
+             devseg::host::save_pattern(file_name.toStdString(), model, parameters, callback))
             Log(GLLogStream::WARNING, note);
         return true;
-    } catch (const devseg::HostError& error) {
-        return fail(devseg::to_qstring(error.what()));
+    } catch (const devseg::host::HostError& error) {
+        return fail(devseg::host::to_qstring(error.what()));
     }
 }
 

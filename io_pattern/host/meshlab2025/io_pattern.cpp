@@ -28,7 +28,7 @@ void PatternIOPlugin::exportMaskCapability(const QString&, int& capability,
 }
 
 RichParameterList PatternIOPlugin::initSaveParameter(const QString&, const MeshModel&) const {
-    return devseg::pattern_parameters();
+    return devseg::host::pattern_parameters();
 }
 
 void PatternIOPlugin::open(const QString&, const QString&, MeshModel&, int&,
@@ -43,9 +43,9 @@ void PatternIOPlugin::save(const QString& format, const QString& file_name, Mesh
         wrongSaveFormat(format);
     try {
         for (const std::string& note :
-             devseg::save_pattern(file_name.toStdString(), model, parameters, callback))
-            reportWarning(devseg::to_qstring(note));
-    } catch (const devseg::HostError& error) {
-        throw MLException(devseg::to_qstring(error.what()));
+             devseg::host::save_pattern(file_name.toStdString(), model, parameters, callback))
+            reportWarning(devseg::host::to_qstring(note));
+    } catch (const devseg::host::HostError& error) {
+        throw MLException(devseg::host::to_qstring(error.what()));
     }
 }

@@ -23,10 +23,10 @@ std::vector<Index> zeros(const Mesh& mesh) {
 template <class Cut>
 std::vector<std::uint8_t> seams_where(const Mesh& mesh, Cut cut) {
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Vec3& a = mesh.points[at(mesh.origin(h))];
-        const Vec3& b = mesh.points[at(mesh.target(h))];
-        seam[at(h)] = cut(Vec3(0.5 * (a + b)), Vec3(b - a)) ? 1 : 0;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vec3& a = mesh.points[mesh.origin(h)];
+        const Vec3& b = mesh.points[mesh.target(h)];
+        seam[h] = cut(Vec3(0.5 * (a + b)), Vec3(b - a)) ? 1 : 0;
     }
     return seam;
 }
@@ -40,20 +40,20 @@ std::vector<std::uint8_t> slit(const Mesh& mesh, double from, double to) {
 }
 
 void expect_local_manifold(const Mesh& mesh, const ChartSurface& s) {
-    for (Index h = 0; h < 3 * s.face_count(); ++h) {
-        ASSERT_EQ(s.vertex[at(s.origin(h))], mesh.origin(s.mesh_half_edge(h)));
-        const Index opposite = s.twin[at(h)];
+    for (const HalfEdge h : s.all_half_edges()) {
+        ASSERT_EQ(s.vertex[s.origin(h)], mesh.origin(s.mesh_half_edge(h)));
+        const Index opposite = s.twin[h];
         if (opposite < 0)
             continue;
-        ASSERT_EQ(s.twin[at(opposite)], h);
-        ASSERT_EQ(s.mesh_half_edge(opposite), mesh.twin[at(s.mesh_half_edge(h))]);
+        ASSERT_EQ(s.twin[opposite], h);
+        ASSERT_EQ(s.mesh_half_edge(opposite), mesh.twin[s.mesh_half_edge(h)]);
         ASSERT_EQ(s.origin(h), s.target(opposite));
         ASSERT_EQ(s.target(h), s.origin(opposite));
     }
     std::set<Index> on_loops;
     for (const std::vector<Index>& loop : s.loops)
         for (std::size_t i = 0; i < loop.size(); ++i) {
-            ASSERT_LT(s.twin[at(loop[i])], 0);
+            ASSERT_LT(s.twin[loop[i]], 0);
             ASSERT_EQ(s.target(loop[i]), s.origin(loop[(i + 1) % loop.size()]));
             ASSERT_TRUE(on_loops.insert(loop[i]).second) << "twice on a loop";
         }
@@ -119,20 +119,20 @@ TEST(Charts, RandomLabelsGiveValidCharts) {
     for (std::uint32_t seed = 1; seed < 30; ++seed) {
         shapes::Random random(seed);
         std::vector<Index> labels;
-        for (Index f = 0; f < mesh.face_count(); ++f)
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f)
             labels.push_back(random.below(3));
         const ChartMap charts = make_chart_map(mesh, labels, {}, false);
         ASSERT_TRUE(is_valid(mesh, charts));
         // Maximal: charts of equal labels never touch along an edge, and no other edge is cut.
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-            const Index opposite = mesh.twin[at(h)];
-            ASSERT_EQ(charts.seam[at(h)] == 0, labels[at(h / 3)] == labels[at(opposite / 3)]);
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            const Index opposite = mesh.twin[h];
+            ASSERT_EQ(charts.seam[h] == 0, labels[h / 3] == labels[opposite / 3]);
         }
         Index faces = 0;
         for (const ChartSurface& surface : extract_charts(mesh, charts)) {
             expect_local_manifold(mesh, surface);
             faces += surface.face_count();
-            const Index chart = charts.chart[at(surface.face.front())];
+            const Index chart = charts.chart[surface.face.front()];
             const checks::Topology expected = checks::topology(mesh, charts, chart);
             ASSERT_EQ(surface.euler_characteristic(), expected.euler);
             ASSERT_EQ(static_cast<Index>(surface.loops.size()), expected.loops);
@@ -148,10 +148,10 @@ TEST(Charts, GroupsHoldEachFaceOnceInAscendingOrder) {
     ASSERT_EQ(groups.begin.size(), at(charts.count) + 1);
     ASSERT_EQ(groups.faces.size(), mesh.faces.size());
     for (Index c = 0; c < charts.count; ++c)
-        for (Index i = groups.begin[at(c)]; i < groups.begin[at(c) + 1]; ++i) {
-            EXPECT_EQ(charts.chart[at(groups.faces[at(i)])], c);
-            if (i > groups.begin[at(c)]) {
-                EXPECT_LT(groups.faces[at(i - 1)], groups.faces[at(i)]);
+        for (Index i = groups.begin[c]; i < groups.begin[at(c) + 1]; ++i) {
+            EXPECT_EQ(charts.chart[groups.faces[i]], c);
+            if (i > groups.begin[c]) {
+                EXPECT_LT(groups.faces[i - 1], groups.faces[i]);
             }
         }
 }
@@ -191,9 +191,9 @@ TEST(Charts, ASeamOnOneSideOfAnEdgeCountsForBoth) {
     const Mesh mesh = checks::gated(shapes::grid(8, 8));
     const std::vector<std::uint8_t> both = slit(mesh, -0.3, 0.3);
     std::vector<std::uint8_t> one = both;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] > h)
-            one[at(h)] = 0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h)
+            one[h] = 0;
     EXPECT_NE(one, both);
     EXPECT_EQ(make_chart_map(mesh, zeros(mesh), one, true).seam,
               make_chart_map(mesh, zeros(mesh), both, true).seam);
@@ -219,7 +219,7 @@ CornerUv uv_of(const Mesh& mesh) {
     CornerUv uv;
     for (const Triangle& t : mesh.faces)
         for (const Index v : t)
-            uv.push_back(mesh.points[at(v)].head<2>());
+            uv.push_back(mesh.points[v].head<2>());
     return uv;
 }
 
@@ -227,33 +227,33 @@ TEST(ChartsFromUv, CoordinatesThatAgreeAreNoSeams) {
     const Mesh mesh = checks::gated(shapes::grid(6, 6));
     CornerUv uv = uv_of(mesh);
     EXPECT_EQ(charts_from_uv(mesh, uv).count, 1);
-    const double size = std::sqrt(2.0);  // of the layout, which is [−½, ½]²
-    uv[at(3 * 20)].x() += 0.9e-6 * size; // within the rounding of writers
+    const double size = std::sqrt(2.0); // of the layout, which is [−½, ½]²
+    uv[3 * 20].x() += 0.9e-6 * size;    // within the rounding of writers
     const auto seams = [&] {
         const ChartMap charts = charts_from_uv(mesh, uv);
         return std::count(charts.seam.begin(), charts.seam.end(), 1);
     };
     EXPECT_EQ(seams(), 0);
-    uv[at(3 * 20)].x() += 0.2e-6 * size;
+    uv[3 * 20].x() += 0.2e-6 * size;
     EXPECT_EQ(seams(), 4); // the two edges at that corner, from both sides
 }
 
 TEST(ChartsFromUv, IslandsAndSlitsAreFound) {
     const Mesh mesh = checks::gated(shapes::grid(8, 8));
     CornerUv uv = uv_of(mesh);
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (mesh.face_centers[at(f)].x() > 0.0)
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        if (mesh.face_centers[f].x() > 0.0)
             for (Index k = 0; k < 3; ++k)
-                uv[at(3 * f + k)] += Vec2(3.0, 0.0);
+                uv[3 * f + k] += Vec2(3.0, 0.0);
     EXPECT_EQ(charts_from_uv(mesh, uv).seam,
               make_chart_map(mesh, zeros(mesh), slit(mesh, -1.0, 1.0), true).seam);
     EXPECT_EQ(charts_from_uv(mesh, uv).count, 2);
     // A dart: the coordinates on its two sides differ, and meet at its tip.
     uv = uv_of(mesh);
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         for (Index k = 0; k < 3; ++k) {
-            Vec2& p = uv[at(3 * f + k)];
-            if (mesh.face_centers[at(f)].x() > 0.0 && p.y() < 0.0)
+            Vec2& p = uv[3 * f + k];
+            if (mesh.face_centers[f].x() > 0.0 && p.y() < 0.0)
                 p.x() -= 0.3 * p.y();
         }
     const ChartMap dart = charts_from_uv(mesh, uv);

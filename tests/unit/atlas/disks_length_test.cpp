@@ -40,11 +40,10 @@ TEST(CutLength, AnAnnulusIsCutAlongTheShortestPathBetweenItsLoops) {
         std::vector<double> distance(mesh.points.size(), infinity);
         std::fill(distance.begin(), distance.begin() + 16, 0.0);
         for (std::size_t round = 0; round < mesh.points.size(); ++round)
-            for (Index h = 0; h < mesh.half_edge_count(); ++h)
+            for (const HalfEdge h : mesh.all_half_edges())
                 for (const auto& [a, b] :
                      {std::pair(mesh.origin(h), mesh.target(h)), {mesh.target(h), mesh.origin(h)}})
-                    distance[at(b)] =
-                        std::min(distance[at(b)], distance[at(a)] + mesh.edge_length(h));
+                    distance[b] = std::min(distance[b], distance[a] + mesh.edge_length(h));
         const double shortest = *std::min_element(distance.begin() + 80, distance.end());
         EXPECT_NEAR(cut(mesh).cut_length, shortest, 1e-12);
     }
@@ -101,14 +100,14 @@ double shortest_cut(const Mesh& mesh, Index around, Index tube) {
         std::set<std::tuple<double, Index, Index, Index>> queue{{0.0, p * around, reach, reach}};
         distance[node(p * around, reach, reach)] = 0.0;
         std::vector<std::vector<Index>> edges(at(mesh.vertex_count()));
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            edges[at(mesh.origin(h))].push_back(h);
+        for (const HalfEdge h : mesh.all_half_edges())
+            edges[mesh.origin(h)].push_back(h);
         while (!queue.empty()) {
             const auto [d, v, x, y] = *queue.begin();
             queue.erase(queue.begin());
             if (d > distance[node(v, x, y)])
                 continue;
-            for (const Index h : edges[at(v)]) {
+            for (const Index h : edges[v]) {
                 const Index w = mesh.target(h);
                 const Index nx = x + turns(v % around, w % around, around);
                 const Index ny = y + turns(v / around, w / around, tube);
@@ -121,16 +120,16 @@ double shortest_cut(const Mesh& mesh, Index around, Index tube) {
                 }
             }
         }
-        for (Index q = 0; q < mesh.vertex_count(); ++q)
+        for (const Vertex q : mesh.all_vertices())
             for (Index a = 0; a < sheets; ++a)
                 for (Index b = a + 1; b < sheets; ++b)
                     for (Index c = b + 1; c < sheets; ++c) {
                         const Index area = (b % width - a % width) * (c / width - a / width) -
                                            (b / width - a / width) * (c % width - a % width);
                         if (std::abs(area) == 1)
-                            best = std::min(best, distance[at(q * sheets + a)] +
-                                                      distance[at(q * sheets + b)] +
-                                                      distance[at(q * sheets + c)]);
+                            best =
+                                std::min(best, distance[q * sheets + a] + distance[q * sheets + b] +
+                                                   distance[q * sheets + c]);
                     }
     }
     return best;
@@ -158,13 +157,13 @@ public:
         a = find(a);
         b = find(b);
         sets -= a != b ? 1 : 0;
-        parent_[at(a)] = b;
+        parent_[a] = b;
     }
 
 private:
     Index find(Index i) const {
-        while (parent_[at(i)] != i)
-            i = parent_[at(i)];
+        while (parent_[i] != i)
+            i = parent_[i];
         return i;
     }
     std::vector<Index> parent_;
@@ -184,7 +183,7 @@ bool cuts_to_disk(const Mesh& mesh, const std::vector<Index>& edges, std::uint32
             touched |= 1U << mesh.origin(edges[e]) | 1U << mesh.target(edges[e]);
             vertices.join(mesh.origin(edges[e]), mesh.target(edges[e]));
         } else {
-            faces.join(edges[e] / 3, mesh.twin[at(edges[e])] / 3);
+            faces.join(edges[e] / 3, mesh.twin[edges[e]] / 3);
         }
     const Index used = __builtin_popcount(touched);
     const Index parts = vertices.sets - (mesh.vertex_count() - used);
@@ -203,8 +202,8 @@ TEST(CutLength, TheSmallestTorusIsCutNearlyAsShortAsCanBe) {
         }
         const Mesh mesh = checks::gated(raw);
         std::vector<Index> edges;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (h < mesh.twin[at(h)])
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (h < mesh.twin[h])
                 edges.push_back(h);
         ASSERT_EQ(edges.size(), 21U);
         double shortest = infinity;
@@ -227,37 +226,36 @@ TEST(CutLength, TheSmallestTorusIsCutNearlyAsShortAsCanBe) {
 // dead ends: a cut to a disk, for any tree.
 double length_of_cut(const Mesh& mesh, const std::vector<double>& weight) {
     std::vector<Index> order;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] > h)
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h)
             order.push_back(h);
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return weight[at(a)] > weight[at(b)]; });
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return weight[a] > weight[b]; });
     std::vector<Index> root(mesh.faces.size());
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](Index f) {
-        while (root[at(f)] != f)
-            f = root[at(f)] = root[at(root[at(f)])];
+        while (root[f] != f)
+            f = root[f] = root[root[f]];
         return f;
     };
     std::vector<Index> cut;
     std::vector<Index> degree(mesh.points.size(), 0);
     for (const Index h : order) {
         const Index a = find(h / 3);
-        const Index b = find(mesh.twin[at(h)] / 3);
+        const Index b = find(mesh.twin[h] / 3);
         if (a != b) {
-            root[at(a)] = b;
+            root[a] = b;
             continue;
         }
         cut.push_back(h);
-        ++degree[at(mesh.origin(h))];
-        ++degree[at(mesh.target(h))];
+        ++degree[mesh.origin(h)];
+        ++degree[mesh.target(h)];
     }
     for (bool pruned = true; pruned;) {
         pruned = false;
         for (Index& h : cut)
-            if (h >= 0 && (degree[at(mesh.origin(h))] == 1 || degree[at(mesh.target(h))] == 1)) {
-                --degree[at(mesh.origin(h))];
-                --degree[at(mesh.target(h))];
+            if (h >= 0 && (degree[mesh.origin(h)] == 1 || degree[mesh.target(h)] == 1)) {
+                --degree[mesh.origin(h)];
+                --degree[mesh.target(h)];
                 h = -1;
                 pruned = true;
             }
@@ -277,9 +275,9 @@ double shortest_by_search(const Mesh& mesh, int trials) {
     for (int trial = 0; trial < trials; ++trial) {
         std::vector<double> weight = best;
         const double change = trial < trials / 4 ? 1.0 : 0.02;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
+        for (const HalfEdge h : mesh.all_half_edges())
             if (trial < trials / 4 || uniform() < change)
-                weight[at(h)] = uniform() * mesh.edge_length(h);
+                weight[h] = uniform() * mesh.edge_length(h);
         const double length = length_of_cut(mesh, weight);
         if (length <= shortest) {
             shortest = length;

@@ -35,7 +35,7 @@ void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts
         const checks::Topology old = checks::topology(mesh, before, c);
         not_disks += old.euler != 1 || old.loops != 1 ? 1 : 0;
         // A disk whose boundary has two edges only is lengthened.
-        not_disks += old.euler == 1 && old.loops == 1 && surfaces[at(c)].loops[0].size() < 3;
+        not_disks += old.euler == 1 && old.loops == 1 && surfaces[c].loops[0].size() < 3;
     }
     EXPECT_EQ(cuts.cut_charts, not_disks);
     for (const ChartSurface& surface : extract_charts(mesh, cuts.charts)) {
@@ -44,9 +44,9 @@ void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts
     }
     // Old seams stay, and the length is that of the new ones.
     double length = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        ASSERT_GE(cuts.charts.seam[at(h)], before.seam[at(h)]);
-        if (cuts.charts.seam[at(h)] > before.seam[at(h)])
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        ASSERT_GE(cuts.charts.seam[h], before.seam[h]);
+        if (cuts.charts.seam[h] > before.seam[h])
             length += 0.5 * mesh.edge_length(h);
     }
     EXPECT_NEAR(cuts.cut_length, length, 1e-9 * (1.0 + length));
@@ -124,7 +124,7 @@ mesh::RawMesh torus_with_finger(std::uint32_t seed) {
         Triangle next{};
         for (std::size_t i = 0; i < 3; ++i) {
             next[i] = static_cast<Index>(mesh.points.size());
-            mesh.points.push_back(mesh.points[at(base[i])] + 0.2 * k * Vec3(1.0, 0.3, 2.0) +
+            mesh.points.push_back(mesh.points[base[i]] + 0.2 * k * Vec3(1.0, 0.3, 2.0) +
                                   0.1 * random.direction());
         }
         for (std::size_t i = 0; i < 3; ++i) {
@@ -147,8 +147,8 @@ TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
             const DiskCuts cuts = cut(mesh, charts);
             expect_disks(mesh, charts, cuts);
             std::vector<int> ends(mesh.points.size(), 0);
-            for (Index h = 0; h < mesh.half_edge_count(); ++h)
-                ends[at(mesh.origin(h))] += cuts.charts.seam[at(h)];
+            for (const HalfEdge h : mesh.all_half_edges())
+                ends[mesh.origin(h)] += cuts.charts.seam[h];
             EXPECT_EQ(std::count(ends.begin(), ends.end(), 1), 0);
         }
 }
@@ -156,7 +156,7 @@ TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
 TEST(CutToDisks, FacesWithoutLengthDoNotStopIt) {
     mesh::RawMesh raw = shapes::torus(10, 6);
     for (Index i = 0; i < 12; ++i)
-        raw.points[at(i)] = raw.points[at(20)]; // a region of edges without length
+        raw.points[i] = raw.points[20]; // a region of edges without length
     const Mesh mesh = checks::gated(raw);
     const ChartMap charts = checks::components(mesh);
     expect_disks(mesh, charts, cut(mesh, charts));
@@ -183,7 +183,7 @@ TEST(CutToDisks, ASlitOfOneEdgeIsLengthened) {
     // Cut along a single edge, a sphere is a disk, but its boundary of two edges has no inside.
     const Mesh mesh = checks::gated(shapes::sphere(1));
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    seam[0] = seam[at(mesh.twin[0])] = 1;
+    seam[0] = seam[mesh.twin[0]] = 1;
     const ChartMap charts =
         make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     ASSERT_TRUE(extract_charts(mesh, charts).at(0).is_disk());

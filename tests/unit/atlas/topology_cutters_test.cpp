@@ -30,7 +30,7 @@ TEST(HandleCutter, OneLoopForEachHandleLeavesNone) {
             const ChartMap charts = checks::components(mesh);
             std::vector<std::uint8_t> seam = charts.seam;
             for (const Index h : cut_handles(mesh, extract_charts(mesh, charts)[0], Progress()))
-                seam[at(h)] = seam[at(mesh.twin[at(h)])] = 1; // one chart: local is global
+                seam[h] = seam[mesh.twin[h]] = 1; // one chart: local is global
             const ChartMap cuts = make_chart_map(mesh, charts.chart, seam, true);
             EXPECT_EQ(cuts.count, 1); // it hangs together
             const checks::Topology t = checks::topology(mesh, cuts, 0);
@@ -122,7 +122,7 @@ TEST(MinCut, GoesOnFromTheFlowThatItHas) {
         shapes::Random random(seed);
         constexpr Index nodes = 40;
         std::vector<graph::CutSide> sides(at(nodes) + 2, graph::CutSide::open);
-        sides[at(nodes)] = graph::CutSide::source;
+        sides[nodes] = graph::CutSide::source;
         sides[at(nodes) + 1] = graph::CutSide::sink;
         graph::MinCut steps(sides);
         graph::MinCut once(sides);

@@ -88,7 +88,7 @@ mesh::RawMesh plate_with_flat_faces() {
     const auto split_flat = [&](std::size_t f) { // a vertex in the middle of edge 0 of face f
         const Triangle t = raw.faces[f];
         const auto middle = static_cast<Index>(raw.points.size());
-        raw.points.push_back(0.5 * (raw.points[at(t[0])] + raw.points[at(t[1])]));
+        raw.points.push_back(0.5 * (raw.points[t[0]] + raw.points[t[1]]));
         raw.faces[f] = {middle, t[1], t[2]};
         raw.faces.push_back({t[0], middle, t[2]});
         raw.faces.push_back({t[0], t[1], middle}); // flat, towards the face across the edge
@@ -157,7 +157,7 @@ TEST(BadInput, CoordinatesThatAreNotFiniteAreRefusedWithTheFace) {
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         for (int method = 0; method < 5; ++method) {
             mesh::RawMesh raw = shapes::grid(4, 4);
-            raw.points[at(raw.faces[30][1])].y() = bad;
+            raw.points[raw.faces[30][1]].y() = bad;
             std::vector<Index> expected;
             for (std::size_t f = 0; f < raw.faces.size(); ++f)
                 if (std::count(raw.faces[f].begin(), raw.faces[f].end(), raw.faces[30][1]) > 0)

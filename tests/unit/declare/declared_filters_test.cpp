@@ -9,6 +9,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/declare/filter.h"
+#include "devseg/filters/table.h"
 #include "unit/checks.h"
 #include "unit/host_checks.h"
 #include "unit/mesh_edits.h"
@@ -43,7 +44,7 @@ HostResult run(const FilterDeclaration& filter, const HostMesh& host,
 TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
     const HostMesh host = prepared();
     const std::size_t faces = host.geometry.faces.size();
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         SCOPED_TRACE(filter.menu_name);
         const HostResult r = run(filter, host, {});
         std::vector<std::string> declared;
@@ -88,7 +89,7 @@ bool same(const HostResult& a, const HostResult& b) {
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         const HostResult a = run(filter, host, {});
         const HostResult b = run(filter, host, {});
         EXPECT_TRUE(same(a, b)) << filter.menu_name;
@@ -98,7 +99,7 @@ TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
 
 TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         ParameterValues all;
         for (const Parameter& p : filter.parameters)
             all[p.name] = p.default_value;
@@ -190,7 +191,7 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
     const std::vector<HostMesh> hosts{prepared(), samples::unfinished().host(),
                                       samples::nearly_equal().host(), cubes_and_a_finger(),
                                       bumpy_body()};
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
             const auto [place, fresh] = unchanged.try_emplace({host, values});
@@ -212,7 +213,7 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
 
 TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table())
+    for (const FilterDeclaration& filter : filters::filter_table())
         for (const Parameter& p : filter.parameters) {
             if (p.kind != ParameterKind::integer && p.kind != ParameterKind::real)
                 continue;
@@ -239,7 +240,7 @@ TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
 
 TEST(DeclaredFilters, ChoicesOutOfRangeAreRefused) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table())
+    for (const FilterDeclaration& filter : filters::filter_table())
         for (const Parameter& p : filter.parameters) {
             if (p.kind != ParameterKind::choice)
                 continue;
@@ -252,7 +253,7 @@ TEST(DeclaredFilters, ChoicesOutOfRangeAreRefused) {
 TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
     HostMesh host;
     host.geometry = shapes::sphere(1);
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         if (!filter.needs_uv) {
             EXPECT_NO_THROW(run(filter, host, {})) << filter.menu_name;
             continue;
@@ -265,7 +266,7 @@ TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
 
 TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         int calls = 0;
         Progress progress([&](double, const char*) { return ++calls < 1; });
         try {
@@ -279,7 +280,7 @@ TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
 
 TEST(DeclaredFilters, ProgressNeverGoesBackAndPhasesHaveNames) {
     const HostMesh host = prepared();
-    for (const FilterDeclaration& filter : filter_table()) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
         double last = 0.0;
         Progress progress([&](double fraction, const char* phase) {
             EXPECT_GE(fraction, last);

@@ -99,10 +99,9 @@ TEST(Layout, PackingKeepsShapesAndEvensScales) {
         for (std::size_t k = 0; k < 3;
              ++k) // the second chart half as large as it should be, turned
             corners[k] =
-                f < 24
-                    ? Vec2(host.geometry.points[at(host.geometry.faces[f][k])].head<2>())
-                    : Vec2(0.5 * (Eigen::Rotation2Dd(0.4) *
-                                  host.geometry.points[at(host.geometry.faces[f][k])].head<2>()));
+                f < 24 ? Vec2(host.geometry.points[host.geometry.faces[f][k]].head<2>())
+                       : Vec2(0.5 * (Eigen::Rotation2Dd(0.4) *
+                                     host.geometry.points[host.geometry.faces[f][k]].head<2>()));
         host.wedge_uv.push_back(corners);
     }
     const HostResult packed = run("Charts: Pack", host);

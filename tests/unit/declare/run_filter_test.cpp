@@ -69,7 +69,7 @@ TEST(RunFilter, ChartsComeFromAttributesThenCoordinatesThenComponents) {
     for (std::size_t f = 0; f < 8; ++f) {
         std::array<Vec2, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
-            corners[k] = raw.points[at(raw.faces[f][k])].head<2>() + Vec2(f < 4 ? 0.0 : 9.0, 0.0);
+            corners[k] = raw.points[raw.faces[f][k]].head<2>() + Vec2(f < 4 ? 0.0 : 9.0, 0.0);
         host.wedge_uv.push_back(corners);
     }
     EXPECT_EQ(charts(), 2);

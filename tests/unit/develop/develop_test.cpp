@@ -21,7 +21,7 @@ namespace {
 
 std::vector<Index> own_points(const Mesh& mesh) {
     std::vector<Index> point_of;
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
+    for (const Vertex v : mesh.all_vertices())
         point_of.push_back(v);
     return point_of;
 }
@@ -42,13 +42,13 @@ Mesh with_points(Mesh mesh, const std::vector<Vec3>& points) {
 double worst_defect(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
     std::vector<double> sum(mesh.points.size(), 0.0);
     std::vector<bool> outer(mesh.points.size(), false);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+    for (const HalfEdge h : mesh.all_half_edges()) {
         const double a = mesh.edge_length(h);
         const double b = mesh.edge_length(Mesh::previous(h));
         const double c = mesh.edge_length(Mesh::next(h));
-        sum[at(mesh.origin(h))] += std::acos((a * a + b * b - c * c) / (2.0 * a * b));
-        if (seam[at(h)] != 0 || mesh.twin[at(h)] < 0)
-            outer[at(mesh.origin(h))] = outer[at(mesh.target(h))] = true;
+        sum[mesh.origin(h)] += std::acos((a * a + b * b - c * c) / (2.0 * a * b));
+        if (seam[h] != 0 || mesh.twin[h] < 0)
+            outer[mesh.origin(h)] = outer[mesh.target(h)] = true;
     }
     double worst = 0.0;
     for (std::size_t v = 0; v < sum.size(); ++v)
@@ -123,8 +123,8 @@ TEST(Deform, ChartsBecomeExactlyDevelopable) {
     EXPECT_NEAR(d.result.largest_displacement, largest, 1e-12);
     EXPECT_NEAR(d.result.mean_displacement, sum / start.vertex_count(), 1e-12);
     EXPECT_LT(largest * start.unit_length, 0.3); // of a torus of 5.8
-    for (Index f = 0; f < start.face_count(); ++f)
-        EXPECT_GT(start.face_normals[at(f)].dot(d.mesh.face_normals[at(f)]), 0.0);
+    for (const Face f : start.all_faces())
+        EXPECT_GT(start.face_normals[f].dot(d.mesh.face_normals[f]), 0.0);
 }
 
 TEST(Deform, WhatIsDevelopableStays) {
@@ -201,7 +201,7 @@ TEST(Deform, VerticesThatShareAPointStayTogether) {
     const Index offset = static_cast<Index>(raw.points.size());
     for (Triangle& t : both.faces)
         for (Index& v : t)
-            v = (both.points[at(v)] - both.points[0]).norm() < 1e-9 ? 0 : v;
+            v = (both.points[v] - both.points[0]).norm() < 1e-9 ? 0 : v;
     const mesh::GatedMesh gated = mesh::gate_mesh(both);
     ASSERT_GT(offset, 0);
     ASSERT_NE(std::count(gated.source_vertex.begin(), gated.source_vertex.end(), 0), 0);
@@ -248,8 +248,7 @@ TEST(Intersections, TheTreeFindsWhatAllPairsFind) {
     const Index count = static_cast<Index>(raw.faces.size());
     for (Index f = 0; f < count; ++f)
         for (Index g = f + 1; g < count; ++g)
-            if (!find_intersections(raw.points, {raw.faces[at(f)], raw.faces[at(g)]}, Progress())
-                     .empty())
+            if (!find_intersections(raw.points, {raw.faces[f], raw.faces[g]}, Progress()).empty())
                 one_by_one.emplace_back(f, g);
     EXPECT_EQ(all, one_by_one);
 }
@@ -260,27 +259,27 @@ std::vector<Vec3> fold_back(const Mesh& mesh, const atlas::ChartSurface& surface
     std::vector<Eigen::Isometry3d> place(surface.face.size(), Eigen::Isometry3d::Identity());
     std::vector<bool> seen(surface.face.size(), false);
     std::vector<Vec3> folded(surface.vertex.size());
-    const auto flat = [&](Index v) { return Vec3(uv[at(v)].x(), uv[at(v)].y(), 0.0); };
+    const auto flat = [&](Index v) { return Vec3(uv[v].x(), uv[v].y(), 0.0); };
     std::vector<Index> queue{0};
     seen[0] = true;
     for (std::size_t i = 0; i < queue.size(); ++i) {
         const Index f = queue[i];
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            folded[at(surface.origin(h))] = place[at(f)] * flat(surface.origin(h));
-            const Index other = surface.twin[at(h)];
-            if (other < 0 || seen[at(other / 3)])
+        for (const HalfEdge h : half_edges_of(f)) {
+            folded[surface.origin(h)] = place[f] * flat(surface.origin(h));
+            const Index other = surface.twin[h];
+            if (other < 0 || seen[other / 3])
                 continue;
-            const Vec3& n = mesh.face_normals[at(surface.face[at(f)])];
-            const Vec3& m = mesh.face_normals[at(surface.face[at(other / 3)])];
-            const Vec3 edge = (mesh.points[at(surface.vertex[at(surface.target(h))])] -
-                               mesh.points[at(surface.vertex[at(surface.origin(h))])])
+            const Vec3& n = mesh.face_normals[surface.face[f]];
+            const Vec3& m = mesh.face_normals[surface.face[other / 3]];
+            const Vec3 edge = (mesh.points[surface.vertex[surface.target(h)]] -
+                               mesh.points[surface.vertex[surface.origin(h)]])
                                   .normalized();
             const double angle = std::atan2(n.cross(m).dot(edge), n.dot(m));
             const Vec3 a = flat(surface.origin(h));
             const Vec3 axis = (flat(surface.target(h)) - a).normalized();
-            place[at(other / 3)] = place[at(f)] * Eigen::Translation3d(a) *
-                                   Eigen::AngleAxisd(angle, axis) * Eigen::Translation3d(-a);
-            seen[at(other / 3)] = true;
+            place[other / 3] = place[f] * Eigen::Translation3d(a) * Eigen::AngleAxisd(angle, axis) *
+                               Eigen::Translation3d(-a);
+            seen[other / 3] = true;
             queue.push_back(other / 3);
         }
     }
@@ -294,7 +293,7 @@ void expect_folds_back(const Mesh& mesh, const atlas::ChartSurface& surface,
     Eigen::Matrix3Xd to(3, folded.size());
     for (std::size_t v = 0; v < folded.size(); ++v) {
         from.col(static_cast<Eigen::Index>(v)) = folded[v];
-        to.col(static_cast<Eigen::Index>(v)) = mesh.points[at(surface.vertex[v])];
+        to.col(static_cast<Eigen::Index>(v)) = mesh.points[surface.vertex[v]];
     }
     const Eigen::Matrix4d rigid = Eigen::umeyama(from, to, false);
     for (Eigen::Index v = 0; v < from.cols(); ++v)
@@ -309,10 +308,9 @@ TEST(Unfold, DeformedChartsUnfoldWithoutStretchAndFoldBack) {
     EXPECT_GE(flat.charts.count, d.result.charts.count);
     for (const flatten::FlatChart& chart : flat.flat) {
         EXPECT_TRUE(chart.developed);
-        for (Index h = 0; h < 3 * chart.surface.face_count(); ++h)
+        for (const HalfEdge h : chart.surface.all_half_edges())
             EXPECT_NEAR(
-                (chart.uv[at(chart.surface.target(h))] - chart.uv[at(chart.surface.origin(h))])
-                    .norm(),
+                (chart.uv[chart.surface.target(h)] - chart.uv[chart.surface.origin(h)]).norm(),
                 d.mesh.edge_length(chart.surface.mesh_half_edge(h)), 1e-9);
         expect_folds_back(d.mesh, chart.surface, chart.uv);
     }
@@ -336,11 +334,11 @@ mesh::RawMesh zigzag_fan(int sectors, double angle, double inner, double outer, 
     const double psi = std::acos(std::sqrt(c));
     mesh::RawMesh raw = shapes::grid(sectors, rows);
     for (Index v = 0; v < static_cast<Index>(raw.points.size()); ++v) {
-        const int i = static_cast<int>(std::lround(raw.points[at(v)].x() * sectors));
-        const double r = inner + (outer - inner) * raw.points[at(v)].y();
+        const int i = static_cast<int>(std::lround(raw.points[v].x() * sectors));
+        const double r = inner + (outer - inner) * raw.points[v].y();
         const double up = i % 2 == 0 ? psi : -psi;
-        raw.points[at(v)] = r * Vec3(std::cos(turn * i) * std::cos(up),
-                                     -std::sin(turn * i) * std::cos(up), std::sin(up));
+        raw.points[v] = r * Vec3(std::cos(turn * i) * std::cos(up),
+                                 -std::sin(turn * i) * std::cos(up), std::sin(up));
     }
     return raw;
 }
@@ -357,8 +355,8 @@ TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
         EXPECT_TRUE(chart.developed);
         EXPECT_FALSE(chart.pushed);
         for (const Triangle& t : chart.surface.corners) {
-            const Vec2 a = chart.uv[at(t[1])] - chart.uv[at(t[0])];
-            const Vec2 b = chart.uv[at(t[2])] - chart.uv[at(t[0])];
+            const Vec2 a = chart.uv[t[1]] - chart.uv[t[0]];
+            const Vec2 b = chart.uv[t[2]] - chart.uv[t[0]];
             area += 0.5 * (a.x() * b.y() - a.y() * b.x());
         }
     }
@@ -370,8 +368,8 @@ TEST(Unfold, ASmallPartIsHingedToANeighbour) {
     mesh::RawMesh raw = zigzag_fan(17, shapes::pi / 8.0, 1.0, 2.0, 1);
     const auto add_sheet = [&](Index a, Index b, const Vec3& offset) {
         const Index n = static_cast<Index>(raw.points.size());
-        raw.points.push_back(raw.points[at(a)] + offset);
-        raw.points.push_back(raw.points[at(b)] + offset);
+        raw.points.push_back(raw.points[a] + offset);
+        raw.points.push_back(raw.points[b] + offset);
         raw.faces.push_back({a, n, b});
         raw.faces.push_back({n, n + 1, b});
     };
@@ -392,7 +390,7 @@ TEST(Unfold, ASmallPartIsHingedToANeighbour) {
     ASSERT_EQ(flat.flat.size(), 3U);
     for (std::size_t c = 0; c < 3; ++c)
         for (const Index f : flat.flat[c].surface.face)
-            EXPECT_EQ(flat.charts.chart[at(f)], static_cast<Index>(c));
+            EXPECT_EQ(flat.charts.chart[f], static_cast<Index>(c));
 }
 
 } // namespace

@@ -36,7 +36,7 @@ FlattenResult flat_with_sliver(const Mesh& mesh) {
 
 Index sliver_of(const FlattenResult& flat) {
     for (Index c = 0; c < flat.charts.count; ++c)
-        if (flat.flat[at(c)].surface.face_count() == 4)
+        if (flat.flat[c].surface.face_count() == 4)
             return c;
     return -1;
 }
@@ -45,7 +45,7 @@ TEST(Slivers, GoToANeighbourThatHasRoom) {
     const Mesh mesh = plate();
     FlattenResult flat = flat_with_sliver(mesh);
     ASSERT_EQ(flat.charts.count, 3);
-    flat.flat[at(sliver_of(flat))].cut_off = true;
+    flat.flat[sliver_of(flat)].cut_off = true;
     Progress progress;
     hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
     ASSERT_EQ(flat.charts.count, 2);
@@ -53,12 +53,12 @@ TEST(Slivers, GoToANeighbourThatHasRoom) {
     EXPECT_TRUE(checks::is_valid(mesh, flat.charts));
     Index faces = 0;
     for (Index c = 0; c < 2; ++c) {
-        const FlatChart& chart = flat.flat[at(c)];
+        const FlatChart& chart = flat.flat[c];
         faces += chart.surface.face_count();
         EXPECT_NEAR(chart.energy, 1.0, 1e-9);
         EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
         for (const Index f : chart.surface.face)
-            EXPECT_EQ(flat.charts.chart[at(f)], c);
+            EXPECT_EQ(flat.charts.chart[f], c);
     }
     EXPECT_EQ(faces, mesh.face_count());
 }
@@ -101,7 +101,7 @@ Index disks_in_the_plane(const Mesh& mesh, const FlattenResult& flat) {
         for (std::size_t f = 0; f < chart.surface.face.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k)
                 uv[3 * at(chart.surface.face[f]) + k] =
-                    chart.uv[at(chart.surface.corners[f][k])] + Vec2(shift, 0.0);
+                    chart.uv[chart.surface.corners[f][k]] + Vec2(shift, 0.0);
         shift += 10.0;
     }
     Index disks = 0;

@@ -94,7 +94,7 @@ TEST(Coarsen, TheTopologyStaysThatOfTheSurface) {
             EXPECT_EQ(found.euler, fine.euler);
             EXPECT_EQ(found.loops, fine.loops);
             std::set<std::pair<Index, Index>> directed; // an edge has two faces, and so one twin
-            for (Index h = 0; h < coarse.mesh.half_edge_count(); ++h)
+            for (const HalfEdge h : coarse.mesh.all_half_edges())
                 EXPECT_TRUE(directed.emplace(coarse.mesh.origin(h), coarse.mesh.target(h)).second);
         }
     }
@@ -111,11 +111,10 @@ TEST(Coarsen, UndoingGivesBackTheVerySameSurface) {
             if (!look)
                 continue;
             std::vector<Index> expected = before;
-            expected.push_back(s.faces[at(h / 3)][at(h % 3)]);
+            expected.push_back(s.faces[h / 3][h % 3]);
             std::sort(expected.begin(), expected.end());
             EXPECT_EQ(vertices_of(s), expected);
-            EXPECT_FALSE(
-                std::binary_search(before.begin(), before.end(), s.faces[at(h / 3)][at(h % 3)]));
+            EXPECT_FALSE(std::binary_search(before.begin(), before.end(), s.faces[h / 3][h % 3]));
             EXPECT_EQ(s.alive_faces, std::count(s.alive.begin(), s.alive.end(), 1));
             EXPECT_TRUE(checks::is_valid(extract_coarse_mesh(mesh, s).mesh));
         }
@@ -135,7 +134,7 @@ TEST(Coarsen, VerticesOfOneRoundAreNoNeighbours) {
         std::set<Index> removed;
         while (s.collapses.size() > begin) {
             const Index h = undo_collapse(s);
-            removed.insert(s.faces[at(h / 3)][at(h % 3)]);
+            removed.insert(s.faces[h / 3][h % 3]);
         }
         for (std::size_t f = 0; f < s.faces.size(); ++f)
             if (s.alive[f] != 0) {
@@ -173,25 +172,25 @@ TEST(Coarsen, CurvedSurfacesStayNear) {
     const Mesh coarse = extract_coarse_mesh(mesh, coarsened(mesh, 500)).mesh;
     EXPECT_NEAR(coarse.total_area, mesh.total_area, 0.03 * mesh.total_area);
     // Round triangles: none is a needle, and none has turned over.
-    for (Index f = 0; f < coarse.face_count(); ++f) {
-        const Vec3 outward = coarse.face_centers[at(f)];
-        EXPECT_GT(coarse.face_normals[at(f)].dot(outward.normalized()), 0.8);
+    for (const Face f : coarse.all_faces()) {
+        const Vec3 outward = coarse.face_centers[f];
+        EXPECT_GT(coarse.face_normals[f].dot(outward.normalized()), 0.8);
         double squares = 0.0;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+        for (const HalfEdge h : half_edges_of(f))
             squares += std::pow(coarse.edge_length(h), 2);
-        EXPECT_GT(4.0 * std::sqrt(3.0) * coarse.face_areas[at(f)] / squares, 0.05);
+        EXPECT_GT(4.0 * std::sqrt(3.0) * coarse.face_areas[f] / squares, 0.05);
     }
 }
 
 TEST(Coarsen, BoundariesStayOnTheBoundary) {
     const Mesh mesh = checks::gated(shapes::annulus(60, 10, 1.0, 2.0));
     const CoarseMesh coarse = extract_coarse_mesh(mesh, coarsened(mesh, 200));
-    for (Index h = 0; h < coarse.mesh.half_edge_count(); ++h) {
-        if (coarse.mesh.twin[at(h)] >= 0)
+    for (const HalfEdge h : coarse.mesh.all_half_edges()) {
+        if (coarse.mesh.twin[h] >= 0)
             continue;
         // Both ends on the same circle.
-        const double r = coarse.mesh.points[at(coarse.mesh.origin(h))].norm();
-        const double s = coarse.mesh.points[at(coarse.mesh.target(h))].norm();
+        const double r = coarse.mesh.points[coarse.mesh.origin(h)].norm();
+        const double s = coarse.mesh.points[coarse.mesh.target(h)].norm();
         EXPECT_NEAR(r, s, 1e-9);
     }
 }
@@ -216,19 +215,19 @@ std::vector<Index> grown_labels(const Mesh& mesh, Index count, std::uint32_t see
     std::vector<Index> front;
     for (Index c = 0; c < count; ++c) {
         Index f = random.below(mesh.face_count());
-        while (label[at(f)] >= 0)
+        while (label[f] >= 0)
             f = (f + 1) % mesh.face_count();
-        label[at(f)] = c;
+        label[f] = c;
         front.push_back(f);
     }
     while (!front.empty()) {
         const std::size_t i = at(random.below(static_cast<Index>(front.size())));
         const Index f = front[i];
         front.erase(front.begin() + static_cast<std::ptrdiff_t>(i));
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = mesh.twin[at(h)];
-            if (twin >= 0 && label[at(twin / 3)] < 0) {
-                label[at(twin / 3)] = label[at(f)];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index twin = mesh.twin[h];
+            if (twin >= 0 && label[twin / 3] < 0) {
+                label[twin / 3] = label[f];
                 front.push_back(twin / 3);
             }
         }
@@ -238,8 +237,8 @@ std::vector<Index> grown_labels(const Mesh& mesh, Index count, std::uint32_t see
 
 double border_length(const Mesh& mesh, const std::vector<Index>& label) {
     double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] > h && label[at(h / 3)] != label[at(mesh.twin[at(h)] / 3)])
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h && label[h / 3] != label[mesh.twin[h] / 3])
             sum += mesh.edge_length(h);
     return sum;
 }
@@ -253,7 +252,7 @@ TEST(Coarsen, RefinedLabelsAreConnectedAndCoverAll) {
         const std::vector<Index> on_coarse = grown_labels(coarse.mesh, count, seed++);
         std::vector<Index> label(mesh.faces.size(), -1);
         for (std::size_t f = 0; f < on_coarse.size(); ++f)
-            label[at(coarse.face[f])] = on_coarse[f];
+            label[coarse.face[f]] = on_coarse[f];
         const std::vector<Index> fine = refine_labels(mesh.points, s, label, Progress());
         for (std::size_t f = 0; f < fine.size(); ++f) {
             ASSERT_GE(fine[f], 0);

@@ -24,7 +24,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 double signed_volume(const Mesh& mesh) {
     double sum = 0.0;
     for (const Triangle& t : mesh.faces)
-        sum += mesh.points[at(t[0])].cross(mesh.points[at(t[1])]).dot(mesh.points[at(t[2])]) / 6.0;
+        sum += mesh.points[t[0]].cross(mesh.points[t[1]]).dot(mesh.points[t[2]]) / 6.0;
     return sum;
 }
 
@@ -40,14 +40,14 @@ std::string only_note(const GatedMesh& gated) {
 // The way back: each corner and edge lies where the source has it.
 void expect_way_back(const RawMesh& raw, const GatedMesh& gated) {
     const Mesh& mesh = gated.mesh;
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (const Face f : mesh.all_faces())
         for (Index k = 0; k < 3; ++k) {
-            const Triangle& source = raw.faces[at(gated.source_face[at(f)])];
-            const Index v = mesh.faces[at(f)][at(k)];
-            ASSERT_EQ(source[at(gated.source_corner(f, k))], gated.source_vertex[at(v)]);
-            const Index w = mesh.faces[at(f)][at((k + 1) % 3)];
+            const Triangle& source = raw.faces[gated.source_face[f]];
+            const Index v = mesh.faces[f][k];
+            ASSERT_EQ(source[gated.source_corner(f, k)], gated.source_vertex[v]);
+            const Index w = mesh.faces[f][(k + 1) % 3];
             const std::size_t e = at(gated.source_edge(f, k));
-            const std::set<Index> ends = {gated.source_vertex[at(v)], gated.source_vertex[at(w)]};
+            const std::set<Index> ends = {gated.source_vertex[v], gated.source_vertex[w]};
             const std::set<Index> source_ends = {source[e], source[(e + 1) % 3]};
             ASSERT_EQ(ends, source_ends);
         }
@@ -115,7 +115,7 @@ TEST(Gate, FacesThatRepeatAVertexAreLeftOut) {
     for (const std::size_t left_out : {1U, 5U}) { // a face at one of its vertices stands in
         const Index stand_in = gated.stand_in[left_out];
         ASSERT_GE(stand_in, 0);
-        const Triangle& t = raw.faces[at(gated.source_face[at(stand_in)])];
+        const Triangle& t = raw.faces[gated.source_face[stand_in]];
         const Triangle& missing = raw.faces[left_out];
         EXPECT_TRUE(std::find_first_of(t.begin(), t.end(), missing.begin(), missing.end()) !=
                     t.end());
@@ -149,7 +149,7 @@ TEST(Gate, EdgesWithThreeFacesAreCut) {
     const GatedMesh gated = gate_mesh(fins);
     EXPECT_TRUE(is_valid(gated.mesh));
     EXPECT_EQ(gated.cut, (std::vector<std::uint8_t>{1, 0, 0, 1, 0, 0, 1, 0, 0}));
-    EXPECT_EQ(gated.mesh.twin, std::vector<Index>(9, -1));
+    EXPECT_EQ(gated.mesh.twin, std::vector<HalfEdge>(9, -1));
     EXPECT_EQ(gated.mesh.vertex_count(), 9); // each fin on its own
     EXPECT_TRUE(contains(only_note(gated), "1 edge has more than two faces"));
     expect_way_back(fins, gated);
@@ -202,7 +202,7 @@ TEST(Gate, MixedOrientationsAreRestored) {
         RawMesh mixed = raw;
         const std::vector<Index> order = shapes::random_order(raw.faces.size(), seed);
         for (std::size_t i = 0; i < order.size() * 2 / 5; ++i) // a minority
-            std::swap(mixed.faces[at(order[i])][1], mixed.faces[at(order[i])][2]);
+            std::swap(mixed.faces[order[i]][1], mixed.faces[order[i]][2]);
         const GatedMesh gated = gate_mesh(mixed);
         EXPECT_TRUE(is_valid(gated.mesh));
         EXPECT_NEAR(signed_volume(gated.mesh), volume, 1e-12);
@@ -230,7 +230,7 @@ TEST(Gate, SeparateTrianglesAreJoinedAgain) {
     RawMesh soup;
     for (const Triangle& t : sphere.faces) {
         for (const Index v : t)
-            soup.points.push_back(sphere.points[at(v)]);
+            soup.points.push_back(sphere.points[v]);
         const Index count = static_cast<Index>(soup.points.size());
         soup.faces.push_back({count - 3, count - 2, count - 1});
     }
@@ -278,13 +278,13 @@ TEST(Gate, RandomSoupsBecomeManifold) {
         std::map<std::set<Index>, Index> uses;
         for (const Index f : kept)
             for (std::size_t k = 0; k < 3; ++k)
-                ++uses[{soup.faces[at(f)][k], soup.faces[at(f)][(k + 1) % 3]}];
-        for (Index h = 0; h < gated.mesh.half_edge_count(); ++h) {
-            const Index faces = uses.at({gated.source_vertex[at(gated.mesh.origin(h))],
-                                         gated.source_vertex[at(gated.mesh.target(h))]});
-            ASSERT_EQ(gated.mesh.twin[at(h)] >= 0, faces == 2 && gated.cut[at(h)] == 0);
-            ASSERT_TRUE(faces < 3 || gated.cut[at(h)] == 1);
-            ASSERT_TRUE(faces > 1 || gated.cut[at(h)] == 0);
+                ++uses[{soup.faces[f][k], soup.faces[f][(k + 1) % 3]}];
+        for (const HalfEdge h : gated.mesh.all_half_edges()) {
+            const Index faces = uses.at({gated.source_vertex[gated.mesh.origin(h)],
+                                         gated.source_vertex[gated.mesh.target(h)]});
+            ASSERT_EQ(gated.mesh.twin[h] >= 0, faces == 2 && gated.cut[h] == 0);
+            ASSERT_TRUE(faces < 3 || gated.cut[h] == 1);
+            ASSERT_TRUE(faces > 1 || gated.cut[h] == 0);
         }
     }
 }
@@ -294,9 +294,9 @@ TEST(Gate, FacesWithoutAreaTakeTheNormalOfTheirNeighbours) {
     raw.points[4] = raw.points[3]; // the middle vertex onto one at the side: two faces lose all
     const Mesh mesh = checks::gated(raw);
     Index without_area = 0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        without_area += mesh.face_areas[at(f)] > 0.0 ? 0 : 1;
-        EXPECT_LT((mesh.face_normals[at(f)] - Vec3::UnitZ()).norm(), 1e-12);
+    for (const Face f : mesh.all_faces()) {
+        without_area += mesh.face_areas[f] > 0.0 ? 0 : 1;
+        EXPECT_LT((mesh.face_normals[f] - Vec3::UnitZ()).norm(), 1e-12);
     }
     EXPECT_EQ(without_area, 2);
 }

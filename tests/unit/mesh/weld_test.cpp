@@ -14,7 +14,7 @@ RawMesh soup(const RawMesh& mesh) {
     for (const Triangle& t : mesh.faces) {
         const auto first = static_cast<Index>(apart.points.size());
         for (const Index v : t)
-            apart.points.push_back(mesh.points[at(v)]);
+            apart.points.push_back(mesh.points[v]);
         apart.faces.push_back({first, first + 1, first + 2});
     }
     return apart;

@@ -183,8 +183,8 @@ TEST(FitConic, MeshesOfConesFitExactly) {
     for (const mesh::RawMesh& raw : {shapes::cone(24, 5), shapes::cylinder_tube(24, 5)}) {
         const Mesh mesh = checks::gated(raw);
         NormalMoments moments;
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+        for (const Face f : mesh.all_faces())
+            moments.add(mesh.face_areas[f], mesh.face_normals[f]);
         const ConicProxy proxy = fit_conic(moments);
         EXPECT_NEAR(std::abs(proxy.axis.z()), 1.0, 1e-9);
         for (const Vec3& normal : mesh.face_normals)

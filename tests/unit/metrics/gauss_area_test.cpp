@@ -70,8 +70,8 @@ TEST(GaussArea, NormalsOfASphereAreExact) {
     const Mesh mesh = checks::gated(shapes::sphere(2));
     const std::vector<Vec3> normals =
         split_normals(mesh, std::vector<std::uint8_t>(mesh.twin.size(), 0));
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        EXPECT_NEAR(normals[at(h)].dot(mesh.points[at(mesh.origin(h))].normalized()), 1.0, 1e-12);
+    for (const HalfEdge h : mesh.all_half_edges())
+        EXPECT_NEAR(normals[h].dot(mesh.points[mesh.origin(h)].normalized()), 1.0, 1e-12);
 }
 
 TEST(GaussArea, ACreaseThatEndsDoesNotSplitTheNormal) {
@@ -84,19 +84,19 @@ TEST(GaussArea, ACreaseThatEndsDoesNotSplitTheNormal) {
     std::vector<std::uint8_t> crease(mesh.twin.size(), 0);
     Index end = -1; // an inner vertex with a single crease
     for (Index h = 0; h < mesh.half_edge_count() && end < 0; ++h)
-        if (mesh.twin[at(h)] >= 0 && mesh::visit_star(mesh, h, [](Index) {}) &&
-            mesh::visit_star(mesh, mesh.twin[at(h)], [](Index) {})) {
-            crease[at(h)] = crease[at(mesh.twin[at(h)])] = 1;
+        if (mesh.twin[h] >= 0 && mesh::visit_star(mesh, h, [](Index) {}) &&
+            mesh::visit_star(mesh, mesh.twin[h], [](Index) {})) {
+            crease[h] = crease[mesh.twin[h]] = 1;
             end = mesh.origin(h);
         }
     ASSERT_GE(end, 0);
     const std::vector<Vec3> normals = split_normals(mesh, crease);
     Vec3 first = Vec3::Zero();
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+    for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.origin(h) == end) {
             if (first.isZero())
-                first = normals[at(h)];
-            EXPECT_EQ(normals[at(h)], first);
+                first = normals[h];
+            EXPECT_EQ(normals[h], first);
         }
 }
 
@@ -117,7 +117,7 @@ TEST(GaussArea, ChartsNeverExceedTheMesh) {
         const GaussAreas areas = areas_of(mesh);
         shapes::Random random(seed);
         std::vector<Index> labels;
-        for (Index f = 0; f < mesh.face_count(); ++f)
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f)
             labels.push_back(random.below(3));
         const double charts = sum(chart_gauss_areas(mesh, areas, labels, 3));
         EXPECT_LT(charts, areas.total); // creases on borders count nowhere
@@ -130,10 +130,10 @@ TEST(GaussArea, ChartsNeverExceedTheMesh) {
 TEST(GaussArea, BoundariesHaveNone) {
     const Mesh mesh = checks::gated(shapes::hemisphere(16, 6));
     const GaussAreas areas = areas_of(mesh);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] < 0) {
-            EXPECT_EQ(areas.edge[at(h)], 0.0);
-            EXPECT_EQ(areas.vertex[at(mesh.origin(h))], 0.0);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] < 0) {
+            EXPECT_EQ(areas.edge[h], 0.0);
+            EXPECT_EQ(areas.vertex[mesh.origin(h)], 0.0);
         }
 }
 
@@ -150,9 +150,9 @@ TEST(GaussArea, ShortCreasesAreNoFeatures) {
     const std::vector<std::uint8_t> crease = find_creases(mesh, crease_angle);
     EXPECT_EQ(long_creases(mesh, crease, 6), crease);
     std::vector<std::uint8_t> single(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (crease[at(h)] != 0) {
-            single[at(h)] = single[at(mesh.twin[at(h)])] = 1;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (crease[h] != 0) {
+            single[h] = single[mesh.twin[h]] = 1;
             break;
         }
     EXPECT_EQ(long_creases(mesh, single, 6), std::vector<std::uint8_t>(mesh.twin.size(), 0));

@@ -22,7 +22,7 @@ struct Square {
         : raw(shapes::grid(cells, cells, size, size)), mesh(checks::gated(raw)) {
         for (const Triangle& t : raw.faces)
             for (const Index v : t)
-                plane.push_back(raw.points[at(v)].head<2>());
+                plane.push_back(raw.points[v].head<2>());
     }
     CornerUv map(const Map& f) const {
         CornerUv uv;
@@ -187,7 +187,7 @@ TEST(ParametrizationMeasures, FlippedFacesAreCountedAgainstMostOfTheirChart) {
             return (p - inner).norm() < 1e-9 ? Vec2(p + Vec2(1.3, 0.1) / cells) : p;
         });
         Index expected = 0;
-        for (Index f = 0; f < square.mesh.face_count(); ++f)
+        for (const Face f : square.mesh.all_faces())
             expected += plane::uv_area(uv, f) <= 0.0 ? 1 : 0;
         EXPECT_GE(expected, 1);
         EXPECT_EQ(m.flipped_faces_number, expected);
@@ -231,7 +231,7 @@ TEST(ParametrizationMeasures, FacesWithoutAreaOnTheSurfaceAreLeftOut) {
     CornerUv uv;
     for (const Triangle& t : shapes::grid(3, 3).faces)
         for (const Index v : t)
-            uv.push_back(shapes::grid(3, 3).points[at(v)].head<2>());
+            uv.push_back(shapes::grid(3, 3).points[v].head<2>());
     const ParametrizationMeasures m = measure_parametrization(mesh, uv);
     EXPECT_TRUE(std::isfinite(m.l2_stretch));
     EXPECT_TRUE(std::isfinite(m.max_area_change));
@@ -247,7 +247,7 @@ TEST(ParametrizationMeasures, AnUnrolledPrism) {
         const Index column = static_cast<Index>(f / 2) % 24;
         for (const Index v : raw.faces[f]) {
             const Index i = v % 24 == 0 && column == 23 ? 24 : v % 24; // the seam is at 0
-            uv.emplace_back(side * i, raw.points[at(v)].z());
+            uv.emplace_back(side * i, raw.points[v].z());
         }
     }
     const ParametrizationMeasures m = measure_parametrization(mesh, uv);
@@ -265,7 +265,7 @@ TEST(ParametrizationMeasures, AnAnnulusIsNoDisk) {
     CornerUv uv;
     for (const Triangle& t : raw.faces)
         for (const Index v : t)
-            uv.push_back(raw.points[at(v)].head<2>());
+            uv.push_back(raw.points[v].head<2>());
     const ParametrizationMeasures m = measure_parametrization(checks::gated(raw), uv);
     EXPECT_EQ(m.charts_number, 1);
     EXPECT_EQ(m.disk_charts_number, 0);

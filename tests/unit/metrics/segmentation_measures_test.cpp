@@ -45,7 +45,7 @@ TEST(SegmentationMeasures, GaussAreasOfASphereOfTwoCharts) {
     labels[0] = 1;
     std::array<Vec3, 3> n;
     for (std::size_t k = 0; k < 3; ++k)
-        n[k] = mesh.points[at(mesh.faces[0][k])].normalized();
+        n[k] = mesh.points[mesh.faces[0][k]].normalized();
     // Girard: the sum of the angles between the planes of the sides, less π.
     double first = -pi;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -95,8 +95,8 @@ double gap(const Shape& a, const Shape& b) {
         for (const Triangle& t : s->faces)
             for (std::size_t k = 0; k < 3; ++k)
                 for (const Vec2& p : other->points)
-                    least = std::min(least, distance_to_segment(p, s->points[at(t[k])],
-                                                                s->points[at(t[(k + 1) % 3])]));
+                    least = std::min(
+                        least, distance_to_segment(p, s->points[t[k]], s->points[t[(k + 1) % 3]]));
     return least;
 }
 
@@ -104,16 +104,16 @@ double shared_area(const Shape& a, const Shape& b) {
     double sum = 0.0;
     for (const Triangle& s : a.faces)
         for (const Triangle& t : b.faces)
-            sum += common_area({a.points[at(s[0])], a.points[at(s[1])], a.points[at(s[2])]},
-                               {b.points[at(t[0])], b.points[at(t[1])], b.points[at(t[2])]});
+            sum += common_area({a.points[s[0]], a.points[s[1]], a.points[s[2]]},
+                               {b.points[t[0]], b.points[t[1]], b.points[t[2]]});
     return sum;
 }
 
 double area(const Shape& shape) {
     double sum = 0.0;
     for (const Triangle& t : shape.faces) {
-        const Vec2 p = shape.points[at(t[1])] - shape.points[at(t[0])];
-        const Vec2 q = shape.points[at(t[2])] - shape.points[at(t[0])];
+        const Vec2 p = shape.points[t[1]] - shape.points[t[0]];
+        const Vec2 q = shape.points[t[2]] - shape.points[t[0]];
         sum += 0.5 * (p.x() * q.y() - p.y() * q.x());
     }
     return sum;

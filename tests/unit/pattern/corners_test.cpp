@@ -45,7 +45,7 @@ TEST(Corners, ASquareWithRaggedSidesHasFour) {
         const std::vector<Index> corners = find_corners({points}, 8.0, corner_angle);
         ASSERT_EQ(corners.size(), 4U) << height;
         for (std::size_t i = 0; i < 4; ++i)
-            EXPECT_LT((points[at(corners[i])] - square[i]).norm(), 1.5);
+            EXPECT_LT((points[corners[i]] - square[i]).norm(), 1.5);
     }
     // An open line has corners between its ends alone.
     Points open = ragged(square, 0.0);

@@ -60,7 +60,7 @@ TEST(OptimizePattern, GluedEdgesAreOneInTheTexture) {
     const GluedDarts glued = glue_darts(mesh, atlas::charts_from_uv(mesh, uv), uv, 0.05);
     const atlas::ChartMap read = atlas::charts_from_uv(mesh, glued.uv);
     EXPECT_EQ(read.seam, glued.charts.seam);
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (const Face f : mesh.all_faces())
         EXPECT_GT(plane::uv_area(glued.uv, f), 0.0);
 }
 
@@ -68,13 +68,13 @@ TEST(OptimizePattern, TheOnlyOutlineOfAChartStays) {
     // A cube cut open along a path is one chart around one slit: gluing all of it would close it.
     const Mesh mesh = checks::gated(shapes::sphere(1));
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    seam[0] = seam[at(mesh.twin[0])] = 1;
+    seam[0] = seam[mesh.twin[0]] = 1;
     const atlas::ChartMap charts =
         atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     CornerUv uv;
     for (const Triangle& t : mesh.faces)
         for (const Index v : t)
-            uv.push_back(mesh.points[at(v)].head<2>());
+            uv.push_back(mesh.points[v].head<2>());
     EXPECT_EQ(glue_darts(mesh, charts, uv, 10.0).edges, 0);
 }
 
@@ -160,9 +160,8 @@ TEST(PatternLayer, LiesFlatInMillimetresAndKnowsItsFaces) {
         EXPECT_NEAR(checks::area_on_surface(layer.geometry, f),
                     4.0 * checks::area_on_surface(cloth.host().geometry, source), 1e-6);
         const Triangle& t = layer.geometry.faces[f];
-        const Vec3 normal =
-            (layer.geometry.points[at(t[1])] - layer.geometry.points[at(t[0])])
-                .cross(layer.geometry.points[at(t[2])] - layer.geometry.points[at(t[0])]);
+        const Vec3 normal = (layer.geometry.points[t[1]] - layer.geometry.points[t[0]])
+                                .cross(layer.geometry.points[t[2]] - layer.geometry.points[t[0]]);
         EXPECT_GT(normal.z(), 0.0);
         area += 0.5 * normal.z();
         EXPECT_EQ(layer.face_color[f], (declare::Color{255, 255, 255})); // no strain
@@ -179,7 +178,7 @@ TEST(PatternLayer, StrainIsColoured) {
     });
     const declare::LayerMesh layer = *checks::run("Pattern: Generate Pieces", cloth.host()).layer;
     for (std::size_t f = 0; f < layer.geometry.faces.size(); ++f) {
-        const bool right = layer.geometry.points[at(layer.geometry.faces[f][1])].x() > 5.0;
+        const bool right = layer.geometry.points[layer.geometry.faces[f][1]].x() > 5.0;
         const declare::Color& c = layer.face_color[f];
         if (layer.face_quality[f] > 0.0)
             EXPECT_EQ(c[0], 255);

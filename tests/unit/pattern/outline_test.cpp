@@ -36,8 +36,7 @@ TEST(CollapseVertices, RemovesWhatLiesWithinTheToleranceAndNothingElse) {
         EXPECT_EQ(kept.back(), 300);
         for (std::size_t i = 0; i + 1 < kept.size(); ++i)
             for (Index k = kept[i]; k <= kept[i + 1]; ++k)
-                EXPECT_LE(distance(circle[at(k)], circle[at(kept[i])], circle[at(kept[i + 1])]),
-                          tolerance);
+                EXPECT_LE(distance(circle[k], circle[kept[i]], circle[kept[i + 1]]), tolerance);
         // A chord of sagitta s spans an angle of √(8 s / r).
         const double needed = 3.0 / std::sqrt(8.0 * tolerance / 100.0);
         EXPECT_GE(static_cast<double>(kept.size()), needed);
@@ -127,7 +126,7 @@ TEST(Curves, StayWithinTheToleranceAndSmooth) {
             const OutlineCurve& curve = curves[i];
             EXPECT_EQ(curve.first, next);
             next += curve.count;
-            EXPECT_EQ(curve.control[0], points[at(curve.first)]);
+            EXPECT_EQ(curve.control[0], points[curve.first]);
             for (int k = 0; k <= 50; ++k)
                 EXPECT_NEAR(evaluate(curve, k / 50.0).norm(), 100.0, tolerance + 0.01);
             if (i == 0)
@@ -159,7 +158,7 @@ TEST(Curves, CoverTheOutlineInOrder) {
             for (const OutlineCurve& curve : path.curves) {
                 EXPECT_EQ(at(curve.first), next % path.points.size());
                 next += at(curve.count);
-                EXPECT_LT((curve.control[0] - path.points[at(curve.first)]).norm(), 1e-9);
+                EXPECT_LT((curve.control[0] - path.points[curve.first]).norm(), 1e-9);
                 EXPECT_LT((curve.control[3] - path.points[next % path.points.size()]).norm(), 1e-9);
             }
             EXPECT_EQ(next, path.points.size());

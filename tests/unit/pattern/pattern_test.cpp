@@ -40,7 +40,7 @@ void expect_every_side_once(const Pattern& pattern) {
             const SeamSide& side = seam.sides[s];
             EXPECT_EQ(side.reversed, s == 1);
             EXPECT_NEAR(side.length, length_of(pattern, side), 1e-9);
-            const PiecePath& path = pattern.pieces[at(side.piece)].path(side.path);
+            const PiecePath& path = pattern.pieces[side.piece].path(side.path);
             for (Index e = 0; e < side.count; ++e) {
                 const std::size_t edge = at(side.first + e) % path.points.size();
                 EXPECT_EQ(path.edges[edge].seam, static_cast<Index>(i));
@@ -120,10 +120,9 @@ TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
         host.wedge_uv = checks::run("Charts: Flatten", host, {{"method", 4}}).wedge_uv;
         const mesh::GatedMesh gated = mesh::gate_mesh(host.geometry);
         CornerUv uv;
-        for (Index f = 0; f < gated.mesh.face_count(); ++f)
+        for (const Face f : gated.mesh.all_faces())
             for (Index k = 0; k < 3; ++k)
-                uv.push_back(
-                    host.wedge_uv[at(gated.source_face[at(f)])][at(gated.source_corner(f, k))]);
+                uv.push_back(host.wedge_uv[gated.source_face[f]][gated.source_corner(f, k)]);
         PatternOptions options;
         options.mm_per_unit = 50.0;
         Progress progress;
@@ -204,7 +203,7 @@ TEST(Notches, KeepAwayFromSharpBends) {
     Seam seam;
     seam.number = 1;
     for (const Index p : {0, 1})
-        seam.sides[at(p)] = {p, 0, 0, 3, false, 83.0, {}};
+        seam.sides[p] = {p, 0, 0, 3, false, 83.0, {}};
     pattern.seams = {seam};
     for (const double spacing : {20.0, 60.0}) {
         set_notches(pattern, spacing);
@@ -221,7 +220,7 @@ TEST(Notches, PointOnSideIsOnTheOutlineAndLooksOut) {
         const SidePoint place = point_on_side(pattern.pieces, side, 30.0);
         const Vec2 start = side_point(pattern.pieces, side, 0);
         EXPECT_NEAR((place.position - start).norm(), 30.0, 1e-6);
-        const PatternPiece& piece = pattern.pieces[at(side.piece)];
+        const PatternPiece& piece = pattern.pieces[side.piece];
         const Vec2 out = place.position + 2.0 * place.outward;
         const Vec2 in = place.position - 2.0 * place.outward;
         EXPECT_FALSE(piece.box.contains(out));
@@ -332,15 +331,15 @@ TEST(MatchedMap, FollowsLinearMovesOfTheOutline) {
     CornerUv uv;
     for (const Triangle& t : mesh.faces)
         for (const Index v : t)
-            uv.push_back(mesh.points[at(v)].head<2>());
+            uv.push_back(mesh.points[v].head<2>());
     Eigen::Matrix2d map;
     map << 1.1, 0.05, -0.02, 0.9;
     PatternPiece piece;
     std::vector<Index> faces;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         faces.push_back(f);
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            if (mesh.twin[at(h)] < 0)
+        for (const HalfEdge h : half_edges_of(f))
+            if (mesh.twin[h] < 0)
                 piece.outer.half_edge.push_back(h);
     }
     // Around the square.
@@ -350,7 +349,7 @@ TEST(MatchedMap, FollowsLinearMovesOfTheOutline) {
             if (mesh.origin(ring[k]) == mesh.origin(Mesh::next(ring[i])))
                 std::swap(ring[i + 1], ring[k]);
     for (const Index h : ring)
-        piece.outer.points.push_back(map * uv[at(h)] + Vec2(3, 4));
+        piece.outer.points.push_back(map * uv[h] + Vec2(3, 4));
     for (const Vec2& p : piece.outer.points)
         piece.box.extend(p);
     const std::vector<Vec2> moved = place_corners(mesh, uv, faces, piece);
@@ -369,7 +368,7 @@ TEST(MatchedMap, IsThatOfTheSheetInsideMatchedPieces) {
     for (const PatternPiece& piece : pattern.pieces) {
         Eigen::AlignedBox2d box;
         for (std::size_t i = 0; i < pattern.corner_place.size(); ++i)
-            if (&pattern.pieces[at(pattern.face_piece[i / 3])] == &piece)
+            if (&pattern.pieces[pattern.face_piece[i / 3]] == &piece)
                 box.extend(pattern.corner_place[i]);
         EXPECT_LT((box.min() - piece.box.min()).norm(), 1e-6);
         EXPECT_LT((box.max() - piece.box.max()).norm(), 1e-6);

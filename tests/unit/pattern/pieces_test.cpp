@@ -48,9 +48,9 @@ private:
 Pattern pattern_of(const Model& model, const PatternOptions& options = {}) {
     const mesh::GatedMesh gated = mesh::gate_mesh(model.raw);
     CornerUv uv;
-    for (Index f = 0; f < gated.mesh.face_count(); ++f)
+    for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k)
-            uv.push_back(model.uv[at(gated.source_face[at(f)])][at(gated.source_corner(f, k))]);
+            uv.push_back(model.uv[gated.source_face[f]][gated.source_corner(f, k)]);
     Progress progress;
     return make_pattern(gated.mesh, uv, options, progress);
 }

@@ -19,7 +19,7 @@ namespace {
 // Every face on its own, with its true shape, far from the others.
 CornerUv loose_faces(const Mesh& mesh, double scale) {
     CornerUv uv;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         const flatten::RestTriangle rest = flatten::make_rest_triangle(
             {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
             0.0);
@@ -66,10 +66,10 @@ TEST(SewnPreview, LargerPiecesAreMissedByMore) {
     CornerUv uv = loose_faces(mesh, 1.0);
     Progress progress;
     const double exact = sew_and_inflate(mesh, uv, {}, progress).mean_distance;
-    for (Index f = 0; f < mesh.face_count(); ++f) // the upper half of the cloth is too large
+    for (const Face f : mesh.all_faces()) // the upper half of the cloth is too large
         for (Index k = 1; k < 3; ++k)
-            if (mesh.face_centers[at(f)].z() > 0.0)
-                uv[at(3 * f + k)] += 0.3 * (uv[at(3 * f + k)] - uv[at(3 * f)]);
+            if (mesh.face_centers[f].z() > 0.0)
+                uv[3 * f + k] += 0.3 * (uv[3 * f + k] - uv[3 * f]);
     EXPECT_GT(sew_and_inflate(mesh, uv, {}, progress).mean_distance, 2.0 * exact);
 }
 
@@ -99,7 +99,7 @@ TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
     std::vector<Vec2> uv = flatten::flatten_tutte(disk.problem);
     std::vector<Vec2> square(uv.size());
     for (std::size_t v = 0; v < uv.size(); ++v)
-        square[v] = disk.mesh.points[at(disk.surface.vertex[v])].head<2>();
+        square[v] = disk.mesh.points[disk.surface.vertex[v]].head<2>();
     uv = square;
     for (std::size_t v = 0; v < uv.size(); ++v) { // a bulge inside
         const Vec2 p = square[v];
@@ -112,7 +112,7 @@ TEST(AreaBalance, EvensAreasOutAndKeepsTheBoundary) {
     EXPECT_LT(flatten::measure_area_change(disk.problem, balanced).largest(), 0.12);
     EXPECT_EQ(checks::count_flips(disk.problem.faces, balanced), 0);
     for (const Index v : disk.problem.boundary)
-        EXPECT_EQ(balanced[at(v)], uv[at(v)]);
+        EXPECT_EQ(balanced[v], uv[v]);
     // What is even already stays.
     std::vector<Vec2> even = square;
     flatten::balance_areas(disk.problem, even, Progress{});
@@ -138,7 +138,7 @@ TEST(AreaBalance, ABoundaryThatMayBendTakesMore) {
     for (std::size_t i = 0; i < disk.problem.boundary.size(); ++i) {
         const Index v = disk.problem.boundary[i];
         const Index u = disk.problem.boundary[(i + 1) % disk.problem.boundary.size()];
-        EXPECT_NEAR((bent[at(u)] - bent[at(v)]).norm(), disk.problem.boundary_edge[i],
+        EXPECT_NEAR((bent[u] - bent[v]).norm(), disk.problem.boundary_edge[i],
                     0.03 * disk.problem.boundary_edge[i]);
     }
 }

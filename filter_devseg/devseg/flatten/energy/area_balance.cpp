@@ -71,7 +71,7 @@ public:
             }
         }
         for_each_boundary_edge(
-            problem, x, [&](Index v, Index u, const Eigen::RowVector2d& edge, double own) {
+            problem, x, [&](Vertex v, Index u, const Eigen::RowVector2d& edge, double own) {
                 const Eigen::RowVector2d pull = 2.0 * boundary_stiffness / problem.total_area *
                                                 (edge.norm() - own) * edge.stableNormalized();
                 sum.row(u) += pull;
@@ -105,7 +105,7 @@ private:
     void for_each_boundary_edge(const FlatteningProblem& problem, const Positions& x,
                                 Visit visit) const {
         for (std::size_t i = 0; i < problem.boundary.size() && boundary_stiffness > 0.0; ++i) {
-            const Index v = problem.boundary[i];
+            const Vertex v = problem.boundary[i];
             const Index u = problem.boundary[(i + 1) % problem.boundary.size()];
             visit(v, u, x.row(u) - x.row(v), problem.boundary_edge[i]);
         }
@@ -152,8 +152,8 @@ PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::v
                                     const BalancedEnergy& energy) {
     std::vector<std::uint8_t> inside(uv.size(), 0);
     const auto take = [&](std::size_t f) {
-        for (const Index v : whole.faces[f])
-            inside[at(v)] = 2;
+        for (const Vertex v : whole.faces[f])
+            inside[v] = 2;
     };
     for (std::size_t f = 0; f < whole.faces.size(); ++f)
         if (std::abs(energy.change(jacobian(whole, uv, f).determinant())) > uneven)
@@ -163,23 +163,23 @@ PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::v
             mark = mark != 0 ? 1 : 0;
         for (std::size_t f = 0; f < whole.faces.size(); ++f) {
             const Triangle& t = whole.faces[f];
-            if (inside[at(t[0])] == 1 || inside[at(t[1])] == 1 || inside[at(t[2])] == 1)
-                for (const Index v : t)
-                    if (inside[at(v)] == 0)
-                        inside[at(v)] = 2;
+            if (inside[t[0]] == 1 || inside[t[1]] == 1 || inside[t[2]] == 1)
+                for (const Vertex v : t)
+                    if (inside[v] == 0)
+                        inside[v] = 2;
         }
     }
-    for (const Index v : whole.boundary)
-        inside[at(v)] = 0;
+    for (const Vertex v : whole.boundary)
+        inside[v] = 0;
     std::vector<Index> faces;
     for (std::size_t f = 0; f < whole.faces.size(); ++f) {
         const Triangle& t = whole.faces[f];
-        if (inside[at(t[0])] != 0 || inside[at(t[1])] != 0 || inside[at(t[2])] != 0)
+        if (inside[t[0]] != 0 || inside[t[1]] != 0 || inside[t[2]] != 0)
             faces.push_back(static_cast<Index>(f));
     }
     PartialProblem region = part_of(whole, faces);
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
-        region.fixed[v] = inside[at(region.vertex[v])] == 0 ? 1 : 0;
+        region.fixed[v] = inside[region.vertex[v]] == 0 ? 1 : 0;
     return region;
 }
 
@@ -231,7 +231,7 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
         return;
     Positions x(region.problem.vertex_count, 2);
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
-        x.row(static_cast<Eigen::Index>(v)) = uv[at(region.vertex[v])].transpose();
+        x.row(static_cast<Eigen::Index>(v)) = uv[region.vertex[v]].transpose();
     for (const double strength : {1.0, 30.0}) {
         energy.weight = strength * usual_weight;
         descend(region, energy, x, progress);
@@ -240,7 +240,7 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
     }
     std::vector<Vec2> moved = uv;
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
-        moved[at(region.vertex[v])] = x.row(static_cast<Eigen::Index>(v)).transpose();
+        moved[region.vertex[v]] = x.row(static_cast<Eigen::Index>(v)).transpose();
     if (measure_area_change(problem, moved).largest() < measure_area_change(problem, uv).largest())
         uv = std::move(moved);
 }

@@ -23,17 +23,17 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
     return (p - a - nearest_parameter(p, a, b) * (b - a)).norm();
 }
 
-Index next_on_boundary(const atlas::ChartSurface& surface, Index h) {
+Index next_on_boundary(const atlas::ChartSurface& surface, HalfEdge h) {
     h = Mesh::next(h);
-    while (surface.twin[at(h)] >= 0)
-        h = Mesh::next(surface.twin[at(h)]);
+    while (surface.twin[h] >= 0)
+        h = Mesh::next(surface.twin[h]);
     return h;
 }
 
-Index previous_on_boundary(const atlas::ChartSurface& surface, Index h) {
+Index previous_on_boundary(const atlas::ChartSurface& surface, HalfEdge h) {
     h = Mesh::previous(h);
-    while (surface.twin[at(h)] >= 0)
-        h = Mesh::previous(surface.twin[at(h)]);
+    while (surface.twin[h] >= 0)
+        h = Mesh::previous(surface.twin[h]);
     return h;
 }
 
@@ -43,9 +43,9 @@ bool inside(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
 
 // The boundary edge nearest to the vertex that is reached from `start` over faces: other parts of
 // the chart may have nearer edges, but the vertex is not on those.
-Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv, Index vertex,
+Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv, Vertex vertex,
                    Index start) {
-    const Vec2& p = uv[at(vertex)];
+    const Vec2& p = uv[vertex];
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     std::set<Index> seen{start};
@@ -53,12 +53,11 @@ Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& 
     Index best = -1;
     double best_distance = std::numeric_limits<double>::max();
     while (!queue.empty() && queue.top().first < best_distance) {
-        const Index f = queue.top().second;
+        const Face f = queue.top().second;
         queue.pop();
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const double d =
-                distance_to_segment(p, uv[at(surface.origin(h))], uv[at(surface.target(h))]);
-            const Index twin = surface.twin[at(h)];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const double d = distance_to_segment(p, uv[surface.origin(h)], uv[surface.target(h)]);
+            const HalfEdge twin = surface.twin[h];
             if (twin >= 0) {
                 if (seen.insert(twin / 3).second)
                     queue.emplace(d, twin / 3);
@@ -102,32 +101,31 @@ public:
         : s_(surface), uv_(uv), leaving_(surface.vertex.size(), -1),
           settled_(surface.vertex.size(), 0) {
         for (const std::vector<Index>& loop : surface.loops)
-            for (const Index h : loop)
-                leaving_[at(surface.origin(h))] = h;
+            for (const HalfEdge h : loop)
+                leaving_[surface.origin(h)] = h;
     }
 
     // Faces that overlap around a common boundary vertex: the surface turns by more than 360
     // degrees there. Each neighbour on the boundary must get outside of the other one's edge.
-    void find_full_turn(Index f, Index g) {
-        for (const Index v : s_.corners[at(f)]) {
-            const Triangle& t = s_.corners[at(g)];
-            if (leaving_[at(v)] < 0 || (v != t[0] && v != t[1] && v != t[2]))
+    void find_full_turn(Face f, Index g) {
+        for (const Vertex v : s_.corners[f]) {
+            const Triangle& t = s_.corners[g];
+            if (leaving_[v] < 0 || (v != t[0] && v != t[1] && v != t[2]))
                 continue;
-            const Index out = leaving_[at(v)];
+            const Index out = leaving_[v];
             const Index in = previous_on_boundary(s_, out);
-            settled_[at(s_.origin(in))] = settled_[at(s_.target(out))] = 1;
+            settled_[s_.origin(in)] = settled_[s_.target(out)] = 1;
             add(s_.origin(in), out);
             add(s_.target(out), in);
         }
     }
 
     // Boundary vertices of f that lie on g leave across the nearest boundary edge.
-    void find_inside(Index f, Index g) {
-        const Triangle& t = s_.corners[at(g)];
-        for (const Index v : s_.corners[at(f)]) {
-            if (leaving_[at(v)] < 0 || settled_[at(v)] != 0 || v == t[0] || v == t[1] ||
-                v == t[2] || !tested_.emplace(v, g).second ||
-                !inside(uv_[at(v)], uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]))
+    void find_inside(Face f, Index g) {
+        const Triangle& t = s_.corners[g];
+        for (const Vertex v : s_.corners[f]) {
+            if (leaving_[v] < 0 || settled_[v] != 0 || v == t[0] || v == t[1] || v == t[2] ||
+                !tested_.emplace(v, g).second || !inside(uv_[v], uv_[t[0]], uv_[t[1]], uv_[t[2]]))
                 continue;
             const Index exit = nearest_exit(s_, uv_, v, g);
             if (exit < 0)
@@ -135,7 +133,7 @@ public:
             add(v, exit);
             // Past a corner that points inwards, the vertex must get outside of both its edges.
             const double along =
-                nearest_parameter(uv_[at(v)], uv_[at(s_.origin(exit))], uv_[at(s_.target(exit))]);
+                nearest_parameter(uv_[v], uv_[s_.origin(exit)], uv_[s_.target(exit)]);
             if (along <= 0.0)
                 add(v, previous_on_boundary(s_, exit));
             if (along >= 1.0)
@@ -146,7 +144,7 @@ public:
     std::vector<Contact> contacts() const { return {contacts_.begin(), contacts_.end()}; }
 
 private:
-    void add(Index v, Index h) {
+    void add(Vertex v, HalfEdge h) {
         if (s_.origin(h) != v && s_.target(h) != v)
             contacts_.insert({v, s_.origin(h), s_.target(h)});
     }

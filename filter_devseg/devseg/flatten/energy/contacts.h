@@ -19,7 +19,7 @@ namespace devseg::flatten {
 /// A boundary vertex that lies on another part of the chart, and the boundary edge from → to (the
 /// chart on its left) across which it leaves that part on the shortest way.
 struct Contact {
-    Index vertex = -1;
+    Vertex vertex = -1;
     Index from = -1;
     Index to = -1;
 

@@ -73,15 +73,15 @@ double orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
 Index count_flips(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     Index flips = 0;
     for (const Triangle& t : problem.faces)
-        flips += orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0 ? 0 : 1;
+        flips += orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0 ? 0 : 1;
     return flips;
 }
 
 double map_area(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double twice = 0.0;
     for (const Triangle& t : problem.faces) {
-        const Vec2 p = uv[at(t[1])] - uv[at(t[0])];
-        const Vec2 q = uv[at(t[2])] - uv[at(t[0])];
+        const Vec2 p = uv[t[1]] - uv[t[0]];
+        const Vec2 q = uv[t[2]] - uv[t[0]];
         twice += p.x() * q.y() - p.y() * q.x();
     }
     return 0.5 * twice;

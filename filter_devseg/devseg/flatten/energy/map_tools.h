@@ -12,8 +12,8 @@ inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vec
                                 std::size_t f) {
     const Triangle& t = problem.faces[f];
     Eigen::Matrix2d edges;
-    edges.col(0) = uv[at(t[1])] - uv[at(t[0])];
-    edges.col(1) = uv[at(t[2])] - uv[at(t[0])];
+    edges.col(0) = uv[t[1]] - uv[t[0]];
+    edges.col(1) = uv[t[2]] - uv[t[0]];
     return edges * problem.inverse[f];
 }
 

@@ -26,11 +26,11 @@ class Refinement {
 public:
     Refinement(const Mesh& mesh, mesh::CoarseSurface coarse, std::vector<Vec2> uv)
         : mesh_(mesh), s_(std::move(coarse)), uv_(std::move(uv)), leaving_(mesh.points.size(), -1) {
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (s_.alive[at(h / 3)] != 0)
-                leaving_[at(origin(h))] = h;
-        for (Index v = 0; v < mesh.vertex_count(); ++v)
-            if (leaving_[at(v)] >= 0)
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (s_.alive[h / 3] != 0)
+                leaving_[origin(h)] = h;
+        for (const Vertex v : mesh.all_vertices())
+            if (leaving_[v] >= 0)
                 alive_.push_back(v);
     }
 
@@ -59,23 +59,23 @@ public:
                 if (k % check_every == 0)
                     progress.check();
                 gather(alive_[k]);
-                uv_[at(alive_[k])] = relax_vertex(star_, uv_[at(alive_[k])]);
+                uv_[alive_[k]] = relax_vertex(star_, uv_[alive_[k]]);
             }
     }
 
     std::vector<Vec2> take() { return std::move(uv_); }
 
 private:
-    Index origin(Index h) const { return s_.faces[at(h / 3)][at(h % 3)]; }
+    Index origin(HalfEdge h) const { return s_.faces[h / 3][h % 3]; }
 
-    void insert(Index h) {
-        const Index v = origin(h);
+    void insert(HalfEdge h) {
+        const Vertex v = origin(h);
         alive_.push_back(v);
-        mesh::visit_star(s_.twin, h, [&](Index k) {
-            for (const Index side : {k, Mesh::next(k), Mesh::previous(k)})
-                leaving_[at(origin(side))] = side;
+        mesh::visit_star(s_.twin, h, [&](HalfEdge k) {
+            for (const HalfEdge side : {k, Mesh::next(k), Mesh::previous(k)})
+                leaving_[origin(side)] = side;
         });
-        leaving_[at(v)] = h;
+        leaving_[v] = h;
         gather_shape(v);
         Vec2 p = affine_guess();
         if (!has_room(p)) {
@@ -88,7 +88,7 @@ private:
             if (!std::isfinite(star_.energy(p)))
                 throw NumericalFailure("expected room for a vertex of a refined map, found none");
         }
-        uv_[at(v)] = p;
+        uv_[v] = p;
     }
 
     bool has_room(const Vec2& p) const {
@@ -103,34 +103,34 @@ private:
 
     // The star with rest shapes from the faces as they are now, and its corners laid out in the
     // plane around the vertex: lengths kept, angles scaled to a full turn if the star is closed.
-    void gather_shape(Index v) {
+    void gather_shape(Vertex v) {
         star_.faces.clear();
         ring_.clear();
         double turn = 0.0;
-        Index first = leaving_[at(v)];
-        while (s_.twin[at(first)] >= 0) { // to the end of an open star, or once around
-            first = Mesh::next(s_.twin[at(first)]);
-            if (first == leaving_[at(v)])
+        Index first = leaving_[v];
+        while (s_.twin[first] >= 0) { // to the end of an open star, or once around
+            first = Mesh::next(s_.twin[first]);
+            if (first == leaving_[v])
                 break;
         }
-        const Vec3& p = mesh_.points[at(v)];
+        const Vec3& p = mesh_.points[v];
         Index k = first;
         bool closed = false;
         while (true) {
             const Index a = origin(Mesh::next(k));
             const Index b = origin(Mesh::previous(k));
-            const Vec3 ea = mesh_.points[at(a)] - p;
-            const Vec3 eb = mesh_.points[at(b)] - p;
-            ring_.push_back({turn, ea.norm(), uv_[at(a)]});
+            const Vec3 ea = mesh_.points[a] - p;
+            const Vec3 eb = mesh_.points[b] - p;
+            ring_.push_back({turn, ea.norm(), uv_[a]});
             turn += std::atan2(ea.cross(eb).norm(), ea.dot(eb));
             VertexStar::Face face;
-            face.from = uv_[at(a)];
-            face.to = uv_[at(b)];
-            set_rest(face, p, mesh_.points[at(a)], mesh_.points[at(b)]);
+            face.from = uv_[a];
+            face.to = uv_[b];
+            set_rest(face, p, mesh_.points[a], mesh_.points[b]);
             star_.faces.push_back(face);
-            const Index next = s_.twin[at(Mesh::previous(k))];
+            const Index next = s_.twin[Mesh::previous(k)];
             if (next < 0) {
-                ring_.push_back({turn, eb.norm(), uv_[at(b)]});
+                ring_.push_back({turn, eb.norm(), uv_[b]});
                 break;
             }
             k = next;
@@ -186,16 +186,15 @@ private:
             std::array<double, 3> length{};
             for (std::size_t k = 0; k < 3; ++k)
                 length[k] =
-                    (mesh_.points[at(s_.faces[f][(k + 1) % 3])] - mesh_.points[at(s_.faces[f][k])])
-                        .norm();
+                    (mesh_.points[s_.faces[f][(k + 1) % 3]] - mesh_.points[s_.faces[f][k]]).norm();
             const RestTriangle triangle = make_rest_triangle(length, 0.0);
             area_[f] = triangle.area;
             cotangent_[f] = triangle.cotangent;
         }
     }
 
-    void gather(Index v) {
-        gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[at(v)], star_);
+    void gather(Vertex v) {
+        gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[v], star_);
     }
 
     struct Spoke {
@@ -232,8 +231,8 @@ std::vector<Vec2> flatten_multilevel(
         small.mesh, std::move(all), std::vector<std::uint8_t>(small.mesh.twin.size(), 0));
     const std::vector<Vec2> found = solve(make_flattening_problem(small.mesh, disk), disk);
     std::vector<Vec2> uv(local.points.size(), Vec2::Zero());
-    for (Index v = 0; v < disk.vertex_count(); ++v)
-        uv[at(small.vertex[at(disk.vertex[at(v)])])] = found[at(v)];
+    for (const Vertex v : disk.all_vertices())
+        uv[small.vertex[disk.vertex[v]]] = found[v];
 
     Refinement refinement(local, std::move(coarse), std::move(uv));
     while (!refinement.done()) {

@@ -91,20 +91,21 @@ std::vector<Index> faces_above(double limit, const std::vector<double>& stretche
 }
 
 // The faces with some rings around them.
-std::vector<Index> with_rings(const std::vector<Index>& twin, std::vector<Index> faces, int rings) {
+std::vector<Index> with_rings(const std::vector<HalfEdge>& twin, std::vector<Index> faces,
+                              int rings) {
     std::vector<std::uint8_t> seen(twin.size() / 3, 0);
-    for (const Index f : faces)
-        seen[at(f)] = 1;
+    for (const Face f : faces)
+        seen[f] = 1;
     std::vector<Index> region = faces;
     std::vector<Index>& ring = faces;
     for (int depth = 0; depth < rings; ++depth) {
         std::vector<Index> next;
-        for (const Index f : ring)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
+        for (const Face f : ring)
+            for (const HalfEdge h : half_edges_of(f))
                 mesh::visit_star(twin, h, [&](Index k) {
-                    if (seen[at(k / 3)]++ == 0)
+                    if (seen[k / 3]++ == 0)
                         next.push_back(k / 3);
-                    seen[at(k / 3)] = 1;
+                    seen[k / 3] = 1;
                 });
         region.insert(region.end(), next.begin(), next.end());
         ring = std::move(next);
@@ -115,13 +116,13 @@ std::vector<Index> with_rings(const std::vector<Index>& twin, std::vector<Index>
 // Vertices of the faces above the limit and of some rings around them, each with a half-edge that
 // leaves it.
 std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& problem,
-                                                   const std::vector<Index>& twin,
+                                                   const std::vector<HalfEdge>& twin,
                                                    const std::vector<double>& stretches,
                                                    const Relief& relief) {
     std::vector<std::pair<Index, Index>> vertices;
-    for (const Index f : with_rings(twin, faces_above(relief.limit, stretches), relief.rings))
+    for (const Face f : with_rings(twin, faces_above(relief.limit, stretches), relief.rings))
         for (Index k = 0; k < 3; ++k)
-            vertices.emplace_back(problem.faces[at(f)][at(k)], 3 * f + k);
+            vertices.emplace_back(problem.faces[f][k], 3 * f + k);
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end(),
                                [](const auto& a, const auto& b) { return a.first == b.first; }),
@@ -131,7 +132,7 @@ std::vector<std::pair<Index, Index>> vertices_near(const FlatteningProblem& prob
 
 } // namespace
 
-void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+void settle_peaks(const FlatteningProblem& problem, const std::vector<HalfEdge>& twin,
                   std::vector<Vec2>& uv, const Progress& progress) {
     const std::vector<double> stretches = stretches_of(problem, uv);
     std::vector<Index> faces =
@@ -141,22 +142,22 @@ void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& tw
     const std::size_t most = std::max(least_settled, problem.faces.size() / settled_part);
     if (faces.size() > most) {
         std::stable_sort(faces.begin(), faces.end(),
-                         [&](Index a, Index b) { return stretches[at(a)] > stretches[at(b)]; });
+                         [&](Index a, Index b) { return stretches[a] > stretches[b]; });
         faces.resize(most);
     }
     const PartialProblem part = part_of(problem, with_rings(twin, std::move(faces), settled_rings));
     SymmetricDirichletOptions options;
     options.fixed = part.fixed;
     std::vector<Vec2> start;
-    for (const Index v : part.vertex)
-        start.push_back(uv[at(v)]);
+    for (const Vertex v : part.vertex)
+        start.push_back(uv[v]);
     const SymmetricDirichletResult settled =
         minimise_symmetric_dirichlet(part.problem, start, options, progress);
     for (std::size_t i = 0; i < part.vertex.size(); ++i)
-        uv[at(part.vertex[i])] = settled.uv[i];
+        uv[part.vertex[i]] = settled.uv[i];
 }
 
-void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+void relieve_peaks(const FlatteningProblem& problem, const std::vector<HalfEdge>& twin,
                    bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress) {
     const std::vector<double> stretches = stretches_of(problem, uv);
     const double peak = *std::max_element(stretches.begin(), stretches.end());
@@ -187,7 +188,7 @@ void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& t
             for (const auto& [v, leaving] : vertices) {
                 gather_star({problem.faces, twin, problem.area, problem.cotangent}, moved, leaving,
                             star);
-                moved[at(v)] = relax_vertex(star, moved[at(v)]);
+                moved[v] = relax_vertex(star, moved[v]);
             }
         }
         if (symmetric_dirichlet_energy(problem, moved) - 1.0 <= (1.0 + allowed_cost) * before &&

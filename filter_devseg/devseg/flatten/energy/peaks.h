@@ -13,13 +13,13 @@ namespace devseg::flatten {
 /// the faces nearby. No face flips; all other vertices stay. The map stays as it is if that would
 /// cost more than a small part of its distortion. With `hold_boundary` the outline stays as well.
 /// `twin` is 3 #f of the chart, uv is #v.
-void relieve_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+void relieve_peaks(const FlatteningProblem& problem, const std::vector<HalfEdge>& twin,
                    bool hold_boundary, std::vector<Vec2>& uv, const Progress& progress);
 
 /// Brings the vertices around faces that stand out to the least symmetric Dirichlet energy, all
 /// together, while the rest of the map stays: for maps that were relaxed vertex by vertex, which
 /// leaves needles behind. No face flips, and the energy does not rise.
-void settle_peaks(const FlatteningProblem& problem, const std::vector<Index>& twin,
+void settle_peaks(const FlatteningProblem& problem, const std::vector<HalfEdge>& twin,
                   std::vector<Vec2>& uv, const Progress& progress);
 
 } // namespace devseg::flatten

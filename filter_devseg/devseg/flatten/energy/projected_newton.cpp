@@ -96,7 +96,7 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
         const Triangle& t = problem.faces[f];
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {
-                const Index v = t[static_cast<std::size_t>(i)];
+                const Vertex v = t[static_cast<std::size_t>(i)];
                 const Index u = t[static_cast<std::size_t>(j)];
                 if (v < u)
                     continue;
@@ -112,7 +112,7 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
             }
     }
     for (std::size_t i = 0; i < problem.boundary.size() && state_->boundary_stiffness > 0.0; ++i) {
-        const Index v = problem.boundary[i];
+        const Vertex v = problem.boundary[i];
         const Index u = problem.boundary[(i + 1) % problem.boundary.size()];
         const Eigen::RowVector2d along = (x.row(u) - x.row(v)).stableNormalized();
         // Without the part that turns the edge: it may be negative.
@@ -127,20 +127,20 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
             }
     }
     for (Index i = 0; i < unknowns; ++i) {
-        const bool stays = !state_->fixed.empty() && state_->fixed[at(i / 2)] != 0;
+        const bool stays = !state_->fixed.empty() && state_->fixed[i / 2] != 0;
         hessian.add(i, i, (stays ? locked : shift_share) * trace / unknowns);
     }
     if (hessian.finish())
         state_->solver.analyzePattern(hessian.matrix);
     state_->solver.factorize(hessian.matrix);
     Eigen::VectorXd rhs(unknowns);
-    for (Index v = 0; v < problem.vertex_count; ++v)
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
         rhs.segment<2>(2 * v) = -gradient.row(v).transpose();
     const Eigen::VectorXd solution = state_->solver.solve(rhs);
     if (state_->solver.info() != Eigen::Success || !solution.allFinite())
         throw NumericalFailure("expected a positive definite Hessian, found a singular one");
     Positions d(problem.vertex_count, 2);
-    for (Index v = 0; v < problem.vertex_count; ++v)
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
         d.row(v) = solution.segment<2>(2 * v).transpose();
     return d;
 }

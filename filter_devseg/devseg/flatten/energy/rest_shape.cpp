@@ -62,20 +62,20 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     FlatteningProblem problem;
     problem.vertex_count = surface.vertex_count();
     problem.faces = surface.corners;
-    for (const Index h : surface.loops.front()) {
+    for (const HalfEdge h : surface.loops.front()) {
         problem.boundary.push_back(surface.origin(h));
         problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));
     }
     double longest = 0.0;
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
+    for (const HalfEdge h : surface.all_half_edges())
         longest = std::max(longest, mesh.edge_length(surface.mesh_half_edge(h)));
     // Faces whose corners coincide get a size as well: a billionth of the chart's longest edge, and
     // one whose fourth power does not vanish where the chart is a point.
     const double floor = std::max(1e-9 * longest, 1e-60 * std::sqrt(mesh.total_area));
-    for (Index f = 0; f < surface.face_count(); ++f) {
+    for (const Face f : surface.all_faces()) {
         std::array<double, 3> length{};
         for (Index k = 0; k < 3; ++k)
-            length[at(k)] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));
+            length[k] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));
         const RestTriangle triangle = make_rest_triangle(length, floor);
         const Eigen::Matrix2d& e = triangle.edges;
         Eigen::Matrix2d inverse;
@@ -94,29 +94,29 @@ PartialProblem part_of(const FlatteningProblem& whole, const std::vector<Index>&
     FlatteningProblem& problem = part.problem;
     std::vector<std::uint8_t> inside(whole.faces.size(), 0);
     std::vector<Index> number(at(whole.vertex_count), -1);
-    for (const Index f : faces) {
-        inside[at(f)] = 1;
-        Triangle t = whole.faces[at(f)];
+    for (const Face f : faces) {
+        inside[f] = 1;
+        Triangle t = whole.faces[f];
         for (Index& v : t) {
-            if (number[at(v)] < 0) {
-                number[at(v)] = static_cast<Index>(part.vertex.size());
+            if (number[v] < 0) {
+                number[v] = static_cast<Index>(part.vertex.size());
                 part.vertex.push_back(v);
             }
-            v = number[at(v)];
+            v = number[v];
         }
         problem.faces.push_back(t);
-        problem.edges.push_back(whole.edges[at(f)]);
-        problem.inverse.push_back(whole.inverse[at(f)]);
-        problem.area.push_back(whole.area[at(f)]);
-        problem.cotangent.push_back(whole.cotangent[at(f)]);
-        problem.total_area += whole.area[at(f)];
+        problem.edges.push_back(whole.edges[f]);
+        problem.inverse.push_back(whole.inverse[f]);
+        problem.area.push_back(whole.area[f]);
+        problem.cotangent.push_back(whole.cotangent[f]);
+        problem.total_area += whole.area[f];
     }
     problem.vertex_count = static_cast<Index>(part.vertex.size());
     part.fixed.assign(part.vertex.size(), 0);
     for (std::size_t f = 0; f < whole.faces.size(); ++f)
-        for (const Index v : whole.faces[f])
-            if (inside[f] == 0 && number[at(v)] >= 0)
-                part.fixed[at(number[at(v)])] = 1;
+        for (const Vertex v : whole.faces[f])
+            if (inside[f] == 0 && number[v] >= 0)
+                part.fixed[number[v]] = 1;
     return part;
 }
 

@@ -40,17 +40,17 @@ public:
         const double scale = 0.5 / problem.total_area;
         for (std::size_t f = 0; f < problem.faces.size(); ++f)
             for (Index k = 0; k < 3; ++k) {
-                const Index i = problem.faces[f][at(k)];
-                const Index j = problem.faces[f][at((k + 1) % 3)];
-                const double w = scale * problem.cotangent[f][at(k)];
+                const Index i = problem.faces[f][k];
+                const Index j = problem.faces[f][(k + 1) % 3];
+                const double w = scale * problem.cotangent[f][k];
                 entries.emplace_back(i, i, w);
                 entries.emplace_back(j, j, w);
                 entries.emplace_back(i, j, -w);
                 entries.emplace_back(j, i, -w);
             }
         double shift = 1e-8 / problem.total_area;
-        for (Index v = 0; v < problem.vertex_count; ++v)
-            entries.emplace_back(v, v, fixed.empty() || fixed[at(v)] == 0 ? shift : locked);
+        for (Vertex v = 0; v < problem.vertex_count; ++v)
+            entries.emplace_back(v, v, fixed.empty() || fixed[v] == 0 ? shift : locked);
         Eigen::SparseMatrix<double> matrix(problem.vertex_count, problem.vertex_count);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
@@ -255,8 +255,8 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
     if (count_flips(problem, start) > 0)
         throw NumericalFailure("expected a start without flipped faces");
     Positions x(problem.vertex_count, 2);
-    for (Index v = 0; v < problem.vertex_count; ++v)
-        x.row(v) = start[at(v)].transpose();
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        x.row(v) = start[v].transpose();
 
     SymmetricDirichletResult result;
     Descent descent(problem, options.fixed, penalty, std::move(x));
@@ -264,15 +264,15 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
     polish(problem, options, progress, descent, result);
     result.energy = distortion(problem, descent.x());
     result.uv.resize(at(problem.vertex_count));
-    for (Index v = 0; v < problem.vertex_count; ++v)
-        result.uv[at(v)] = descent.x().row(v).transpose();
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        result.uv[v] = descent.x().row(v).transpose();
     return result;
 }
 
 double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     Positions x(problem.vertex_count, 2);
-    for (Index v = 0; v < problem.vertex_count; ++v)
-        x.row(v) = uv[at(v)].transpose();
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        x.row(v) = uv[v].transpose();
     return distortion(problem, x);
 }
 

@@ -36,15 +36,15 @@ double VertexStar::energy(const Vec2& p) const {
     return sum;
 }
 
-void gather_star(const StarSource& source, const std::vector<Vec2>& uv, Index leaving,
+void gather_star(const StarSource& source, const std::vector<Vec2>& uv, HalfEdge leaving,
                  VertexStar& star) {
     star.faces.clear();
     mesh::visit_star(source.twin, leaving, [&](Index k) {
         const std::size_t f = at(k / 3);
         const std::size_t e = at(k % 3);
         VertexStar::Face face;
-        face.from = uv[at(source.faces[f][(e + 1) % 3])];
-        face.to = uv[at(source.faces[f][(e + 2) % 3])];
+        face.from = uv[source.faces[f][(e + 1) % 3]];
+        face.to = uv[source.faces[f][(e + 2) % 3]];
         face.area = source.area[f];
         face.cot_apex = source.cotangent[f][(e + 1) % 3];
         face.cot_from = source.cotangent[f][(e + 2) % 3];

@@ -28,13 +28,13 @@ struct VertexStar {
 /// A chart's faces with their rest shapes, by reference.
 struct StarSource {
     const std::vector<Triangle>& faces;                  // #f
-    const std::vector<Index>& twin;                      // 3 #f
+    const std::vector<HalfEdge>& twin;                   // 3 #f
     const std::vector<double>& area;                     // #f
     const std::vector<std::array<double, 3>>& cotangent; // #f: opposite to edge k → k + 1
 };
 
 /// Fills `star` with the faces around the origin of a half-edge; uv is #v.
-void gather_star(const StarSource& source, const std::vector<Vec2>& uv, Index leaving,
+void gather_star(const StarSource& source, const std::vector<Vec2>& uv, HalfEdge leaving,
                  VertexStar& star);
 
 /// One step of Newton's method with a line search that keeps every face's orientation. The start

@@ -38,15 +38,15 @@ double rest_angle(const FlatteningProblem& problem, std::size_t f, std::size_t c
 }
 
 // What one face contributes; all quantities are of its three angles.
-struct Face {
+struct FaceTerms {
     Eigen::Vector3d inverse; // Λ⁻¹
     double trace;            // of Λ⁻¹
     Eigen::Matrix3d projected; // Λ⁻¹ − Λ⁻¹ 1 1ᵀ Λ⁻¹ / trace: keeps the sum of the angles
     Eigen::Matrix<double, 6, 3> gradient; // rows: vertex sums, then wheels of the corners 0, 1, 2
 };
 
-Face face_terms(const Eigen::Vector3d& inverse, const Eigen::Vector3d& angle) {
-    Face face;
+FaceTerms face_terms(const Eigen::Vector3d& inverse, const Eigen::Vector3d& angle) {
+    FaceTerms face;
     face.inverse = inverse;
     face.trace = inverse.sum();
     face.gradient.setZero();
@@ -64,11 +64,12 @@ Face face_terms(const Eigen::Vector3d& inverse, const Eigen::Vector3d& angle) {
     return face;
 }
 
-// Unknowns of a face in the reduced system, in the order of Face::gradient; −1 on the boundary.
+// Unknowns of a face in the reduced system, in the order of FaceTerms::gradient; −1 on the
+// boundary.
 Eigen::Matrix<Index, 6, 1> unknowns_of(const Triangle& face, const std::vector<Index>& place) {
     Eigen::Matrix<Index, 6, 1> unknowns;
     for (Index c = 0; c < 3; ++c) {
-        const Index p = place[at(face[at(c)])];
+        const Index p = place[face[c]];
         unknowns[c] = p;
         unknowns[3 + c] = p < 0 ? -1 : p + 1;
     }
@@ -100,8 +101,8 @@ struct AngleSystem::Reduced {
 AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& options)
     : problem_(problem), options_(options), reduced_(std::make_unique<Reduced>()) {
     inner_.assign(at(problem.vertex_count), 0);
-    for (const Index v : problem.boundary)
-        inner_[at(v)] = -1;
+    for (const Vertex v : problem.boundary)
+        inner_[v] = -1;
     for (Index& number : inner_)
         if (number >= 0)
             number = inner_count_++;
@@ -111,12 +112,12 @@ AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& opt
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (std::size_t c = 0; c < 3; ++c) {
             target_[i] = rest_angle(problem, f, c);
-            sum[at(problem.faces[f][c])] += target_[i++];
+            sum[problem.faces[f][c]] += target_[i++];
         }
     i = 0;
     for (const Triangle& t : problem.faces)
-        for (const Index v : t)
-            target_[i++] *= inner_[at(v)] >= 0 ? 2.0 * pi / sum[at(v)] : 1.0;
+        for (const Vertex v : t)
+            target_[i++] *= inner_[v] >= 0 ? 2.0 * pi / sum[v] : 1.0;
     inverse_ = 0.5 * target_.cwiseAbs2();
     order_unknowns();
 }
@@ -131,20 +132,20 @@ void AngleSystem::order_unknowns() {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(9 * problem_.faces.size());
     for (const Triangle& t : problem_.faces)
-        for (const Index v : t)
+        for (const Vertex v : t)
             for (const Index w : t)
-                if (inner_[at(v)] >= 0 && inner_[at(w)] >= 0)
-                    entries.emplace_back(inner_[at(v)], inner_[at(w)], 1.0);
+                if (inner_[v] >= 0 && inner_[w] >= 0)
+                    entries.emplace_back(inner_[v], inner_[w], 1.0);
     Eigen::SparseMatrix<double> graph(inner_count_, inner_count_);
     graph.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     Eigen::AMDOrdering<int>()(graph, order);
     std::vector<Index> place_of(at(inner_count_));
     for (Index p = 0; p < inner_count_; ++p)
-        place_of[at(order.indices()[p])] = 2 * p;
+        place_of[order.indices()[p]] = 2 * p;
     for (Index& p : place_)
         if (p >= 0)
-            p = place_of[at(p)];
+            p = place_of[p];
 }
 
 Eigen::VectorXd AngleSystem::start() const {
@@ -165,9 +166,9 @@ Eigen::VectorXd AngleSystem::constraints(const Eigen::VectorXd& angles) const {
     for (Eigen::Index f = 0; f < faces; ++f)
         for (std::size_t c = 0; c < 3; ++c, ++i) {
             const Triangle& t = problem_.faces[static_cast<std::size_t>(f)];
-            const Index own = inner_[at(t[c])];
-            const Index ahead = inner_[at(t[(c + 2) % 3])]; // for it, this angle is the next one
-            const Index behind = inner_[at(t[(c + 1) % 3])];
+            const Index own = inner_[t[c]];
+            const Index ahead = inner_[t[(c + 2) % 3]]; // for it, this angle is the next one
+            const Index behind = inner_[t[(c + 1) % 3]];
             const double log_sine = std::log(std::sin(angles[i]));
             values[f] += angles[i];
             if (own >= 0)
@@ -188,7 +189,7 @@ void AngleSystem::stiffen(const Eigen::VectorXd& angles) {
 
 // [SLMB05, section 3]. With Λ δα + J₁ᵀ μ₁ + J₂ᵀ μ₂ = −∇F, J₁ δα = −g₁ and J₂ δα = −g₂ for the
 // faces' and the vertices' constraints, μ₁ is eliminated face by face: J₂ P J₂ᵀ μ₂ = g₂ + J₂ p,
-// where P is Face::projected and p the step without μ₂. Leaves p and its μ₁ in `step`.
+// where P is FaceTerms::projected and p the step without μ₂. Leaves p and its μ₁ in `step`.
 void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
     step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + inner_count_ + inner_count_)};
@@ -205,7 +206,7 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     const Eigen::VectorXd descent =
         2.0 * inverse_.array() * (target_ - angles).array() / target_.array().square(); // −Λ⁻¹ ∇F
     for (Eigen::Index f = 0; f < faces; ++f) {
-        const Face face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
+        const FaceTerms face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
         step.multipliers[f] = (values[f] + descent.segment<3>(3 * f).sum()) / face.trace;
         step.angles.segment<3>(3 * f) =
             descent.segment<3>(3 * f) - step.multipliers[f] * face.inverse;
@@ -245,7 +246,7 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
                                "singular system");
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
     for (Eigen::Index f = 0; f < faces; ++f) {
-        const Face face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
+        const FaceTerms face = face_terms(inverse_.segment<3>(3 * f), angles.segment<3>(3 * f));
         const auto unknowns = unknowns_of(problem_.faces[static_cast<std::size_t>(f)], place_);
         Eigen::Vector3d pull = Eigen::Vector3d::Zero(); // J₂ᵀ μ₂
         for (int i = 0; i < 6; ++i)

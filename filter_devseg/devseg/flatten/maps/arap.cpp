@@ -70,8 +70,8 @@ public:
         if (!solution.allFinite())
             throw NumericalFailure("expected a finite map, found one that is not");
         std::vector<Vec2> next(uv.size(), Vec2::Zero());
-        for (Index v = 1; v < problem_.vertex_count; ++v)
-            next[at(v)] = solution.row(v - 1).transpose();
+        for (Vertex v = 1; v < problem_.vertex_count; ++v)
+            next[v] = solution.row(v - 1).transpose();
         return next;
     }
 

@@ -110,8 +110,8 @@ class Interior {
 public:
     Interior(const FlatteningProblem& problem, std::vector<Vec2>& uv) : problem_(problem) {
         slot_.assign(uv.size(), 0);
-        for (const Index v : problem.boundary)
-            slot_[at(v)] = -1;
+        for (const Vertex v : problem.boundary)
+            slot_[v] = -1;
         for (Index& s : slot_)
             if (s >= 0)
                 s = unknowns_++;
@@ -126,10 +126,10 @@ public:
         std::vector<Index> row(slot_.size(), -1); // #v
         Index count = 0;
         for (const Triangle& t : problem_.faces)
-            if (!(orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0))
-                for (const Index v : t)
-                    if (slot_[at(v)] >= 0 && row[at(v)] < 0)
-                        row[at(v)] = count++;
+            if (!(orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0))
+                for (const Vertex v : t)
+                    if (slot_[v] >= 0 && row[v] < 0)
+                        row[v] = count++;
         if (count == 0 || count > most_mended)
             return 0;
         Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(unknowns_, count); // Z
@@ -141,8 +141,8 @@ public:
         Eigen::MatrixX2d missing = Eigen::MatrixX2d::Zero(count, 2);  // r − M x
         for (std::size_t f = 0; f < problem_.faces.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {
-                const Index v = problem_.faces[f][k];
-                if (row[at(v)] < 0)
+                const Vertex v = problem_.faces[f][k];
+                if (row[v] < 0)
                     continue;
                 const double half =
                     std::tan(0.5 * std::atan2(1.0, problem_.cotangent[f][(k + 1) % 3]));
@@ -150,10 +150,10 @@ public:
                     const Index u = problem_.faces[f][other];
                     const Vec2 edge = rest_corner(problem_, f, other) - rest_corner(problem_, f, k);
                     const double w = half / edge.norm();
-                    missing.row(row[at(v)]) += w * (uv[at(u)] - uv[at(v)]).transpose();
-                    system.row(row[at(v)]) += w * columns.row(slot_[at(v)]);
-                    if (slot_[at(u)] >= 0)
-                        system.row(row[at(v)]) -= w * columns.row(slot_[at(u)]);
+                    missing.row(row[v]) += w * (uv[u] - uv[v]).transpose();
+                    system.row(row[v]) += w * columns.row(slot_[v]);
+                    if (slot_[u] >= 0)
+                        system.row(row[v]) -= w * columns.row(slot_[u]);
                 }
             }
         const Eigen::MatrixX2d change = columns * system.partialPivLu().solve(missing);
@@ -173,17 +173,17 @@ private:
         for (std::size_t f = 0; f < problem_.faces.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k) {
                 const double w = problem_.cotangent[f][k];
-                const Index v = problem_.faces[f][k];
-                const Index u = problem_.faces[f][(k + 1) % 3];
-                const Index i = slot_[at(v)];
-                const Index j = slot_[at(u)];
+                const Vertex v = problem_.faces[f][k];
+                const Vertex u = problem_.faces[f][(k + 1) % 3];
+                const Index i = slot_[v];
+                const Index j = slot_[u];
                 for (const Index own : {i, j})
                     if (own >= 0)
                         diagonal[own] += w;
                 if (i >= 0 && j >= 0)
                     entries.emplace_back(std::max(i, j), std::min(i, j), -w);
                 else if (i >= 0 || j >= 0)
-                    rhs.row(std::max(i, j)) += w * uv[at(i >= 0 ? u : v)].transpose();
+                    rhs.row(std::max(i, j)) += w * uv[i >= 0 ? u : v].transpose();
             }
         for (Index i = 0; i < unknowns_; ++i)
             entries.emplace_back(i, i, diagonal[i]);
@@ -251,19 +251,19 @@ std::vector<double> boundary_angles(const FlatteningProblem& problem,
                                     const std::vector<Vec2>& map) {
     std::vector<Index> place(at(problem.vertex_count), -1);
     for (std::size_t i = 0; i < problem.boundary.size(); ++i)
-        place[at(problem.boundary[i])] = static_cast<Index>(i);
+        place[problem.boundary[i]] = static_cast<Index>(i);
     std::vector<double> angles(problem.boundary.size(), 0.0);
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (std::size_t c = 0; c < 3; ++c) {
             const auto corner = [&](std::size_t k) {
-                return map.empty() ? rest_corner(problem, f, k) : map[at(problem.faces[f][k])];
+                return map.empty() ? rest_corner(problem, f, k) : map[problem.faces[f][k]];
             };
-            const Index i = place[at(problem.faces[f][c])];
+            const Index i = place[problem.faces[f][c]];
             if (i < 0)
                 continue;
             const Vec2 p = corner((c + 1) % 3) - corner(c);
             const Vec2 q = corner((c + 2) % 3) - corner(c);
-            angles[at(i)] += std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
+            angles[i] += std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
         }
     return angles;
 }
@@ -274,7 +274,7 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<doub
     result.boundary = close_boundary(problem.boundary_edge, targets, options, progress);
     result.uv.assign(at(problem.vertex_count), Vec2::Zero());
     for (std::size_t i = 0; i < problem.boundary.size(); ++i)
-        result.uv[at(problem.boundary[i])] = result.boundary.points[i];
+        result.uv[problem.boundary[i]] = result.boundary.points[i];
     progress.check();
     const Interior interior(problem, result.uv);
     result.flips = count_flips(problem, result.uv);

@@ -111,8 +111,8 @@ std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult 
     if (symmetric_dirichlet_energy(problem, map.uv) > harmonic_is_enough) {
         SymmetricDirichletOptions options;
         options.fixed.assign(map.uv.size(), 0);
-        for (const Index v : problem.boundary)
-            options.fixed[at(v)] = 1;
+        for (const Vertex v : problem.boundary)
+            options.fixed[v] = 1;
         map.uv = minimise_symmetric_dirichlet(problem, map.uv, options, progress).uv;
     }
     balance_areas(problem, map.uv, progress);

@@ -36,29 +36,29 @@ std::vector<Vec2> flatten_lscm(const FlatteningProblem& problem) {
     // Unknown numbers: vertex v has u at slot[v] and v at slot[v] + 1; pinned ones have none.
     std::vector<Index> slot(at(problem.vertex_count), -1);
     Index unknowns = 0;
-    for (Index v = 0; v < problem.vertex_count; ++v)
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
         if (v != first && v != second) {
-            slot[at(v)] = unknowns;
+            slot[v] = unknowns;
             unknowns += 2;
         }
     std::vector<Vec2> uv(at(problem.vertex_count), Vec2::Zero());
-    uv[at(second)] = Vec2(std::sqrt(problem.total_area), 0.0);
+    uv[second] = Vec2(std::sqrt(problem.total_area), 0.0);
 
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(unknowns);
     const auto couple = [&](Index i, int ci, Index j, int cj, double value) {
-        if (slot[at(i)] < 0)
+        if (slot[i] < 0)
             return;
-        if (slot[at(j)] < 0)
-            rhs[slot[at(i)] + ci] -= value * uv[at(j)][cj];
+        if (slot[j] < 0)
+            rhs[slot[i] + ci] -= value * uv[j][cj];
         else
-            entries.emplace_back(slot[at(i)] + ci, slot[at(j)] + cj, value);
+            entries.emplace_back(slot[i] + ci, slot[j] + cj, value);
     };
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (Index k = 0; k < 3; ++k) {
-            const Index i = problem.faces[f][at(k)];
-            const Index j = problem.faces[f][at((k + 1) % 3)];
-            const double w = 0.5 * problem.cotangent[f][at(k)];
+            const Index i = problem.faces[f][k];
+            const Index j = problem.faces[f][(k + 1) % 3];
+            const double w = 0.5 * problem.cotangent[f][k];
             for (int c = 0; c < 2; ++c) {
                 couple(i, c, i, c, w);
                 couple(j, c, j, c, w);
@@ -82,9 +82,9 @@ std::vector<Vec2> flatten_lscm(const FlatteningProblem& problem) {
         const Eigen::VectorXd solution = solver.solve(rhs);
         if (solver.info() != Eigen::Success || !solution.allFinite())
             throw NumericalFailure("expected a solvable conformal map, found a singular system");
-        for (Index v = 0; v < problem.vertex_count; ++v)
-            if (slot[at(v)] >= 0)
-                uv[at(v)] = Vec2(solution[slot[at(v)]], solution[slot[at(v)] + 1]);
+        for (Vertex v = 0; v < problem.vertex_count; ++v)
+            if (slot[v] >= 0)
+                uv[v] = Vec2(solution[slot[v]], solution[slot[v] + 1]);
     }
     scale_to_area(problem, uv);
     return uv;

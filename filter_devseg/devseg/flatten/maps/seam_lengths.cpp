@@ -20,7 +20,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 Eigen::MatrixX2d spread(const FlatteningProblem& problem, const Eigen::MatrixX2d& boundary) {
     std::vector<Index> unknown(at(problem.vertex_count), 0);
     for (std::size_t i = 0; i < problem.boundary.size(); ++i)
-        unknown[at(problem.boundary[i])] = -1 - static_cast<Index>(i);
+        unknown[problem.boundary[i]] = -1 - static_cast<Index>(i);
     Index count = 0;
     for (Index& u : unknown)
         if (u == 0)
@@ -38,8 +38,8 @@ Eigen::MatrixX2d spread(const FlatteningProblem& problem, const Eigen::MatrixX2d
     };
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
-            const Index i = unknown[at(problem.faces[f][k])];
-            const Index j = unknown[at(problem.faces[f][(k + 1) % 3])];
+            const Index i = unknown[problem.faces[f][k]];
+            const Index j = unknown[problem.faces[f][(k + 1) % 3]];
             const double w = std::max(least_weight, problem.cotangent[f][k]);
             couple(i, j, w);
             couple(j, i, w);
@@ -49,9 +49,8 @@ Eigen::MatrixX2d spread(const FlatteningProblem& problem, const Eigen::MatrixX2d
     const Eigen::SimplicialLDLT<Matrix> solver(matrix);
     const Eigen::MatrixX2d inside = count > 0 ? Eigen::MatrixX2d(solver.solve(rhs)) : rhs;
     Eigen::MatrixX2d all(problem.vertex_count, 2);
-    for (Index v = 0; v < problem.vertex_count; ++v)
-        all.row(v) =
-            unknown[at(v)] >= 0 ? inside.row(unknown[at(v)]) : boundary.row(-1 - unknown[at(v)]);
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        all.row(v) = unknown[v] >= 0 ? inside.row(unknown[v]) : boundary.row(-1 - unknown[v]);
     return all;
 }
 
@@ -108,8 +107,8 @@ std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& p
                                                       const std::vector<Vec2>& uv,
                                                       const Progress& progress) {
     std::vector<Vec2> boundary;
-    for (const Index v : problem.boundary)
-        boundary.push_back(uv[at(v)]);
+    for (const Vertex v : problem.boundary)
+        boundary.push_back(uv[v]);
     const auto restored = restore_lengths(boundary, problem.boundary_edge, progress);
     if (!restored)
         return std::nullopt;
@@ -122,7 +121,7 @@ std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& p
         result[v] += all.row(static_cast<Eigen::Index>(v)).transpose();
     // Exactly, not through the rounding of a difference.
     for (std::size_t i = 0; i < boundary.size(); ++i)
-        result[at(problem.boundary[i])] = (*restored)[i];
+        result[problem.boundary[i]] = (*restored)[i];
     return result;
 }
 

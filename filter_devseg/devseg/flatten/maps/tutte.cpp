@@ -38,7 +38,7 @@ std::vector<Vec2> place_boundary(const FlatteningProblem& problem) {
     double walked = 0.0;
     for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
         const double angle = 2.0 * pi * walked / total;
-        uv[at(problem.boundary[i])] = radius * Vec2(std::cos(angle), std::sin(angle));
+        uv[problem.boundary[i]] = radius * Vec2(std::cos(angle), std::sin(angle));
         walked += std::max(problem.boundary_edge[i], least);
     }
     return uv;
@@ -48,8 +48,8 @@ template <class Weight>
 std::vector<Vec2> balance(const FlatteningProblem& problem, Weight weight) {
     std::vector<Vec2> uv = place_boundary(problem);
     std::vector<Index> slot(at(problem.vertex_count), 0);
-    for (const Index v : problem.boundary)
-        slot[at(v)] = -1;
+    for (const Vertex v : problem.boundary)
+        slot[v] = -1;
     Index unknowns = 0;
     for (Index& s : slot)
         if (s >= 0)
@@ -59,19 +59,19 @@ std::vector<Vec2> balance(const FlatteningProblem& problem, Weight weight) {
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(unknowns, 2);
     const auto pull = [&](Index i, Index j, double w) {
-        if (slot[at(i)] < 0)
+        if (slot[i] < 0)
             return;
-        entries.emplace_back(slot[at(i)], slot[at(i)], w);
-        if (slot[at(j)] < 0)
-            rhs.row(slot[at(i)]) += w * uv[at(j)].transpose();
+        entries.emplace_back(slot[i], slot[i], w);
+        if (slot[j] < 0)
+            rhs.row(slot[i]) += w * uv[j].transpose();
         else
-            entries.emplace_back(slot[at(i)], slot[at(j)], -w);
+            entries.emplace_back(slot[i], slot[j], -w);
     };
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (Index k = 0; k < 3; ++k) {
-            const Index i = problem.faces[f][at(k)];
-            const Index j = problem.faces[f][at((k + 1) % 3)];
-            const double w = weight(problem.cotangent[f][at(k)]);
+            const Index i = problem.faces[f][k];
+            const Index j = problem.faces[f][(k + 1) % 3];
+            const double w = weight(problem.cotangent[f][k]);
             pull(i, j, w);
             pull(j, i, w);
         }

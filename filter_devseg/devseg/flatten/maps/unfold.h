@@ -13,6 +13,6 @@ namespace devseg::flatten {
 /// keeps its length to within `tolerance` times the root of the chart's area, and no face is turned
 /// over. Nothing for charts that are not developable.
 std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem,
-                                        const std::vector<Index>& twin, double tolerance = 1e-6);
+                                        const std::vector<HalfEdge>& twin, double tolerance = 1e-6);
 
 } // namespace devseg::flatten

@@ -20,9 +20,9 @@ std::vector<Segment> boundary_segments(const atlas::ChartSurface& surface,
                                        const std::vector<Vec2>& uv) {
     std::vector<Segment> segments;
     for (const std::vector<Index>& loop : surface.loops)
-        for (const Index h : loop)
-            segments.push_back({uv[at(surface.origin(h))], uv[at(surface.target(h))],
-                                surface.origin(h), surface.target(h)});
+        for (const HalfEdge h : loop)
+            segments.push_back({uv[surface.origin(h)], uv[surface.target(h)], surface.origin(h),
+                                surface.target(h)});
     return segments;
 }
 
@@ -79,20 +79,19 @@ std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface,
     std::vector<graph::CutSide> side(surface.face.size(), graph::CutSide::open);
     std::vector<std::uint8_t> takes_part(surface.face.size(), 0);
     for (const auto& [f, g] : pairs)
-        takes_part[at(f)] = takes_part[at(g)] = 1;
+        takes_part[f] = takes_part[g] = 1;
     std::queue<Index> queue;
-    side[at(pairs.front().first)] = graph::CutSide::source;
-    side[at(pairs.front().second)] = graph::CutSide::sink;
+    side[pairs.front().first] = graph::CutSide::source;
+    side[pairs.front().second] = graph::CutSide::sink;
     queue.push(pairs.front().first);
     queue.push(pairs.front().second);
     while (!queue.empty()) {
-        const Index f = queue.front();
+        const Face f = queue.front();
         queue.pop();
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = surface.twin[at(h)];
-            if (twin >= 0 && takes_part[at(twin / 3)] != 0 &&
-                side[at(twin / 3)] == graph::CutSide::open) {
-                side[at(twin / 3)] = side[at(f)];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge twin = surface.twin[h];
+            if (twin >= 0 && takes_part[twin / 3] != 0 && side[twin / 3] == graph::CutSide::open) {
+                side[twin / 3] = side[f];
                 queue.push(twin / 3);
             }
         }
@@ -114,8 +113,8 @@ std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface
     CornerUv corners;
     corners.reserve(3 * surface.corners.size());
     for (const Triangle& t : surface.corners)
-        for (const Index v : t)
-            corners.push_back(uv[at(v)]);
+        for (const Vertex v : t)
+            corners.push_back(uv[v]);
     return plane::find_overlapping_pairs(corners, tolerance);
 }
 
@@ -125,14 +124,14 @@ std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& 
     // In a disk, the least border between two connected sets of faces is one path from boundary to
     // boundary: the cut makes two disks.
     graph::MinCut cut(two_sides(surface, pairs));
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        if (surface.twin[at(h)] > h)
-            cut.link(h / 3, surface.twin[at(h)] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
+    for (const HalfEdge h : surface.all_half_edges())
+        if (surface.twin[h] > h)
+            cut.link(h / 3, surface.twin[h] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
     const std::vector<graph::CutSide> side = cut.solve(progress);
     std::vector<Index> path;
-    for (Index h = 0; h < 3 * surface.face_count(); ++h)
-        if (surface.twin[at(h)] >= 0 && side[at(h / 3)] == graph::CutSide::source &&
-            side[at(surface.twin[at(h)] / 3)] == graph::CutSide::sink)
+    for (const HalfEdge h : surface.all_half_edges())
+        if (surface.twin[h] >= 0 && side[h / 3] == graph::CutSide::source &&
+            side[surface.twin[h] / 3] == graph::CutSide::sink)
             path.push_back(h);
     return path;
 }

@@ -16,13 +16,14 @@ std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh,
                                                 const atlas::ChartSurface& surface) {
     std::vector<std::pair<Index, Index>> by_mesh; // (mesh half-edge, local half-edge)
     for (const std::vector<Index>& loop : surface.loops)
-        for (const Index h : loop)
+        for (const HalfEdge h : loop)
             by_mesh.emplace_back(surface.mesh_half_edge(h), h);
     std::sort(by_mesh.begin(), by_mesh.end());
     std::vector<std::pair<Index, Index>> sides;
     for (const auto& [global, h] : by_mesh) {
-        const Index twin = mesh.twin[at(global)];
-        const auto other = std::lower_bound(by_mesh.begin(), by_mesh.end(), std::pair(twin, 0));
+        const HalfEdge twin = mesh.twin[global];
+        const auto other =
+            std::lower_bound(by_mesh.begin(), by_mesh.end(), std::pair<Index, Index>(twin, 0));
         if (twin > global && other != by_mesh.end() && other->first == twin)
             sides.emplace_back(h, other->second);
     }
@@ -35,42 +36,42 @@ public:
         : s_(surface), gap_(gap), uv_(uv), home_(uv), done_(surface.vertex.size(), 0) {}
 
     // Vertices v and w are the same point of the surface on the sides h and g of a slit.
-    void part(Index v, Index w, Index h, Index g) {
-        if (v == w || (home_[at(v)] - home_[at(w)]).norm() >= gap_)
+    void part(Vertex v, Index w, HalfEdge h, Index g) {
+        if (v == w || (home_[v] - home_[w]).norm() >= gap_)
             return;
         move(v, h);
         move(w, g);
     }
 
 private:
-    void move(Index v, Index h) {
-        if (done_[at(v)] != 0)
+    void move(Vertex v, HalfEdge h) {
+        if (done_[v] != 0)
             return;
-        const Vec2 edge = home_[at(s_.target(h))] - home_[at(s_.origin(h))];
+        const Vec2 edge = home_[s_.target(h)] - home_[s_.origin(h)];
         const double length = edge.norm();
         if (!(length > 0.0))
             return;
-        uv_[at(v)] = home_[at(v)] + 0.5 * gap_ / length * Vec2(-edge.y(), edge.x());
-        done_[at(v)] = 1;
+        uv_[v] = home_[v] + 0.5 * gap_ / length * Vec2(-edge.y(), edge.x());
+        done_[v] = 1;
         if (flips_around(h, v))
-            uv_[at(v)] = home_[at(v)];
+            uv_[v] = home_[v];
     }
 
     // Looks at all faces around v, which form one fan, starting at the face of h.
-    bool flips_around(Index h, Index v) const {
+    bool flips_around(HalfEdge h, Vertex v) const {
         Index corner = s_.origin(h) == v ? h : Mesh::next(h); // half-edge that leaves v
-        for (Index at_corner = corner; at_corner >= 0;
-             at_corner = s_.twin[at(Mesh::previous(at_corner))])
+        for (HalfEdge at_corner = corner; at_corner >= 0;
+             at_corner = s_.twin[Mesh::previous(at_corner)])
             if (!positive(at_corner / 3))
                 return true;
-        for (Index back = s_.twin[at(corner)]; back >= 0; back = s_.twin[at(Mesh::next(back))])
+        for (Index back = s_.twin[corner]; back >= 0; back = s_.twin[Mesh::next(back)])
             if (!positive(back / 3))
                 return true;
         return false;
     }
-    bool positive(Index f) const {
-        const Triangle& t = s_.corners[at(f)];
-        return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]) > 0.0;
+    bool positive(Face f) const {
+        const Triangle& t = s_.corners[f];
+        return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]) > 0.0;
     }
 
     const atlas::ChartSurface& s_;
@@ -95,14 +96,12 @@ bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface
                             const std::vector<Vec2>& uv) {
     std::vector<Index> same(surface.vertex.size());
     std::iota(same.begin(), same.end(), 0);
-    const auto find = [&](Index v) {
-        while (same[at(v)] != v)
-            v = same[at(v)] = same[at(same[at(v)])];
+    const auto find = [&](Vertex v) {
+        while (same[v] != v)
+            v = same[v] = same[same[v]];
         return v;
     };
-    const auto meet = [&](Index v, Index w) {
-        return v == w || (uv[at(v)] - uv[at(w)]).norm() < gap;
-    };
+    const auto meet = [&](Vertex v, Index w) { return v == w || (uv[v] - uv[w]).norm() < gap; };
     // Every closed edge is one edge less; the vertices that it joins are fewer as well, by as many
     // as it takes for the chart to stay a disk, or not.
     Index euler = surface.euler_characteristic();
@@ -116,7 +115,7 @@ bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface
             const Index a = find(v);
             const Index b = find(w);
             euler -= a == b ? 0 : 1;
-            same[at(a)] = b;
+            same[a] = b;
         }
     }
     return euler != 1;

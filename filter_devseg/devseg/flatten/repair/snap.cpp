@@ -20,9 +20,9 @@ constexpr int grid_reach = 8; // units in the last place
 // On the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
 constexpr int boundary_reach = 2;
 
-bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Index f) {
-    const Triangle& t = faces[at(f)];
-    return orientation(uv[at(t[0])], uv[at(t[1])], uv[at(t[2])]) > 0.0;
+bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Face f) {
+    const Triangle& t = faces[f];
+    return orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0;
 }
 
 double rounded(double x) {
@@ -42,14 +42,14 @@ Stars build_stars(const std::vector<Triangle>& faces, std::size_t vertices) {
     Stars stars;
     stars.begin.assign(vertices + 1, 0);
     for (const Triangle& t : faces)
-        for (const Index v : t)
+        for (const Vertex v : t)
             ++stars.begin[at(v) + 1];
     std::partial_sum(stars.begin.begin(), stars.begin.end(), stars.begin.begin());
     stars.faces.resize(3 * faces.size());
     std::vector<Index> cursor(stars.begin.begin(), stars.begin.end() - 1);
     for (std::size_t f = 0; f < faces.size(); ++f)
-        for (const Index v : faces[f])
-            stars.faces[at(cursor[at(v)]++)] = static_cast<Index>(f);
+        for (const Vertex v : faces[f])
+            stars.faces[cursor[v]++] = static_cast<Index>(f);
     return stars;
 }
 
@@ -65,8 +65,8 @@ public:
         : faces_(faces), uv_(uv), stars_(build_stars(faces, uv.size())) {}
 
     // Moves a vertex of the face so that fewer faces around it are flipped.
-    bool mend(Index face) {
-        for (const Index v : faces_[at(face)])
+    bool mend(Face face) {
+        for (const Vertex v : faces_[face])
             if (move(v))
                 return true;
         return false;
@@ -74,9 +74,9 @@ public:
 
     // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
     // to `area` (twice its area).
-    void restore_area(Index face, double area) {
-        for (const Index v : faces_[at(face)]) {
-            const Vec2 home = uv_[at(v)];
+    void restore_area(Face face, double area) {
+        for (const Vertex v : faces_[face]) {
+            const Vec2 home = uv_[v];
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
             double least = std::abs(twice_area(face) - area);
@@ -84,30 +84,30 @@ public:
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
-                    uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                    uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
                     const double off = std::abs(twice_area(face) - area);
                     if (off < least && flipped_around(v) == 0) {
                         least = off;
-                        best = uv_[at(v)];
+                        best = uv_[v];
                     }
                 }
-            uv_[at(v)] = best;
+            uv_[v] = best;
             if (least <= kept_area * area)
                 return;
         }
     }
-    double twice_area(Index face) const {
-        const Triangle& t = faces_[at(face)];
-        return orientation(uv_[at(t[0])], uv_[at(t[1])], uv_[at(t[2])]);
+    double twice_area(Face face) const {
+        const Triangle& t = faces_[face];
+        return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]);
     }
 
 private:
     // Whether the faces around the vertex close up.
-    bool is_inside(Index v) const {
+    bool is_inside(Vertex v) const {
         std::vector<Index> after;
         std::vector<Index> before;
-        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i) {
-            const Triangle& t = faces_[at(stars_.faces[at(i)])];
+        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i) {
+            const Triangle& t = faces_[stars_.faces[i]];
             const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
             after.push_back(t[(k + 1) % 3]);
             before.push_back(t[(k + 2) % 3]);
@@ -115,14 +115,14 @@ private:
         return std::is_permutation(after.begin(), after.end(), before.begin());
     }
 
-    int flipped_around(Index v) const {
+    int flipped_around(Vertex v) const {
         int count = 0;
-        for (Index i = stars_.begin[at(v)]; i < stars_.begin[at(v) + 1]; ++i)
-            count += positive(faces_, uv_, stars_.faces[at(i)]) ? 0 : 1;
+        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i)
+            count += positive(faces_, uv_, stars_.faces[i]) ? 0 : 1;
         return count;
     }
-    bool move(Index v) {
-        const Vec2 home = uv_[at(v)];
+    bool move(Vertex v) {
+        const Vec2 home = uv_[v];
         const double unit = unit_in_last_place(home);
         Vec2 best = home;
         int fewest = flipped_around(v);
@@ -131,14 +131,14 @@ private:
             for (int direction = 0; direction < 9; ++direction) {
                 const Vec2 offset(direction % 3 - 1, direction / 3 - 1);
                 const Vec2 moved = home + unit * step * offset;
-                uv_[at(v)] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
                 const int count = flipped_around(v);
                 if (count < fewest) {
                     fewest = count;
-                    best = uv_[at(v)];
+                    best = uv_[v];
                 }
             }
-        uv_[at(v)] = best;
+        uv_[v] = best;
         return fewest < before;
     }
 
@@ -153,13 +153,13 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     const std::vector<Vec2> exact = uv;
     for (Vec2& p : uv)
         p = Vec2(rounded(p.x()), rounded(p.y()));
-    const auto twice_area = [&](const std::vector<Vec2>& points, Index f) {
-        const Triangle& t = faces[at(f)];
-        return orientation(points[at(t[0])], points[at(t[1])], points[at(t[2])]);
+    const auto twice_area = [&](const std::vector<Vec2>& points, Face f) {
+        const Triangle& t = faces[f];
+        return orientation(points[t[0]], points[t[1]], points[t[2]]);
     };
     std::vector<Index> flipped;
     std::vector<Index> thin;
-    for (Index f = 0; f < static_cast<Index>(faces.size()); ++f) {
+    for (Face f = 0; f < static_cast<Index>(faces.size()); ++f) {
         const double area = twice_area(exact, f);
         if (!positive(faces, uv, f))
             flipped.push_back(f);
@@ -170,19 +170,19 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
         return 0;
     Repair repair(faces, uv);
     for (int round = 0; round < rounds && !flipped.empty(); ++round) {
-        for (const Index f : flipped)
+        for (const Face f : flipped)
             if (!positive(faces, uv, f))
                 repair.mend(f);
         // A mended face may have cost a neighbour: look at all of them again.
         flipped.clear();
-        for (Index f = 0; f < static_cast<Index>(faces.size()); ++f)
+        for (Face f = 0; f < static_cast<Index>(faces.size()); ++f)
             if (!positive(faces, uv, f))
                 flipped.push_back(f);
     }
-    for (const Index f : thin)
+    for (const Face f : thin)
         repair.restore_area(f, twice_area(exact, f));
     const auto lost = std::count_if(flipped.begin(), flipped.end(),
-                                    [&](Index f) { return !positive(faces, uv, f); });
+                                    [&](Face f) { return !positive(faces, uv, f); });
     return static_cast<Index>(lost);
 }
 

@@ -1,11 +1,12 @@
 // The methods that others are compared with.
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/baselines/mcgim.h"
 #include "devseg/methods/baselines/vsa.h"
 
 namespace devseg::baselines {
+
+using namespace declare;
 
 namespace {
 
@@ -34,8 +35,8 @@ constexpr const char* mcgim_help =
     "Symposium on Geometry Processing, 2003, doi:10.2312/SGP/SGP03/146-155";
 
 template <class O>
-declare::Declare<O> baseline(const char* menu_name, const char* python_name, const char* help) {
-    declare::Declare<O> filter(menu_name, python_name, declare::FilterCategory::remeshing, help);
+Declare<O> baseline(const char* menu_name, const char* python_name, const char* help) {
+    Declare<O> filter(menu_name, python_name, FilterCategory::remeshing, help);
     filter
         .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                  "From 1 to the number of faces. A mesh of more components gets one chart for each "
@@ -45,7 +46,7 @@ declare::Declare<O> baseline(const char* menu_name, const char* python_name, con
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
-        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
+        .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("cut_length", "length of the cuts inside of charts, model units")
         .result("seam_length", "length of all cut edges, model units")
@@ -54,11 +55,10 @@ declare::Declare<O> baseline(const char* menu_name, const char* python_name, con
     return filter;
 }
 
-declare::FilterOutput run_vsa(const declare::FilterInput& input, const VsaOptions& options,
-                              Progress& progress) {
+FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progress& progress) {
     VsaResult result = segment_vsa(input.mesh, options, progress);
-    declare::FilterOutput output = declare::segmentation_output(
-        input, result.chart, std::move(result.face_error), {false, {}}, progress);
+    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_error),
+                                              {false, {}}, progress);
     output.values.insert(
         output.values.end(),
         {{"rounds_number", result.rounds},
@@ -68,13 +68,12 @@ declare::FilterOutput run_vsa(const declare::FilterInput& input, const VsaOption
     return output;
 }
 
-declare::FilterOutput run_mcgim(const declare::FilterInput& input, const McgimOptions& options,
-                                Progress& progress) {
+FilterOutput run_mcgim(const FilterInput& input, const McgimOptions& options, Progress& progress) {
     McgimResult result = segment_mcgim(input.mesh, options, progress);
     for (double& cost : result.face_cost)
         cost *= input.mesh.unit_length;
-    declare::FilterOutput output = declare::segmentation_output(
-        input, result.chart, std::move(result.face_cost), {false, {}}, progress);
+    FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_cost),
+                                              {false, {}}, progress);
     output.values.insert(output.values.end(),
                          {{"rounds_number", result.rounds}, {"converged", result.converged}});
     return output;
@@ -82,7 +81,7 @@ declare::FilterOutput run_mcgim(const declare::FilterInput& input, const McgimOp
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> baseline_filters() {
+std::vector<FilterDeclaration> filters() {
     return {baseline<VsaOptions>("Segmentation: Variational Shape Approximation",
                                  "compute_segmentation_variational_shape_approximation_per_face",
                                  vsa_help)

@@ -21,11 +21,10 @@ public:
 
     explicit PathCost(const Mesh& mesh) : mesh_(mesh), cost_(mesh.faces.size(), 0.0F) {
         distance_.resize(mesh.twin.size(), 0.0F);
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] >= 0)
-                distance_[at(h)] = static_cast<float>(
-                    (mesh.face_centers[at(h / 3)] - mesh.face_centers[at(mesh.twin[at(h)] / 3)])
-                        .norm());
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] >= 0)
+                distance_[h] = static_cast<float>(
+                    (mesh.face_centers[h / 3] - mesh.face_centers[mesh.twin[h] / 3]).norm());
     }
 
     void start_over(std::size_t charts) {
@@ -33,27 +32,25 @@ public:
         normal_.assign(charts, Vec3::UnitZ());
     }
 
-    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
-        const float cost = cost_[at(h / 3)] + step(h, c);
-        return {cost, cost, mesh_.twin[at(h)] / 3};
+    growth::CandidateHeap::Entry candidate(HalfEdge h, Index c) const {
+        const float cost = cost_[h / 3] + step(h, c);
+        return {cost, cost, mesh_.twin[h] / 3};
     }
     growth::GrowthKey key(Index, const growth::CandidateHeap::Entry& entry) const {
         return {0, 0.0, entry.key};
     }
-    void take(Index f, Index c, float cost) {
-        cost_[at(f)] = cost;
+    void take(Face f, Index c, float cost) {
+        cost_[f] = cost;
         last_ = f;
         // Seeds without area count as well: every chart has a normal from its first face on.
-        Vec3& sum = normal_sum_[at(c)];
-        sum += mesh_.face_areas[at(f)] * mesh_.face_normals[at(f)];
-        normal_[at(c)] =
-            sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : mesh_.face_normals[at(f)];
+        Vec3& sum = normal_sum_[c];
+        sum += mesh_.face_areas[f] * mesh_.face_normals[f];
+        normal_[c] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : mesh_.face_normals[f];
     }
 
-    float step(Index h, Index c) const {
-        const Vec3& normal = mesh_.face_normals[at(mesh_.twin[at(h)] / 3)];
-        return distance_[at(h)] *
-               static_cast<float>(compactness + 1.0 - normal_[at(c)].dot(normal));
+    float step(HalfEdge h, Index c) const {
+        const Vec3& normal = mesh_.face_normals[mesh_.twin[h] / 3];
+        return distance_[h] * static_cast<float>(compactness + 1.0 - normal_[c].dot(normal));
     }
     /// The face that was taken last: the one that costs most.
     Index last() const { return last_; }
@@ -103,7 +100,7 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
         if (result.rounds == options.max_iterations)
             break;
         seeds = border.farthest_faces(
-            result.chart, seeds, [&](Index h) { return cost.step(h, result.chart[at(h / 3)]); },
+            result.chart, seeds, [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); },
             progress);
         result.converged = !seen.insert(seeds).second;
         if (result.converged)

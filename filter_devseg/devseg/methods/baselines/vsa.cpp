@@ -44,10 +44,10 @@ public:
     }
 
     // The error of [CSAD04, section 2.3]: |t| · |n − N|².
-    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
-        const Index f = mesh_.twin[at(h)] / 3;
-        const FaceNormal& n = faces_[at(f)];
-        const Eigen::Vector3f& proxy = proxies_[at(c)];
+    growth::CandidateHeap::Entry candidate(HalfEdge h, Index c) const {
+        const Face f = mesh_.twin[h] / 3;
+        const FaceNormal& n = faces_[f];
+        const Eigen::Vector3f& proxy = proxies_[c];
         const float dx = n.x - proxy.x();
         const float dy = n.y - proxy.y();
         const float dz = n.z - proxy.z();
@@ -69,14 +69,14 @@ private:
 // first along the axes is taken then, so that the order of faces does not decide.
 constexpr double same_deviation = 1e-12;
 
-bool lies_before(const Mesh& mesh, Index f, Index g) {
-    const Vec3& a = mesh.face_centers[at(f)];
-    const Vec3& b = mesh.face_centers[at(g)];
+bool lies_before(const Mesh& mesh, Face f, Index g) {
+    const Vec3& a = mesh.face_centers[f];
+    const Vec3& b = mesh.face_centers[g];
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-double squared_deviation(const Mesh& mesh, Index f, const Vec3& proxy) {
-    return (mesh.face_normals[at(f)] - proxy).squaredNorm();
+double squared_deviation(const Mesh& mesh, Face f, const Vec3& proxy) {
+    return (mesh.face_normals[f] - proxy).squaredNorm();
 }
 
 // The partition at hand: with the area-weighted sums of normals, a chart's error and that of two
@@ -118,10 +118,10 @@ public:
             if (now_.normal_sum[c].squaredNorm() > 0.0)
                 proxies_[c] = now_.normal_sum[c].normalized();
         std::vector<double> least(seeds_.size(), infinite);
-        for (Index f = 0; f < mesh_.face_count(); ++f) {
-            const std::size_t c = at(now_.chart[at(f)]);
+        for (const Face f : mesh_.all_faces()) {
+            const std::size_t c = at(now_.chart[f]);
             const double deviation =
-                std::sqrt(mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, proxies_[c]));
+                std::sqrt(mesh_.face_areas[f] * squared_deviation(mesh_, f, proxies_[c]));
             const bool same = std::abs(deviation - least[c]) <= same_deviation;
             if (same ? lies_before(mesh_, f, seeds_[c]) : deviation < least[c]) {
                 least[c] = deviation;
@@ -135,14 +135,14 @@ public:
     // one chart from reaching its side. False where all faces agree.
     bool split_worst() {
         const Index worst = now_.worst();
-        const Vec3 normal = mesh_.face_normals[at(seeds_[at(worst)])];
+        const Vec3 normal = mesh_.face_normals[seeds_[worst]];
         Index farthest = -1;
         double largest = 0.0;
-        for (Index f = 0; f < mesh_.face_count(); ++f) {
-            if (now_.chart[at(f)] != worst || f == seeds_[at(worst)])
+        for (const Face f : mesh_.all_faces()) {
+            if (now_.chart[f] != worst || f == seeds_[worst])
                 continue;
             const double deviation =
-                std::sqrt(mesh_.face_areas[at(f)] * squared_deviation(mesh_, f, normal));
+                std::sqrt(mesh_.face_areas[f] * squared_deviation(mesh_, f, normal));
             const bool same = farthest >= 0 && std::abs(deviation - largest) <= same_deviation;
             if (same ? lies_before(mesh_, f, farthest) : deviation > largest) {
                 largest = deviation;
@@ -151,21 +151,21 @@ public:
         }
         if (farthest < 0)
             return false;
-        proxies_[at(worst)] = normal;
+        proxies_[worst] = normal;
         add(farthest);
         return true;
     }
 
     /// The first of `candidates` that is no seed yet; there must be one.
     void add_unused(const std::vector<Index>& candidates) {
-        add(*std::find_if(candidates.begin(), candidates.end(), [&](Index f) {
+        add(*std::find_if(candidates.begin(), candidates.end(), [&](Face f) {
             return std::find(seeds_.begin(), seeds_.end(), f) == seeds_.end();
         }));
     }
 
     void add(Index seed) {
         seeds_.push_back(seed);
-        proxies_.push_back(mesh_.face_normals[at(seed)]);
+        proxies_.push_back(mesh_.face_normals[seed]);
     }
 
     // [CSAD04, section 3.5]: the two neighbours that are most alike become one chart, and the
@@ -174,12 +174,11 @@ public:
         const std::size_t worst = at(now_.worst());
         double least = teleport_share * now_.error(worst);
         std::pair<std::size_t, std::size_t> pair(0, 0);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            const Index twin = mesh_.twin[at(h)];
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            const HalfEdge twin = mesh_.twin[h];
             if (twin < h)
                 continue;
-            const auto [a, b] =
-                std::minmax({at(now_.chart[at(h / 3)]), at(now_.chart[at(twin / 3)])});
+            const auto [a, b] = std::minmax({at(now_.chart[h / 3]), at(now_.chart[twin / 3])});
             if (a == b || a == worst || b == worst)
                 continue;
             const double increase = now_.merged_error(a, b) - now_.error(a) - now_.error(b);
@@ -205,12 +204,12 @@ private:
     void sum_up() {
         now_.normal_sum.assign(seeds_.size(), Vec3::Zero());
         now_.area.assign(seeds_.size(), 0.0);
-        for (Index f = 0; f < mesh_.face_count(); ++f) {
-            const Index c = now_.chart[at(f)];
+        for (const Face f : mesh_.all_faces()) {
+            const Index c = now_.chart[f];
             if (c < 0)
                 continue;
-            now_.normal_sum[at(c)] += mesh_.face_areas[at(f)] * mesh_.face_normals[at(f)];
-            now_.area[at(c)] += mesh_.face_areas[at(f)];
+            now_.normal_sum[c] += mesh_.face_areas[f] * mesh_.face_normals[f];
+            now_.area[c] += mesh_.face_areas[f];
         }
         now_.total = 0.0;
         for (std::size_t c = 0; c < seeds_.size(); ++c)
@@ -236,7 +235,7 @@ void start(const Mesh& mesh, Index count, int random_seed, Approximation& approx
         mesh, count, static_cast<std::uint32_t>(random_seed), progress);
     Index charts = 0;
     for (; charts < (random_seed != 0 ? count : components); ++charts)
-        approximation.add(far[at(charts)]);
+        approximation.add(far[charts]);
     for (;; ++charts) {
         approximation.partition();
         approximation.fit();
@@ -293,14 +292,12 @@ VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& pro
     VsaResult result;
     approximate(options, approximation, result, progress);
     result.proxies.assign(at(count), Vec3::Zero());
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        result.proxies[at(result.chart[at(f)])] +=
-            mesh.face_areas[at(f)] * mesh.face_normals[at(f)];
+    for (const Face f : mesh.all_faces())
+        result.proxies[result.chart[f]] += mesh.face_areas[f] * mesh.face_normals[f];
     for (Vec3& proxy : result.proxies)
         proxy = proxy.squaredNorm() > 0.0 ? Vec3(proxy.normalized()) : Vec3::UnitZ();
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        result.face_error.push_back(
-            squared_deviation(mesh, f, result.proxies[at(result.chart[at(f)])]));
+    for (const Face f : mesh.all_faces())
+        result.face_error.push_back(squared_deviation(mesh, f, result.proxies[result.chart[f]]));
     return result;
 }
 

@@ -30,7 +30,7 @@ growth::ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
     for (std::size_t f = 0; f < patch.size(); ++f) {
         std::uint8_t& known = seen[at(patch[f]) * draft.faces.size() + at(draft.chart[f])];
         if (known == 0)
-            result[at(draft.chart[f])].push_back(proxies[at(patch[f])]);
+            result[draft.chart[f]].push_back(proxies[patch[f]]);
         known = 1;
     }
     return result;
@@ -58,7 +58,7 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
     if (coarse_) {
         std::vector<Index> label(full_.faces.size(), -1);
         for (std::size_t f = 0; f < coarse_->face.size(); ++f)
-            label[at(coarse_->face[f])] = draft.chart[f];
+            label[coarse_->face[f]] = draft.chart[f];
         result.chart = mesh::refine_labels(full_.points, *surface_, std::move(label), progress);
     } else {
         result.chart = draft.chart;
@@ -99,8 +99,8 @@ std::vector<Index> WorkingSurface::tips_of(const Draft& draft) const {
     if (!coarse_)
         return draft.tips;
     std::vector<Index> tips;
-    for (const Index v : draft.tips)
-        tips.push_back(coarse_->vertex[at(v)]);
+    for (const Vertex v : draft.tips)
+        tips.push_back(coarse_->vertex[v]);
     return tips;
 }
 
@@ -132,7 +132,7 @@ FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
         judge::measure_stretch(flatten::make_flattening_problem(full_, flat.surface), flat.uv, map);
         excess += map.excess();
         reached.all.linf = std::max(reached.all.linf, map.linf);
-        double& linf = reached.linf[at(chart[at(flat.surface.face.front())])];
+        double& linf = reached.linf[chart[flat.surface.face.front()]];
         linf = std::max(linf, map.linf);
     }
     reached.all.l2 = std::sqrt(1.0 + std::max(0.0, excess) / full_.total_area);
@@ -168,7 +168,7 @@ std::vector<double> WorkingSurface::fitting_errors(const std::vector<Index>& cha
     const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(full_, chart, count);
     std::vector<double> errors(full_.faces.size());
     for (std::size_t f = 0; f < errors.size(); ++f)
-        errors[f] = proxies[at(chart[f])].fitting_error(full_.face_normals[f]);
+        errors[f] = proxies[chart[f]].fitting_error(full_.face_normals[f]);
     return errors;
 }
 

@@ -24,15 +24,15 @@ struct Dart {
 };
 
 // The corner of a face around which the surface bends most: where a cone's tip would be.
-Index sharpest_corner(const Mesh& mesh, Index face) {
+Index sharpest_corner(const Mesh& mesh, Face face) {
     Index best = -1;
     double largest = -1.0;
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+    for (const HalfEdge h : half_edges_of(face)) {
         double angles = 0.0;
         const bool inner = mesh::visit_star(mesh, h, [&](Index k) {
-            const Vec3 a = mesh.points[at(mesh.target(k))] - mesh.points[at(mesh.origin(k))];
+            const Vec3 a = mesh.points[mesh.target(k)] - mesh.points[mesh.origin(k)];
             const Vec3 b =
-                mesh.points[at(mesh.origin(Mesh::previous(k)))] - mesh.points[at(mesh.origin(k))];
+                mesh.points[mesh.origin(Mesh::previous(k))] - mesh.points[mesh.origin(k)];
             angles += std::atan2(a.cross(b).norm(), a.dot(b));
         });
         const double defect = inner ? std::abs(2.0 * pi - angles) : 0.0;
@@ -77,7 +77,7 @@ private:
             dart.path = atlas::path_to_border(mesh_, faces_, seam_, dart.tip);
             if (dart.path.empty())
                 continue;
-            for (const Index h : dart.path)
+            for (const HalfEdge h : dart.path)
                 dart.length += mesh_.edge_length(h);
             std::vector<std::uint8_t> seam = seam_;
             atlas::mark_cuts(mesh_, dart.path, seam);
@@ -147,14 +147,14 @@ Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
     if (tips.empty())
         return 0;
     std::vector<Index> leaving(mesh.points.size(), -1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        leaving[at(mesh.origin(h))] = h;
+    for (const HalfEdge h : mesh.all_half_edges())
+        leaving[mesh.origin(h)] = h;
     Index cuts = 0;
     for (const Index tip : tips) {
-        const Index label = chart[at(leaving[at(tip)] / 3)];
+        const Index label = chart[leaving[tip] / 3];
         std::vector<Index> faces;
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            if (chart[at(f)] == label)
+        for (const Face f : mesh.all_faces())
+            if (chart[f] == label)
                 faces.push_back(f);
         const std::vector<Index> path = atlas::path_to_border(mesh, faces, seam, tip);
         atlas::mark_cuts(mesh, path, seam);

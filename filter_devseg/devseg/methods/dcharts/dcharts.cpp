@@ -41,7 +41,7 @@ template <class T>
 }
 
 struct Seed {
-    Index face = -1;
+    Face face = -1;
     metrics::ConicProxy proxy;
 };
 
@@ -53,12 +53,12 @@ public:
     Growth(const Mesh& mesh, const DChartsOptions& options) : mesh_(mesh), options_(options) {
         edge_length_.resize(mesh.twin.size());
         center_step_.resize(mesh.twin.size());
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-            edge_length_[at(h)] = static_cast<float>(mesh.edge_length(h));
-            const Index opposite = mesh.twin[at(h)];
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            edge_length_[h] = static_cast<float>(mesh.edge_length(h));
+            const Index opposite = mesh.twin[h];
             if (opposite >= 0)
-                center_step_[at(h)] = static_cast<float>(
-                    (mesh.face_centers[at(h / 3)] - mesh.face_centers[at(opposite / 3)]).norm());
+                center_step_[h] = static_cast<float>(
+                    (mesh.face_centers[h / 3] - mesh.face_centers[opposite / 3]).norm());
         }
         distance_.resize(mesh.faces.size());
     }
@@ -76,11 +76,11 @@ public:
         area_.resize(charts.size(), 0.0);
         growth::Tournament tournament(static_cast<Index>(charts.size()));
         max_fitting_error_ = max_fitting_error;
-        for (const Index f : planted)
-            distance_[at(f)] = 0.0F;
-        for (const Index f : planted)
-            area_[at(chart[at(f)])] += mesh_.face_areas[at(f)];
-        for (const Index f : front)
+        for (const Face f : planted)
+            distance_[f] = 0.0F;
+        for (const Face f : planted)
+            area_[chart[f]] += mesh_.face_areas[f];
+        for (const Face f : front)
             offer_neighbours(f, charts, chart);
         for (Index c = 0; c < static_cast<Index>(charts.size()); ++c)
             tournament.set(c, key_of(c, chart));
@@ -88,12 +88,12 @@ public:
         Index added = 0;
         while (tournament.key(tournament.winner()) < std::numeric_limits<float>::infinity()) {
             const Index c = tournament.winner();
-            const growth::CandidateHeap::Entry entry = heaps_[at(c)].top();
-            heaps_[at(c)].pop();
-            if (chart[at(entry.face)] < 0) {
-                chart[at(entry.face)] = c;
-                distance_[at(entry.face)] = entry.distance;
-                area_[at(c)] += mesh_.face_areas[at(entry.face)];
+            const growth::CandidateHeap::Entry entry = heaps_[c].top();
+            heaps_[c].pop();
+            if (chart[entry.face] < 0) {
+                chart[entry.face] = c;
+                distance_[entry.face] = entry.distance;
+                area_[c] += mesh_.face_areas[entry.face];
                 offer_neighbours(entry.face, charts, chart);
                 if (++added % update_every == 0)
                     progress.update(0.0);
@@ -105,47 +105,46 @@ public:
 private:
     // Key of the chart's best candidate; candidates that other charts took meanwhile are dropped.
     float key_of(Index c, const std::vector<Index>& chart) {
-        growth::CandidateHeap& heap = heaps_[at(c)];
-        while (!heap.empty() && chart[at(heap.top().face)] >= 0)
+        growth::CandidateHeap& heap = heaps_[c];
+        while (!heap.empty() && chart[heap.top().face] >= 0)
             heap.pop();
         if (heap.empty())
             return std::numeric_limits<float>::infinity();
-        const double area = std::max(area_[at(c)], std::numeric_limits<double>::min());
+        const double area = std::max(area_[c], std::numeric_limits<double>::min());
         return heap.top().key - static_cast<float>(options_.beta * std::log2(area));
     }
 
-    void offer_neighbours(Index f, const std::vector<Seed>& charts,
+    void offer_neighbours(Face f, const std::vector<Seed>& charts,
                           const std::vector<Index>& chart) {
-        const Index c = chart[at(f)];
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index opposite = mesh_.twin[at(h)];
-            if (opposite >= 0 && chart[at(opposite / 3)] < 0)
-                offer(opposite / 3, c, charts[at(c)].proxy, chart);
+        const Index c = chart[f];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index opposite = mesh_.twin[h];
+            if (opposite >= 0 && chart[opposite / 3] < 0)
+                offer(opposite / 3, c, charts[c].proxy, chart);
         }
     }
 
-    void offer(Index f, Index c, const metrics::ConicProxy& proxy,
-               const std::vector<Index>& chart) {
-        const double error = proxy.fitting_error(mesh_.face_normals[at(f)]);
+    void offer(Face f, Index c, const metrics::ConicProxy& proxy, const std::vector<Index>& chart) {
+        const double error = proxy.fitting_error(mesh_.face_normals[f]);
         if (!(error < max_fitting_error_))
             return;
         float inner = 0.0F;
         float outer = 0.0F;
         float distance = std::numeric_limits<float>::max();
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index opposite = mesh_.twin[at(h)];
-            if (opposite >= 0 && chart[at(opposite / 3)] == c) {
-                inner += edge_length_[at(h)];
-                distance = std::min(distance, distance_[at(opposite / 3)] + center_step_[at(h)]);
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index opposite = mesh_.twin[h];
+            if (opposite >= 0 && chart[opposite / 3] == c) {
+                inner += edge_length_[h];
+                distance = std::min(distance, distance_[opposite / 3] + center_step_[h]);
             } else {
-                outer += edge_length_[at(h)];
+                outer += edge_length_[h];
             }
         }
         const float key = static_cast<float>(options_.alpha) *
                               std::log2(static_cast<float>(std::max(error, fitting_error_floor))) +
                           weighted_log(2.0 * options_.beta, distance) +
                           weighted_log(options_.gamma, outer / std::max(inner, 1e-30F));
-        heaps_[at(c)].push({key, distance, f});
+        heaps_[c].push({key, distance, f});
     }
 
     // A weight of 0 switches a term off. Degenerate faces have lengths of 0: the clamp keeps
@@ -167,20 +166,20 @@ private:
 // The faces around a corner's vertex.
 metrics::NormalMoments vertex_star(const Mesh& mesh, Index corner) {
     metrics::NormalMoments moments;
-    mesh::visit_star(mesh, corner, [&](Index h) {
-        moments.add(mesh.face_areas[at(h / 3)], mesh.face_normals[at(h / 3)]);
+    mesh::visit_star(mesh, corner, [&](HalfEdge h) {
+        moments.add(mesh.face_areas[h / 3], mesh.face_normals[h / 3]);
     });
     return moments;
 }
 
 // The best of three proxies, from the faces around each vertex of the seed [JKS05, section 3.1].
-Seed initial_seed(const Mesh& mesh, Index face) {
+Seed initial_seed(const Mesh& mesh, Face face) {
     Seed best;
     best.face = face;
     double best_error = unbounded;
-    for (Index h = 3 * face; h < 3 * face + 3; ++h) {
+    for (const HalfEdge h : half_edges_of(face)) {
         const metrics::ConicProxy proxy = metrics::fit_conic(vertex_star(mesh, h));
-        const double error = proxy.fitting_error(mesh.face_normals[at(face)]);
+        const double error = proxy.fitting_error(mesh.face_normals[face]);
         if (error < best_error) {
             best_error = error;
             best.proxy = proxy;
@@ -196,22 +195,22 @@ Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const metrics
     Vec3 centre = Vec3::Zero();
     double area = 0.0;
     errors.clear();
-    for (const Index f : faces) {
-        centre += mesh.face_areas[at(f)] * mesh.face_centers[at(f)];
-        area += mesh.face_areas[at(f)];
-        errors.push_back(proxy.fitting_error(mesh.face_normals[at(f)]));
+    for (const Face f : faces) {
+        centre += mesh.face_areas[f] * mesh.face_centers[f];
+        area += mesh.face_areas[f];
+        errors.push_back(proxy.fitting_error(mesh.face_normals[f]));
     }
-    centre = area > 0.0 ? Vec3(centre / area) : mesh.face_centers[at(faces.front())];
+    centre = area > 0.0 ? Vec3(centre / area) : mesh.face_centers[faces.front()];
     const std::size_t rank = std::min(seed_candidates, faces.size()) - 1;
     std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(rank),
                      errors.end());
     const double limit = std::max(errors[rank], fitting_error_floor);
     Index best = -1;
     double best_distance = unbounded;
-    for (const Index f : faces) {
-        if (proxy.fitting_error(mesh.face_normals[at(f)]) > limit)
+    for (const Face f : faces) {
+        if (proxy.fitting_error(mesh.face_normals[f]) > limit)
             continue;
-        const double distance = (mesh.face_centers[at(f)] - centre).squaredNorm();
+        const double distance = (mesh.face_centers[f] - centre).squaredNorm();
         if (distance < best_distance) {
             best_distance = distance;
             best = f;
@@ -224,20 +223,20 @@ void reseed(const Mesh& mesh, const std::vector<Index>& chart, std::vector<Seed>
     const Index count = static_cast<Index>(seeds.size());
     const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, chart, count);
     std::vector<std::vector<Index>> faces(at(count));
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        if (chart[at(f)] >= 0)
-            faces[at(chart[at(f)])].push_back(f);
+    for (const Face f : mesh.all_faces())
+        if (chart[f] >= 0)
+            faces[chart[f]].push_back(f);
     std::vector<double> errors;
     for (Index c = 0; c < count; ++c) {
-        seeds[at(c)].proxy = proxies[at(c)];
-        seeds[at(c)].face = next_seed(mesh, faces[at(c)], proxies[at(c)], errors);
+        seeds[c].proxy = proxies[c];
+        seeds[c].face = next_seed(mesh, faces[c], proxies[c], errors);
     }
 }
 
 std::vector<Index> plant(const std::vector<Seed>& seeds, std::vector<Index>& chart) {
     std::vector<Index> front;
     for (std::size_t c = 0; c < seeds.size(); ++c) {
-        chart[at(seeds[c].face)] = static_cast<Index>(c);
+        chart[seeds[c].face] = static_cast<Index>(c);
         front.push_back(seeds[c].face);
     }
     return front;
@@ -275,24 +274,24 @@ struct Hole {
 };
 
 std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) {
-    const auto is_open = [&](Index f) { return chart[at(f)] < 0; };
+    const auto is_open = [&](Face f) { return chart[f] < 0; };
     const mesh::FaceComponents parts = mesh::face_components(
-        mesh, [&](Index h) { return is_open(h / 3) && is_open(mesh.twin[at(h)] / 3); });
+        mesh, [&](HalfEdge h) { return is_open(h / 3) && is_open(mesh.twin[h] / 3); });
     std::vector<Index> hole_of(at(parts.count), -1);
     std::vector<Hole> holes;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         if (!is_open(f))
             continue;
-        Index& number = hole_of[at(parts.label[at(f)])];
+        Index& number = hole_of[parts.label[f]];
         if (number < 0) {
             number = static_cast<Index>(holes.size());
             holes.emplace_back();
         }
-        Hole& hole = holes[at(number)];
+        Hole& hole = holes[number];
         hole.faces.push_back(f);
-        hole.area += mesh.face_areas[at(f)];
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index opposite = mesh.twin[at(h)];
+        hole.area += mesh.face_areas[f];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index opposite = mesh.twin[h];
             hole.touches_chart |= opposite >= 0 && !is_open(opposite / 3);
         }
     }
@@ -304,15 +303,15 @@ void add_hole_chart(const Mesh& mesh, const DChartsOptions& options, const Hole&
                     Growth& growth, std::vector<Seed>& seeds, DChartsResult& result,
                     Progress& progress) {
     metrics::NormalMoments moments;
-    for (const Index f : hole.faces)
-        moments.add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
+    for (const Face f : hole.faces)
+        moments.add(mesh.face_areas[f], mesh.face_normals[f]);
     Seed seed;
     seed.proxy = metrics::fit_conic(moments);
     std::vector<double> errors;
     seed.face = next_seed(mesh, hole.faces, seed.proxy, errors);
     const Index label = static_cast<Index>(seeds.size());
     seeds.push_back(seed);
-    result.chart[at(seed.face)] = label;
+    result.chart[seed.face] = label;
     ++result.hole_charts;
     growth.run(seeds, options.max_fitting_error, {seed.face}, {seed.face}, result.chart, progress);
 }
@@ -333,12 +332,12 @@ void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
         progress.update(0.5);
     }
     std::vector<Index> front;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        if (result.chart[at(f)] < 0)
+    for (const Face f : mesh.all_faces()) {
+        if (result.chart[f] < 0)
             continue;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index opposite = mesh.twin[at(h)];
-            if (opposite >= 0 && result.chart[at(opposite / 3)] < 0) {
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index opposite = mesh.twin[h];
+            if (opposite >= 0 && result.chart[opposite / 3] < 0) {
                 front.push_back(f);
                 break;
             }
@@ -377,7 +376,7 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
 
     progress.begin_phase("placing seeds", 0.1);
     std::vector<Seed> seeds;
-    for (const Index face :
+    for (const Face face :
          growth::farthest_point_seeds(mesh, options.charts_number,
                                       static_cast<std::uint32_t>(options.random_seed), progress))
         seeds.push_back(initial_seed(mesh, face));
@@ -393,7 +392,7 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     result.fitting_error.resize(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         result.fitting_error[f] =
-            result.proxies[at(result.chart[f])].fitting_error(mesh.face_normals[f]);
+            result.proxies[result.chart[f]].fitting_error(mesh.face_normals[f]);
     return result;
 }
 

@@ -3,11 +3,12 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/dcharts/developable_charts.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::dcharts {
+
+using namespace declare;
 
 namespace {
 
@@ -25,35 +26,14 @@ constexpr const char* dcharts_help =
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
 
-constexpr const char* disks_help =
-    "Cuts every chart open until it is a disk, which is what flattening needs: by shortest paths "
-    "between its boundary loops, along short cycles through its handles, and by a slit if the "
-    "chart is closed. Tips that no flattening maps well, such as those of fingers and horns, are "
-    "cut open as well.<br>"
-    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
-    "coordinates, and without those each connected component of the mesh is a chart. The cuts are "
-    "added to <b>seam_edges</b>.<br>"
-    "See:<br><i>Jeff Erickson, Sariel Har-Peled</i><br>"
-    "<b>\"Optimally Cutting a Surface into a Disk\"</b><br>"
-    "Discrete &amp; Computational Geometry 31, 2004, doi:10.1007/s00454-003-2948-z<br>"
-    "<i>Hitoshi Yamauchi, Stefan Gumhold, Rhaleb Zayer, Hans-Peter Seidel</i><br>"
-    "<b>\"Mesh Segmentation Driven by Gaussian Curvature\"</b><br>"
-    "The Visual Computer 21, 2005, doi:10.1007/s00371-005-0319-x";
-
-constexpr const char* colorize_help =
-    "Gives each chart a colour, so that neighbours differ clearly. The same charts always get the "
-    "same colours.<br>"
-    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
-    "coordinates, and without those each connected component of the mesh is a chart.";
-
-declare::FilterOutput run_dcharts(const declare::FilterInput& input,
-                                  const DevelopableChartsOptions& options, Progress& progress) {
+FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOptions& options,
+                         Progress& progress) {
     DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, progress);
     progress.begin_phase("cutting charts to disks", 0.1);
     const atlas::ChartMap charts =
         atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
@@ -66,41 +46,16 @@ declare::FilterOutput run_dcharts(const declare::FilterInput& input,
         {"converged", segmentation.converged},
         {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
-    output.face_color = declare::face_chart_colors(input.mesh, cuts.charts);
+    output.face_color = face_chart_colors(input.mesh, cuts.charts);
     output.face_quality = std::move(segmentation.fitting_error);
     output.charts = std::move(cuts.charts);
     return output;
 }
 
-declare::FilterOutput run_disks(const declare::FilterInput& input,
-                                const atlas::DiskOptions& options, Progress& progress) {
-    progress.begin_phase("cutting charts to disks", 1.0);
-    atlas::DiskCuts cuts =
-        atlas::cut_charts_to_disks(input.mesh, filters::find_charts(input), options, progress);
-    declare::FilterOutput output;
-    output.values = {
-        {"charts_number", cuts.charts.count},
-        {"cut_charts_number", cuts.cut_charts},
-        {"cut_tips_number", cuts.cut_tips},
-        {"cut_length", cuts.cut_length * input.mesh.unit_length},
-    };
-    output.charts = std::move(cuts.charts);
-    return output;
-}
-
-declare::FilterOutput run_colorize(const declare::FilterInput& input, const declare::NoOptions&,
-                                   Progress&) {
-    const atlas::ChartMap charts = filters::find_charts(input);
-    declare::FilterOutput output;
-    output.values = {{"charts_number", charts.count}};
-    output.face_color = declare::face_chart_colors(input.mesh, charts);
-    return output;
-}
-
-declare::FilterDeclaration dcharts() {
+FilterDeclaration dcharts() {
     using O = DevelopableChartsOptions;
-    return declare::Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
-                               declare::FilterCategory::remeshing, dcharts_help)
+    return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
+                      FilterCategory::remeshing, dcharts_help)
         .integer(&O::charts_number, "charts_number", "Number of charts", 0, 1e9,
                  "The initial estimate of the number of charts, from 1 to the number of faces. "
                  "Large regions that fit no chart get charts of their own, and neighbours that "
@@ -142,7 +97,7 @@ declare::FilterDeclaration dcharts() {
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
-        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
+        .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("hole_charts_number", "charts that were added where no other fitted")
         .result("joined_charts_number", "joins of two charts")
@@ -156,34 +111,10 @@ declare::FilterDeclaration dcharts() {
         .runs(run_dcharts);
 }
 
-declare::FilterDeclaration disks() {
-    return declare::Declare<atlas::DiskOptions>("Charts: Cut to Disks",
-                                                "compute_seams_charts_to_disks_per_edge",
-                                                declare::FilterCategory::remeshing, disks_help)
-        .boolean(&atlas::DiskOptions::cut_tips, "cut_tips", "Cut tips",
-                 "Cut charts open up to tips as well: to vertices at least as far from the border "
-                 "as the border is long, and to the ends of horns.")
-        .writes(declare::writes_charts)
-        .result("charts_number", "charts, each a disk")
-        .result("cut_charts_number", "charts that were cut")
-        .result("cut_tips_number", "cuts up to tips")
-        .result("cut_length", "length of the new cuts, model units")
-        .runs(run_disks);
-}
-
-declare::FilterDeclaration colorize() {
-    return declare::Declare<declare::NoOptions>("Charts: Colorize",
-                                                "compute_color_by_chart_per_face",
-                                                declare::FilterCategory::color, colorize_help)
-        .writes(declare::writes_color)
-        .result("charts_number", "charts that were coloured")
-        .runs(run_colorize);
-}
-
 } // namespace
 
-std::vector<declare::FilterDeclaration> segmentation_filters() {
-    return {dcharts(), disks(), colorize()};
+std::vector<FilterDeclaration> filters() {
+    return {dcharts()};
 }
 
 } // namespace devseg::dcharts

@@ -53,11 +53,11 @@ StretchBounds bounds_from(double merge_threshold) {
 bool is_creased(const Mesh& mesh) {
     double bent = 0.0;
     double sharp = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin <= h)
             continue;
-        const double cosine = mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)]);
+        const double cosine = mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3]);
         bent += cosine < bent_cosine ? mesh.edge_length(h) : 0.0;
         sharp += cosine < sharp_cosine ? mesh.edge_length(h) : 0.0;
     }
@@ -179,13 +179,13 @@ private:
             whole.resize(draft.faces.size(), 0);
             Index worst = -1;
             for (Index c = 0; c < static_cast<Index>(draft.faces.size()); ++c)
-                if (!draft.faces[at(c)].empty() && whole[at(c)] == 0 &&
-                    (worst < 0 || draft.map[at(c)].excess() > draft.map[at(worst)].excess()))
+                if (!draft.faces[c].empty() && whole[c] == 0 &&
+                    (worst < 0 || draft.map[c].excess() > draft.map[worst].excess()))
                     worst = c;
             if (worst < 0)
                 return;
             if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
-                whole[at(worst)] = 1;
+                whole[worst] = 1;
         }
     }
 

@@ -29,8 +29,8 @@ Draft make_untried_draft(const Mesh& mesh, const std::vector<Index>& chart) {
     Draft draft;
     draft.chart = chart;
     draft.seam.assign(mesh.twin.size(), 0);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const std::size_t c = at(chart[at(f)]);
+    for (const Face f : mesh.all_faces()) {
+        const std::size_t c = at(chart[f]);
         if (draft.faces.size() <= c)
             draft.faces.resize(c + 1);
         draft.faces[c].push_back(f);

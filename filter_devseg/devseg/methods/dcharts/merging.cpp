@@ -39,17 +39,17 @@ private:
 
     void measure_borders() {
         length_.clear();
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            const Index twin = mesh_.twin[at(h)];
-            if (twin > h && draft_.chart[at(h / 3)] != draft_.chart[at(twin / 3)])
-                length_[std::minmax(draft_.chart[at(h / 3)], draft_.chart[at(twin / 3)])] +=
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            const HalfEdge twin = mesh_.twin[h];
+            if (twin > h && draft_.chart[h / 3] != draft_.chart[twin / 3])
+                length_[std::minmax(draft_.chart[h / 3], draft_.chart[twin / 3])] +=
                     mesh_.edge_length(h);
         }
     }
 
     std::vector<Index> united(const Pair& pair) const {
-        const std::vector<Index>& a = draft_.faces[at(pair.first)];
-        const std::vector<Index>& b = draft_.faces[at(pair.second)];
+        const std::vector<Index>& a = draft_.faces[pair.first];
+        const std::vector<Index>& b = draft_.faces[pair.second];
         std::vector<Index> faces(a.size() + b.size());
         std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
         return faces;
@@ -59,10 +59,10 @@ private:
     StretchBounds bounds(const Pair& pair) const {
         StretchBounds limit = options_.chart;
         for (const Index c : {pair.first, pair.second})
-            limit.linf = std::max(limit.linf, draft_.map[at(c)].linf);
+            limit.linf = std::max(limit.linf, draft_.map[c].linf);
         if (is_small(pair.first) || is_small(pair.second)) {
-            const judge::TrialMap& a = draft_.map[at(pair.first)];
-            const judge::TrialMap& b = draft_.map[at(pair.second)];
+            const judge::TrialMap& a = draft_.map[pair.first];
+            const judge::TrialMap& b = draft_.map[pair.second];
             limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
             limit.l2 = 1.0 + small_allowance * (limit.l2 - 1.0);
             limit.linf = 1.0 + small_allowance * (limit.linf - 1.0);
@@ -70,7 +70,7 @@ private:
         return limit;
     }
     bool is_small(Index c) const {
-        return draft_.map[at(c)].area < options_.small_share * mesh_.total_area;
+        return draft_.map[c].area < options_.small_share * mesh_.total_area;
     }
 
     void try_new_pairs() {
@@ -95,8 +95,7 @@ private:
     }
 
     double added_excess(const Pair& pair, const judge::TrialMap& map) const {
-        return map.excess() - draft_.map[at(pair.first)].excess() -
-               draft_.map[at(pair.second)].excess();
+        return map.excess() - draft_.map[pair.first].excess() - draft_.map[pair.second].excess();
     }
 
     bool is_allowed(const Pair& pair, const judge::TrialMap& map, double excess) const {
@@ -105,8 +104,7 @@ private:
     }
 
     double least_border(const Pair& pair) const {
-        const double area =
-            std::min(draft_.map[at(pair.first)].area, draft_.map[at(pair.second)].area);
+        const double area = std::min(draft_.map[pair.first].area, draft_.map[pair.second].area);
         return options_.least_neck * std::sqrt(area);
     }
 
@@ -118,9 +116,8 @@ private:
             double lowest = infinite;
             for (const auto& [pair, length] : length_) {
                 const judge::TrialMap& map = joined_[pair];
-                const double saved = length - map.cut_length +
-                                     draft_.map[at(pair.first)].cut_length +
-                                     draft_.map[at(pair.second)].cut_length;
+                const double saved = length - map.cut_length + draft_.map[pair.first].cut_length +
+                                     draft_.map[pair.second].cut_length;
                 if (!is_allowed(pair, map, excess) || !(saved > 0.0) || saved < least_border(pair))
                     continue;
                 const double price =
@@ -144,11 +141,11 @@ private:
 
     void join(const Pair& pair) {
         const auto [a, b] = pair;
-        for (const Index f : draft_.faces[at(b)])
-            draft_.chart[at(f)] = a;
-        draft_.faces[at(a)] = united(pair);
-        draft_.faces[at(b)].clear();
-        draft_.map[at(a)] = joined_[pair];
+        for (const Face f : draft_.faces[b])
+            draft_.chart[f] = a;
+        draft_.faces[a] = united(pair);
+        draft_.faces[b].clear();
+        draft_.map[a] = joined_[pair];
         for (auto it = joined_.begin(); it != joined_.end();) {
             const bool concerned = it->first.first == a || it->first.second == a ||
                                    it->first.first == b || it->first.second == b;

@@ -30,17 +30,17 @@ bool take_apart(const Mesh& mesh, const std::vector<Index>& label, double wanted
     const Index count = count_labels(label);
     if (count < 2)
         return false;
-    const std::vector<Index> faces = std::move(draft.faces[at(chart)]);
+    const std::vector<Index> faces = std::move(draft.faces[chart]);
     const Index first_new = static_cast<Index>(draft.faces.size());
-    draft.faces[at(chart)].clear();
+    draft.faces[chart].clear();
     draft.faces.resize(draft.faces.size() + at(count - 1));
     draft.map.resize(draft.faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const Index c = label[i] == 0 ? chart : first_new + label[i] - 1;
-        draft.chart[at(faces[i])] = c;
-        draft.faces[at(c)].push_back(faces[i]);
-        for (Index h = 3 * faces[i]; h < 3 * faces[i] + 3; ++h)
-            draft.seam[at(h)] = 0;
+        draft.chart[faces[i]] = c;
+        draft.faces[c].push_back(faces[i]);
+        for (const HalfEdge h : half_edges_of(faces[i]))
+            draft.seam[h] = 0;
     }
     judge::TrialEffort effort;
     effort.wanted_l2 = wanted_l2;
@@ -55,9 +55,9 @@ bool take_apart(const Mesh& mesh, const std::vector<Index>& label, double wanted
 
 bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
                  Draft& draft, Progress& progress) {
-    if (draft.faces[at(chart)].size() < 2)
+    if (draft.faces[chart].size() < 2)
         return false;
-    const Mesh part = mesh_of_chart(mesh, draft.faces[at(chart)]);
+    const Mesh part = mesh_of_chart(mesh, draft.faces[chart]);
     DChartsOptions two = options;
     two.charts_number = 2;
     const DChartsResult grown = segment_dcharts(part, two, progress);
@@ -73,11 +73,11 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
 
 bool halve_chart(const Mesh& mesh, double wanted_l2, Index chart, Draft& draft,
                  Progress& progress) {
-    if (draft.faces[at(chart)].size() < 2)
+    if (draft.faces[chart].size() < 2)
         return false;
     baselines::VsaOptions planes;
     planes.charts_number = 2;
-    const Mesh part = mesh_of_chart(mesh, draft.faces[at(chart)]);
+    const Mesh part = mesh_of_chart(mesh, draft.faces[chart]);
     return take_apart(mesh, baselines::segment_vsa(part, planes, progress).chart, wanted_l2, chart,
                       draft, progress);
 }

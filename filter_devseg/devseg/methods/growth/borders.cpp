@@ -16,20 +16,20 @@ namespace {
 constexpr int smoothing_rounds = 4;
 constexpr double crease_cosine = 0.7; // of 45 degrees: sharper edges are features, not noise
 
-bool is_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
-    const Index twin = mesh.twin[at(h)];
-    return twin >= 0 && chart[at(h / 3)] != chart[at(twin / 3)];
+bool is_border(const Mesh& mesh, const std::vector<Index>& chart, HalfEdge h) {
+    const HalfEdge twin = mesh.twin[h];
+    return twin >= 0 && chart[h / 3] != chart[twin / 3];
 }
 
 // Vertices where borders end: three or more borders meet, or the mesh's boundary is reached.
 std::vector<std::uint8_t> find_junctions(const Mesh& mesh, const std::vector<Index>& chart) {
     std::vector<std::uint8_t> borders(mesh.points.size(), 0);
     std::vector<std::uint8_t> on_boundary(mesh.points.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        if (is_border(mesh, chart, h) && borders[at(mesh.origin(h))] < 3)
-            ++borders[at(mesh.origin(h))];
-        if (mesh.twin[at(h)] < 0)
-            on_boundary[at(mesh.origin(h))] = on_boundary[at(mesh.target(h))] = 1;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (is_border(mesh, chart, h) && borders[mesh.origin(h)] < 3)
+            ++borders[mesh.origin(h)];
+        if (mesh.twin[h] < 0)
+            on_boundary[mesh.origin(h)] = on_boundary[mesh.target(h)] = 1;
     }
     std::vector<std::uint8_t> junction(mesh.points.size(), 0);
     for (std::size_t v = 0; v < junction.size(); ++v)
@@ -38,10 +38,10 @@ std::vector<std::uint8_t> find_junctions(const Mesh& mesh, const std::vector<Ind
 }
 
 // The border half-edge of the same chart that goes on from the end of h.
-Index next_on_border(const Mesh& mesh, const std::vector<Index>& chart, Index h) {
+Index next_on_border(const Mesh& mesh, const std::vector<Index>& chart, HalfEdge h) {
     h = Mesh::next(h);
-    while (mesh.twin[at(h)] >= 0 && !is_border(mesh, chart, h))
-        h = Mesh::next(mesh.twin[at(h)]);
+    while (mesh.twin[h] >= 0 && !is_border(mesh, chart, h))
+        h = Mesh::next(mesh.twin[h]);
     return h;
 }
 
@@ -53,25 +53,24 @@ std::vector<BorderSegment> find_border_segments(const Mesh& mesh, const std::vec
     std::vector<BorderSegment> segments;
     const auto walk = [&](Index start, bool is_loop) {
         BorderSegment segment;
-        segment.chart_a = chart[at(start / 3)];
-        segment.chart_b = chart[at(mesh.twin[at(start)] / 3)];
+        segment.chart_a = chart[start / 3];
+        segment.chart_b = chart[mesh.twin[start] / 3];
         segment.is_loop = is_loop;
-        for (Index h = start; done[at(h)] == 0; h = next_on_border(mesh, chart, h)) {
-            done[at(h)] = done[at(mesh.twin[at(h)])] = 1;
+        for (HalfEdge h = start; done[h] == 0; h = next_on_border(mesh, chart, h)) {
+            done[h] = done[mesh.twin[h]] = 1;
             segment.half_edges.push_back(h);
-            if (junction[at(mesh.target(h))] != 0)
+            if (junction[mesh.target(h)] != 0)
                 break;
         }
         segments.push_back(std::move(segment));
     };
-    const auto starts = [&](Index h) {
-        return is_border(mesh, chart, h) && done[at(h)] == 0 &&
-               chart[at(h / 3)] < chart[at(mesh.twin[at(h)] / 3)];
+    const auto starts = [&](HalfEdge h) {
+        return is_border(mesh, chart, h) && done[h] == 0 && chart[h / 3] < chart[mesh.twin[h] / 3];
     };
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (starts(h) && junction[at(mesh.origin(h))] != 0)
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (starts(h) && junction[mesh.origin(h)] != 0)
             walk(h, false);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+    for (const HalfEdge h : mesh.all_half_edges())
         if (starts(h))
             walk(h, true);
     return segments;
@@ -86,16 +85,16 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh, const Progress& progress) {
     std::vector<Vec3> normals = mesh.face_normals;
     for (int round = 0; round < smoothing_rounds; ++round) {
         std::vector<Vec3> next(normals.size());
-        for (Index f = 0; f < mesh.face_count(); ++f) {
+        for (const Face f : mesh.all_faces()) {
             beat();
-            Vec3 sum = mesh.face_areas[at(f)] * normals[at(f)];
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh.twin[at(h)];
+            Vec3 sum = mesh.face_areas[f] * normals[f];
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh.twin[h];
                 if (twin >= 0 &&
-                    mesh.face_normals[at(f)].dot(mesh.face_normals[at(twin / 3)]) > crease_cosine)
-                    sum += mesh.face_areas[at(twin / 3)] * normals[at(twin / 3)];
+                    mesh.face_normals[f].dot(mesh.face_normals[twin / 3]) > crease_cosine)
+                    sum += mesh.face_areas[twin / 3] * normals[twin / 3];
             }
-            next[at(f)] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : normals[at(f)];
+            next[f] = sum.squaredNorm() > 0.0 ? Vec3(sum.normalized()) : normals[f];
         }
         normals = std::move(next);
     }
@@ -115,23 +114,23 @@ public:
           new_border_(mesh.twin.size(), 0), outgoing_(mesh.points.size(), -1),
           valence_(mesh.points.size(), 0), corners_(mesh.points.size(), 0),
           in_flood_(mesh.faces.size(), 0) {
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        for (const HalfEdge h : mesh.all_half_edges()) {
             // On a boundary, prefer the half-edge from which the whole fan is reached one way.
-            Index& first = outgoing_[at(mesh.origin(h))];
-            if (first < 0 || mesh.twin[at(h)] < 0)
+            Index& first = outgoing_[mesh.origin(h)];
+            if (first < 0 || mesh.twin[h] < 0)
                 first = h;
-            ++valence_[at(mesh.origin(h))];
+            ++valence_[mesh.origin(h)];
         }
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] < 0)
-                valence_[at(mesh.origin(h))] = valence_[at(mesh.target(h))] = -1;
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] < 0)
+                valence_[mesh.origin(h)] = valence_[mesh.target(h)] = -1;
     }
 
     bool straighten(const BorderSegment& segment) {
         grow_fuzzy_area(segment);
         const bool replaced = segment.is_loop ? straighten_loop(segment) : straighten_path(segment);
-        for (const Index f : area_)
-            fuzzy_[at(f)] = 0;
+        for (const Face f : area_)
+            fuzzy_[f] = 0;
         area_.clear();
         return replaced;
     }
@@ -141,50 +140,50 @@ private:
     void grow_fuzzy_area(const BorderSegment& segment) {
         std::vector<Index> left;
         std::vector<Index> right;
-        for (const Index h : segment.half_edges) {
+        for (const HalfEdge h : segment.half_edges) {
             left.push_back(h / 3);
-            right.push_back(mesh_.twin[at(h)] / 3);
+            right.push_back(mesh_.twin[h] / 3);
         }
         grow_from(std::move(left), segment.chart_a, segment.chart_b);
         grow_from(std::move(right), segment.chart_b, segment.chart_a);
     }
     // Breadth first, so that the number of rings can be limited.
     void grow_from(std::vector<Index> ring, Index own, Index into) {
-        const auto take = [&](Index f) {
-            if (chart_[at(f)] != own || fuzzy_[at(f)] != 0 || !fits(f, into))
+        const auto take = [&](Face f) {
+            if (chart_[f] != own || fuzzy_[f] != 0 || !fits(f, into))
                 return false;
-            fuzzy_[at(f)] = 1;
+            fuzzy_[f] = 1;
             area_.push_back(f);
             return true;
         };
-        ring.erase(std::remove_if(ring.begin(), ring.end(), [&](Index f) { return !take(f); }),
+        ring.erase(std::remove_if(ring.begin(), ring.end(), [&](Face f) { return !take(f); }),
                    ring.end());
         for (int depth = 1; !ring.empty() && (rings_ == 0 || depth < rings_); ++depth) {
             std::vector<Index> next;
-            for (const Index f : ring)
-                for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                    const Index twin = mesh_.twin[at(h)];
+            for (const Face f : ring)
+                for (const HalfEdge h : half_edges_of(f)) {
+                    const HalfEdge twin = mesh_.twin[h];
                     if (twin >= 0 && take(twin / 3))
                         next.push_back(twin / 3);
                 }
             ring = std::move(next);
         }
     }
-    bool fits(Index f, Index c) const {
-        for (const metrics::ConicProxy& proxy : proxies_[at(c)])
-            if (proxy.fitting_error(normals_[at(f)]) < max_fitting_error_)
+    bool fits(Face f, Index c) const {
+        for (const metrics::ConicProxy& proxy : proxies_[c])
+            if (proxy.fitting_error(normals_[f]) < max_fitting_error_)
                 return true;
         return false;
     }
 
     // A vertex that a new border may pass: no other chart, no boundary and no other border of the
     // two charts comes there.
-    bool is_free(Index v, const BorderSegment& segment) const {
+    bool is_free(Vertex v, const BorderSegment& segment) const {
         bool allowed = true;
-        const bool whole = mesh::visit_star(mesh_, outgoing_[at(v)], [&](Index h) {
-            const Index c = chart_[at(h / 3)];
+        const bool whole = mesh::visit_star(mesh_, outgoing_[v], [&](HalfEdge h) {
+            const Index c = chart_[h / 3];
             allowed = allowed && (c == segment.chart_a || c == segment.chart_b);
-            if (is_border(mesh_, chart_, h) && blocked_[at(v)] == 0)
+            if (is_border(mesh_, chart_, h) && blocked_[v] == 0)
                 allowed = false; // a border, but not of this segment
         });
         return whole && allowed;
@@ -195,25 +194,25 @@ private:
         const Index to = mesh_.target(segment.half_edges.back());
         if (from == to || segment.half_edges.size() < 2)
             return false;
-        for (const Index h : segment.half_edges)
-            blocked_[at(mesh_.origin(h))] = blocked_[at(mesh_.target(h))] = 1; // own border: free
+        for (const HalfEdge h : segment.half_edges)
+            blocked_[mesh_.origin(h)] = blocked_[mesh_.target(h)] = 1; // own border: free
         mark(segment.half_edges, passable);
         const std::vector<Index> path = shortest_path(segment, from, to);
         mark(segment.half_edges, 0);
-        for (const Index h : segment.half_edges)
-            blocked_[at(mesh_.origin(h))] = blocked_[at(mesh_.target(h))] = 0;
+        for (const HalfEdge h : segment.half_edges)
+            blocked_[mesh_.origin(h)] = blocked_[mesh_.target(h)] = 0;
         return !path.empty() && length(path) < length(segment.half_edges) * worthwhile &&
                relabel(segment, path);
     }
 
     void mark(const std::vector<Index>& half_edges, std::uint8_t value) {
-        for (const Index h : half_edges)
-            new_border_[at(h)] = new_border_[at(mesh_.twin[at(h)])] = value;
+        for (const HalfEdge h : half_edges)
+            new_border_[h] = new_border_[mesh_.twin[h]] = value;
     }
 
     double length(const std::vector<Index>& half_edges) const {
         double sum = 0.0;
-        for (const Index h : half_edges)
+        for (const HalfEdge h : half_edges)
             sum += mesh_.edge_length(h);
         return sum;
     }
@@ -224,38 +223,38 @@ private:
         using Entry = std::pair<double, Index>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
         std::vector<Index> touched{from};
-        distance_[at(from)] = 0.0;
+        distance_[from] = 0.0;
         queue.emplace(0.0, from);
         while (!queue.empty()) {
             const auto [d, v] = queue.top();
             queue.pop();
             if (v == to)
                 break;
-            if (d > distance_[at(v)])
+            if (d > distance_[v])
                 continue;
-            mesh::visit_star(mesh_, outgoing_[at(v)], [&, d = d](Index h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || (fuzzy_[at(h / 3)] == 0 && fuzzy_[at(twin / 3)] == 0 &&
-                                 new_border_[at(h)] != passable))
+            mesh::visit_star(mesh_, outgoing_[v], [&, d = d](HalfEdge h) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 ||
+                    (fuzzy_[h / 3] == 0 && fuzzy_[twin / 3] == 0 && new_border_[h] != passable))
                     return;
                 const Index w = mesh_.target(h);
                 const double through = d + mesh_.edge_length(h);
-                if (through >= distance_[at(w)] || (w != to && !is_free(w, segment)))
+                if (through >= distance_[w] || (w != to && !is_free(w, segment)))
                     return;
-                if (arrival_[at(w)] < 0)
+                if (arrival_[w] < 0)
                     touched.push_back(w);
-                distance_[at(w)] = through;
-                arrival_[at(w)] = h;
+                distance_[w] = through;
+                arrival_[w] = h;
                 queue.emplace(through, w);
             });
         }
         std::vector<Index> path;
-        for (Index v = to; v != from && arrival_[at(v)] >= 0; v = mesh_.origin(path.back()))
-            path.push_back(arrival_[at(v)]);
+        for (Vertex v = to; v != from && arrival_[v] >= 0; v = mesh_.origin(path.back()))
+            path.push_back(arrival_[v]);
         std::reverse(path.begin(), path.end());
-        for (const Index v : touched) {
-            distance_[at(v)] = infinite;
-            arrival_[at(v)] = -1;
+        for (const Vertex v : touched) {
+            distance_[v] = infinite;
+            arrival_[v] = -1;
         }
         return path;
     }
@@ -268,34 +267,34 @@ private:
         bool consistent = true;
         const auto flood = [&](Index start, Index c) {
             std::vector<Index> stack;
-            const auto take = [&](Index f) {
-                if (fuzzy_[at(f)] == 1) {
-                    fuzzy_[at(f)] = c == segment.chart_a ? 2 : 3;
+            const auto take = [&](Face f) {
+                if (fuzzy_[f] == 1) {
+                    fuzzy_[f] = c == segment.chart_a ? 2 : 3;
                     labels.emplace_back(f, c);
                     stack.push_back(f);
-                } else if (fuzzy_[at(f)] == (c == segment.chart_a ? 3 : 2)) {
+                } else if (fuzzy_[f] == (c == segment.chart_a ? 3 : 2)) {
                     consistent = false;
-                } else if (fuzzy_[at(f)] == 0 && chart_[at(f)] != c) {
+                } else if (fuzzy_[f] == 0 && chart_[f] != c) {
                     consistent = false; // the area between the borders must be fuzzy
                 }
             };
             take(start);
             while (!stack.empty() && consistent) {
-                const Index f = stack.back();
+                const Face f = stack.back();
                 stack.pop_back();
-                for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                    const Index twin = mesh_.twin[at(h)];
-                    if (twin < 0 || new_border_[at(h)] == closed)
+                for (const HalfEdge h : half_edges_of(f)) {
+                    const HalfEdge twin = mesh_.twin[h];
+                    if (twin < 0 || new_border_[h] == closed)
                         continue;
-                    if (is_border(mesh_, chart_, h) && new_border_[at(h)] != passable)
+                    if (is_border(mesh_, chart_, h) && new_border_[h] != passable)
                         continue;
                     take(twin / 3);
                 }
             }
         };
-        for (const Index h : path) {
+        for (const HalfEdge h : path) {
             flood(h / 3, segment.chart_a);
-            flood(mesh_.twin[at(h)] / 3, segment.chart_b);
+            flood(mesh_.twin[h] / 3, segment.chart_b);
         }
         mark(segment.half_edges, 0);
         mark(path, 0);
@@ -310,24 +309,24 @@ private:
         for (std::size_t i = 0; i < area_.size(); ++i)
             index_of.emplace_back(area_[i], static_cast<Index>(i));
         std::sort(index_of.begin(), index_of.end());
-        const auto node_of = [&](Index f) {
-            return std::lower_bound(index_of.begin(), index_of.end(), std::pair(f, Index{0}))
+        const auto node_of = [&](Face f) {
+            return std::lower_bound(index_of.begin(), index_of.end(), std::pair<Index, Index>(f, 0))
                 ->second;
         };
         // Two more nodes stand for all that lies outside of the area.
         std::vector<graph::CutSide> sides(area_.size() + 2, graph::CutSide::open);
         const Index core_a = static_cast<Index>(area_.size());
-        sides[at(core_a)] = graph::CutSide::source;
-        sides[at(core_a + 1)] = graph::CutSide::sink;
+        sides[core_a] = graph::CutSide::source;
+        sides[core_a + 1] = graph::CutSide::sink;
         graph::MinCut cut(std::move(sides));
         bool has_core[2] = {false, false};
-        for (const Index f : area_)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
+        for (const Face f : area_)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
                 if (twin < 0)
                     continue;
-                const Index c = chart_[at(twin / 3)];
-                if (fuzzy_[at(twin / 3)] != 0) {
+                const Index c = chart_[twin / 3];
+                if (fuzzy_[twin / 3] != 0) {
                     if (twin > h)
                         cut.link(node_of(f), node_of(twin / 3), mesh_.edge_length(h));
                 } else if (c == segment.chart_a || c == segment.chart_b) {
@@ -353,30 +352,30 @@ private:
         Index doubled_euler = 0;
     };
     Topology topology(Index start) {
-        const Index c = chart_[at(start)];
+        const Index c = chart_[start];
         Topology result;
         Index boundary = 0;
         Index inner = 0;
         std::vector<Index> reached{start};
-        in_flood_[at(start)] = 1;
+        in_flood_[start] = 1;
         for (std::size_t i = 0; i < reached.size(); ++i)
-            for (Index h = 3 * reached[i]; h < 3 * reached[i] + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                const Index v = mesh_.origin(h);
-                inner += ++corners_[at(v)] == valence_[at(v)] ? 1 : 0;
-                if (twin < 0 || chart_[at(twin / 3)] != c) {
+            for (const HalfEdge h : half_edges_of(reached[i])) {
+                const HalfEdge twin = mesh_.twin[h];
+                const Vertex v = mesh_.origin(h);
+                inner += ++corners_[v] == valence_[v] ? 1 : 0;
+                if (twin < 0 || chart_[twin / 3] != c) {
                     ++boundary;
-                } else if (in_flood_[at(twin / 3)] == 0) {
-                    in_flood_[at(twin / 3)] = 1;
+                } else if (in_flood_[twin / 3] == 0) {
+                    in_flood_[twin / 3] = 1;
                     reached.push_back(twin / 3);
                 }
             }
         result.faces = static_cast<Index>(reached.size());
         result.doubled_euler = 2 * inner + boundary - result.faces;
-        for (const Index f : reached) {
-            in_flood_[at(f)] = 0;
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                corners_[at(mesh_.origin(h))] = 0;
+        for (const Face f : reached) {
+            in_flood_[f] = 0;
+            for (const HalfEdge h : half_edges_of(f))
+                corners_[mesh_.origin(h)] = 0;
         }
         return result;
     }
@@ -385,18 +384,18 @@ private:
     bool apply(const BorderSegment& segment, const std::vector<std::pair<Index, Index>>& labels) {
         const Index first = segment.half_edges.front();
         const Topology before_a = topology(first / 3);
-        const Topology before_b = topology(mesh_.twin[at(first)] / 3);
+        const Topology before_b = topology(mesh_.twin[first] / 3);
         std::vector<std::pair<Index, Index>> undo;
         Index sum[2] = {before_a.faces, before_b.faces}; // faces that the charts should have
         Index lost[2] = {0, 0};
         for (const auto& [f, c] : labels) {
-            if (chart_[at(f)] == c)
+            if (chart_[f] == c)
                 continue;
-            undo.emplace_back(f, chart_[at(f)]);
+            undo.emplace_back(f, chart_[f]);
             sum[c == segment.chart_a ? 0 : 1] += 1;
             sum[c == segment.chart_a ? 1 : 0] -= 1;
             lost[c == segment.chart_a ? 1 : 0] += 1;
-            chart_[at(f)] = c;
+            chart_[f] = c;
         }
         if (undo.empty())
             return false;
@@ -416,7 +415,7 @@ private:
         }
         if (!good)
             for (const auto& [f, c] : undo)
-                chart_[at(f)] = c;
+                chart_[f] = c;
         return good;
     }
 
@@ -454,7 +453,7 @@ Index straighten_borders(const Mesh& mesh, const ChartProxies& proxies, double m
     // Each border changes what the next ones find: the longest first, whatever the order of faces.
     const auto length = [&](const BorderSegment& segment) {
         double sum = 0.0;
-        for (const Index h : segment.half_edges)
+        for (const HalfEdge h : segment.half_edges)
             sum += mesh.edge_length(h);
         return sum;
     };

@@ -24,9 +24,9 @@ public:
         : mesh_(mesh), proxies_(proxies), options_(options), chart_(chart),
           node_(mesh.faces.size(), -1), weight_(mesh.twin.size(), 0.0) {
         const double scale = options.length_weight * std::sqrt(mesh.total_area);
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] >= 0)
-                weight_[at(h)] = scale * atlas::crease_factor(mesh, h) * mesh.edge_length(h);
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] >= 0)
+                weight_[h] = scale * atlas::crease_factor(mesh, h) * mesh.edge_length(h);
     }
 
     // Lets one chart take what lowers the sum; returns the number of faces that it took.
@@ -35,36 +35,36 @@ public:
         if (faces_.empty())
             return 0;
         const Index taken = solve(label);
-        for (const Index f : faces_)
-            node_[at(f)] = -1;
+        for (const Face f : faces_)
+            node_[f] = -1;
         faces_.clear();
         return taken;
     }
 
 private:
-    double cost(Index f, Index label) const {
-        const double error = proxies_[at(label)].fitting_error(mesh_.face_normals[at(f)]);
+    double cost(Face f, Index label) const {
+        const double error = proxies_[label].fitting_error(mesh_.face_normals[f]);
         const double beyond = std::max(0.0, error - options_.max_fitting_error);
-        return mesh_.face_areas[at(f)] * (error + excess_weight * beyond);
+        return mesh_.face_areas[f] * (error + excess_weight * beyond);
     }
 
     // Faces of other charts that the chart reaches over faces which it may take.
     void find_candidates(Index label) {
-        const auto offer = [&](Index f) {
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || chart_[at(twin / 3)] == label || node_[at(twin / 3)] >= 0)
+        const auto offer = [&](Face f) {
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || chart_[twin / 3] == label || node_[twin / 3] >= 0)
                     continue;
                 const Index g = twin / 3;
-                if (proxies_[at(label)].fitting_error(mesh_.face_normals[at(g)]) >=
+                if (proxies_[label].fitting_error(mesh_.face_normals[g]) >=
                     reach * options_.max_fitting_error)
                     continue;
-                node_[at(g)] = static_cast<Index>(faces_.size());
+                node_[g] = static_cast<Index>(faces_.size());
                 faces_.push_back(g);
             }
         };
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            if (chart_[at(f)] == label)
+        for (const Face f : mesh_.all_faces())
+            if (chart_[f] == label)
                 offer(f);
         for (std::size_t i = 0; i < faces_.size(); ++i)
             offer(faces_[i]);
@@ -76,23 +76,23 @@ private:
         const Index source = count;
         const Index sink = count + 1;
         std::vector<graph::CutSide> sides(faces_.size() + 2, graph::CutSide::open);
-        sides[at(source)] = graph::CutSide::source;
-        sides[at(sink)] = graph::CutSide::sink;
+        sides[source] = graph::CutSide::source;
+        sides[sink] = graph::CutSide::sink;
         std::vector<double> take(faces_.size());
         std::vector<double> keep(faces_.size());
         links_.clear();
         for (Index i = 0; i < count; ++i) {
-            const Index f = faces_[at(i)];
-            const Index own = chart_[at(f)];
-            take[at(i)] += cost(f, label);
-            keep[at(i)] += cost(f, own);
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
+            const Face f = faces_[i];
+            const Index own = chart_[f];
+            take[i] += cost(f, label);
+            keep[i] += cost(f, own);
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
                 if (twin < 0)
                     continue;
-                const Index other = chart_[at(twin / 3)];
-                const Index node = node_[at(twin / 3)];
-                const double w = weight_[at(h)];
+                const Index other = chart_[twin / 3];
+                const Index node = node_[twin / 3];
+                const double w = weight_[h];
                 if (node >= 0 && other == own) {
                     if (h < twin)
                         links_.push_back({i, node, w});
@@ -100,16 +100,16 @@ private:
                     if (h < twin)
                         link_across_border(i, node, source, w, sides);
                 } else if (other == label) {
-                    keep[at(i)] += w;
+                    keep[i] += w;
                 } else {
-                    take[at(i)] += w;
-                    keep[at(i)] += other == own ? 0.0 : w;
+                    take[i] += w;
+                    keep[i] += other == own ? 0.0 : w;
                 }
             }
         }
         graph::MinCut cut(std::move(sides));
         for (Index i = 0; i < count; ++i) {
-            const double difference = keep[at(i)] - take[at(i)];
+            const double difference = keep[i] - take[i];
             if (difference > 0.0)
                 cut.link(source, i, difference);
             else
@@ -120,8 +120,8 @@ private:
         const std::vector<graph::CutSide> side = cut.solve();
         Index taken = 0;
         for (Index i = 0; i < count; ++i)
-            if (side[at(i)] == graph::CutSide::source) {
-                chart_[at(faces_[at(i)])] = label;
+            if (side[i] == graph::CutSide::source) {
+                chart_[faces_[i]] = label;
                 ++taken;
             }
         return taken;

@@ -43,21 +43,21 @@ public:
         keys_.assign(at(leaves_), none);
         winner_.assign(at(2 * leaves_), 0);
         for (Index i = 0; i < leaves_; ++i)
-            winner_[at(leaves_ + i)] = i;
+            winner_[leaves_ + i] = i;
         for (Index node = leaves_ - 1; node > 0; --node)
-            winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
+            winner_[node] = better(winner_[2 * node], winner_[2 * node + 1]);
     }
     void set(Index player, Key key) {
-        keys_[at(player)] = key;
+        keys_[player] = key;
         for (Index node = (leaves_ + player) / 2; node > 0; node /= 2)
-            winner_[at(node)] = better(winner_[at(2 * node)], winner_[at(2 * node + 1)]);
+            winner_[node] = better(winner_[2 * node], winner_[2 * node + 1]);
     }
     Index winner() const { return winner_[1]; }
-    const Key& key(Index player) const { return keys_[at(player)]; }
+    const Key& key(Index player) const { return keys_[player]; }
 
 private:
     Index better(Index a, Index b) const {
-        return keys_[at(b)] < keys_[at(a)] ? b : a; // ties: the lower number, which is a
+        return keys_[b] < keys_[a] ? b : a; // ties: the lower number, which is a
     }
     Index leaves_ = 1;
     std::vector<Key> keys_;

@@ -43,21 +43,21 @@ public:
         for (CandidateHeap& heap : heaps_)
             heap.clear();
         for (Index c = 0; c < count; ++c) {
-            chart[at(seeds[at(c)])] = c;
-            cost.take(seeds[at(c)], c, 0.0F);
+            chart[seeds[c]] = c;
+            cost.take(seeds[c], c, 0.0F);
         }
         for (Index c = 0; c < count; ++c)
-            offer_neighbours(seeds[at(c)], c, cost, chart);
+            offer_neighbours(seeds[c], c, cost, chart);
         Tournament<GrowthKey> tournament(count, GrowthKey{});
         for (Index c = 0; c < count; ++c)
             tournament.set(c, key_of(c, cost, chart));
         for (Index taken = count; tournament.key(tournament.winner()).tier < GrowthKey{}.tier;) {
             const Index c = tournament.winner();
-            const CandidateHeap::Entry entry = heaps_[at(c)].top();
-            const Index f = entry.face;
-            if (chart[at(f)] < 0) { // another chart may have taken it since
-                heaps_[at(c)].pop();
-                chart[at(f)] = c;
+            const CandidateHeap::Entry entry = heaps_[c].top();
+            const Face f = entry.face;
+            if (chart[f] < 0) { // another chart may have taken it since
+                heaps_[c].pop();
+                chart[f] = c;
                 cost.take(f, c, entry.distance);
                 offer_neighbours(f, c, cost, chart);
                 if (++taken % update_every == 0)
@@ -70,28 +70,28 @@ public:
 private:
     template <class Cost>
     GrowthKey key_of(Index c, Cost& cost, const std::vector<Index>& chart) {
-        CandidateHeap& heap = heaps_[at(c)];
-        while (!heap.empty() && chart[at(heap.top().face)] >= 0)
+        CandidateHeap& heap = heaps_[c];
+        while (!heap.empty() && chart[heap.top().face] >= 0)
             heap.pop();
         return heap.empty() ? GrowthKey{} : cost.key(c, heap.top());
     }
 
     template <class Cost>
-    void offer_neighbours(Index f, Index c, Cost& cost, const std::vector<Index>& chart) {
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = mesh_.twin[at(h)];
-            if (twin < 0 || chart[at(twin / 3)] >= 0)
+    void offer_neighbours(Face f, Index c, Cost& cost, const std::vector<Index>& chart) {
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge twin = mesh_.twin[h];
+            if (twin < 0 || chart[twin / 3] >= 0)
                 continue;
             if (!Cost::keeps_first_offer || is_first_offer(twin, c, chart))
-                heaps_[at(c)].push(cost.candidate(h, c));
+                heaps_[c].push(cost.candidate(h, c));
         }
     }
 
     // A face was offered before if another neighbour of it is in the chart already.
-    bool is_first_offer(Index twin, Index c, const std::vector<Index>& chart) const {
-        for (const Index h : {Mesh::next(twin), Mesh::previous(twin)}) {
-            const Index other = mesh_.twin[at(h)];
-            if (other >= 0 && other / 3 != mesh_.twin[at(twin)] / 3 && chart[at(other / 3)] == c)
+    bool is_first_offer(HalfEdge twin, Index c, const std::vector<Index>& chart) const {
+        for (const HalfEdge h : {Mesh::next(twin), Mesh::previous(twin)}) {
+            const Index other = mesh_.twin[h];
+            if (other >= 0 && other / 3 != mesh_.twin[twin] / 3 && chart[other / 3] == c)
                 return false;
         }
         return true;

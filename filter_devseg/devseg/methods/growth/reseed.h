@@ -26,24 +26,24 @@ public:
         for (Index settled = 0; !heap_.empty();) {
             const CandidateHeap::Entry entry = heap_.top();
             heap_.pop();
-            const Index f = entry.face;
-            if (entry.key > distance_[at(f)])
+            const Face f = entry.face;
+            if (entry.key > distance_[f])
                 continue;
             if (++settled % update_every == 0)
                 progress.update(0.0);
-            const Index c = chart[at(f)];
+            const Index c = chart[f];
             // Faces come in the order of their distance; of equals the lowest number counts.
-            if (entry.key > largest[at(c)]) {
-                largest[at(c)] = entry.key;
-                farthest[at(c)] = f;
+            if (entry.key > largest[c]) {
+                largest[c] = entry.key;
+                farthest[c] = f;
             }
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || chart[at(twin / 3)] != c)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || chart[twin / 3] != c)
                     continue;
                 const float through = entry.key + step(h);
-                if (through < distance_[at(twin / 3)]) {
-                    distance_[at(twin / 3)] = through;
+                if (through < distance_[twin / 3]) {
+                    distance_[twin / 3] = through;
                     heap_.push({through, through, twin / 3});
                 }
             }
@@ -55,11 +55,11 @@ private:
     void start(const std::vector<Index>& chart) {
         distance_.assign(chart.size(), std::numeric_limits<float>::infinity());
         heap_.clear();
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || chart[at(twin / 3)] != chart[at(f)]) {
-                    distance_[at(f)] = 0.0F;
+        for (const Face f : mesh_.all_faces())
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || chart[twin / 3] != chart[f]) {
+                    distance_[f] = 0.0F;
                     heap_.push({0.0F, 0.0F, f});
                     break;
                 }

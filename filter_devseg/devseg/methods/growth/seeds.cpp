@@ -14,21 +14,21 @@ using MinQueue = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::g
 
 // Lowers `distance` to the distance from `source` where that is less (Dijkstra over centroids).
 void relax_from(const Mesh& mesh, Index source, std::vector<double>& distance, MinQueue& queue) {
-    distance[at(source)] = 0.0;
+    distance[source] = 0.0;
     queue.emplace(0.0, source);
     while (!queue.empty()) {
         const auto [d, f] = queue.top();
         queue.pop();
-        if (d > distance[at(f)])
+        if (d > distance[f])
             continue;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index opposite = mesh.twin[at(h)];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index opposite = mesh.twin[h];
             if (opposite < 0)
                 continue;
             const Index g = opposite / 3;
-            const double through = d + (mesh.face_centers[at(g)] - mesh.face_centers[at(f)]).norm();
-            if (through < distance[at(g)]) {
-                distance[at(g)] = through;
+            const double through = d + (mesh.face_centers[g] - mesh.face_centers[f]).norm();
+            if (through < distance[g]) {
+                distance[g] = through;
                 queue.emplace(through, g);
             }
         }
@@ -39,11 +39,11 @@ void relax_from(const Mesh& mesh, Index source, std::vector<double>& distance, M
 class Remoteness {
 public:
     explicit Remoteness(const Mesh& mesh) : mesh_(mesh), centre_(Vec3::Zero()) {
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            centre_ += mesh.face_areas[at(f)] * mesh.face_centers[at(f)];
+        for (const Face f : mesh.all_faces())
+            centre_ += mesh.face_areas[f] * mesh.face_centers[f];
         centre_ /= mesh.total_area;
     }
-    double operator()(Index f) const { return (mesh_.face_centers[at(f)] - centre_).squaredNorm(); }
+    double operator()(Face f) const { return (mesh_.face_centers[f] - centre_).squaredNorm(); }
 
 private:
     const Mesh& mesh_;
@@ -57,7 +57,7 @@ Index first_seed(const Mesh& mesh, const Remoteness& remoteness, std::uint32_t r
         return static_cast<Index>(generator() % static_cast<std::uint32_t>(mesh.face_count()));
     }
     Index best = 0;
-    for (Index f = 1; f < mesh.face_count(); ++f)
+    for (Face f = 1; f < mesh.face_count(); ++f)
         if (remoteness(f) > remoteness(best))
             best = f;
     return best;
@@ -79,17 +79,17 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
             return seeds;
         progress.update(static_cast<double>(seeds.size()) / count);
         relax_from(mesh, next, distance, queue);
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            if (distance[at(f)] > distance[at(next)] ||
+        for (const Face f : mesh.all_faces())
+            if (distance[f] > distance[next] ||
                 // a component without seeds: not the first of its faces, but the most remote
-                (distance[at(f)] == infinite && distance[at(next)] == infinite &&
+                (distance[f] == infinite && distance[next] == infinite &&
                  remoteness(f) > remoteness(next)))
                 next = f;
-        if (distance[at(next)] <= 0.0) { // centroids coincide: any face that is not a seed yet
+        if (distance[next] <= 0.0) { // centroids coincide: any face that is not a seed yet
             std::vector<std::uint8_t> taken(mesh.faces.size(), 0);
             for (const Index s : seeds)
-                taken[at(s)] = 1;
-            for (next = 0; taken[at(next)] != 0;)
+                taken[s] = 1;
+            for (next = 0; taken[next] != 0;)
                 ++next;
         }
     }

@@ -32,18 +32,18 @@ void VertexGrowth::start(std::size_t charts) {
         heap.clear();
 }
 
-bool VertexGrowth::is_free(Index v) const {
-    bool free = leaving_[at(v)] >= 0;
+bool VertexGrowth::is_free(Vertex v) const {
+    bool free = leaving_[v] >= 0;
     if (free)
-        mesh::visit_star(mesh_, leaving_[at(v)],
-                         [&](Index h) { free = free && state_.chart[at(h / 3)] < 0; });
+        mesh::visit_star(mesh_, leaving_[v],
+                         [&](HalfEdge h) { free = free && state_.chart[h / 3] < 0; });
     return free;
 }
 
 // A chart stays a disk if the vertex has one fan of the chart's faces and a gap of free ones. A
 // vertex without a gap is surrounded by the chart: it is the tip of a slit, and stays one.
-bool VertexGrowth::can_take(Index v, Index c) const {
-    if (state_.inside[at(v)] >= 0 || !std::isfinite(cost_[at(v)]))
+bool VertexGrowth::can_take(Vertex v, Index c) const {
+    if (state_.inside[v] >= 0 || !std::isfinite(cost_[v]))
         return false;
     int fans = 0;
     bool gap = false;
@@ -59,42 +59,42 @@ bool VertexGrowth::can_take(Index v, Index c) const {
         first = false;
         before = glued;
     };
-    const auto visit = [&](Index h) {
-        const Index chart = state_.chart[at(h / 3)];
-        const bool from = state_.inside[at(mesh_.target(h))] == c;
-        const bool to = state_.inside[at(mesh_.origin(Mesh::previous(h)))] == c;
+    const auto visit = [&](HalfEdge h) {
+        const Index chart = state_.chart[h / 3];
+        const bool from = state_.inside[mesh_.target(h)] == c;
+        const bool to = state_.inside[mesh_.origin(Mesh::previous(h))] == c;
         visit_edge(from);
         if (!from && !to) {
             gap = gap || chart < 0;
             foreign = foreign || chart >= 0;
         }
-        if (boundary_[at(v)] != 0 && mesh_.twin[at(Mesh::previous(h))] < 0)
+        if (boundary_[v] != 0 && mesh_.twin[Mesh::previous(h)] < 0)
             visit_edge(to);
     };
-    mesh::visit_star(mesh_, leaving_[at(v)], visit);
+    mesh::visit_star(mesh_, leaving_[v], visit);
     // Around an inner vertex the first edge comes after the last one; on the boundary, after none.
-    if (first_glued && (boundary_[at(v)] != 0 || !before || fans == 0))
+    if (first_glued && (boundary_[v] != 0 || !before || fans == 0))
         ++fans;
     return fans == 1 && gap && !foreign;
 }
 
-void VertexGrowth::take(Index v, Index c, float distance) {
-    state_.inside[at(v)] = c;
-    state_.cost[at(c)] += cost_[at(v)];
-    mesh::visit_star(mesh_, leaving_[at(v)], [&](Index h) {
-        if (state_.chart[at(h / 3)] < 0) {
-            state_.chart[at(h / 3)] = c;
-            ++state_.face_count[at(c)];
+void VertexGrowth::take(Vertex v, Index c, float distance) {
+    state_.inside[v] = c;
+    state_.cost[c] += cost_[v];
+    mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
+        if (state_.chart[h / 3] < 0) {
+            state_.chart[h / 3] = c;
+            ++state_.face_count[c];
         }
     });
     const auto offer = [&](Index u, double length) {
         const float d = distance + static_cast<float>(length);
-        if (state_.inside[at(u)] < 0)
-            heaps_[at(c)].push({static_cast<float>(cost_[at(u)]), d, u});
+        if (state_.inside[u] < 0)
+            heaps_[c].push({static_cast<float>(cost_[u]), d, u});
     };
-    mesh::visit_star(mesh_, leaving_[at(v)], [&](Index h) {
+    mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
         offer(mesh_.target(h), mesh_.edge_length(h));
-        if (mesh_.twin[at(Mesh::previous(h))] < 0)
+        if (mesh_.twin[Mesh::previous(h)] < 0)
             offer(mesh_.origin(Mesh::previous(h)), mesh_.edge_length(Mesh::previous(h)));
     });
 }
@@ -102,7 +102,7 @@ void VertexGrowth::take(Index v, Index c, float distance) {
 // The best candidate of chart c, −1 for none. A vertex that cannot be taken now is dropped: it is
 // offered again when a neighbour is taken, and nothing else can make it fit.
 Index VertexGrowth::best(Index c) {
-    CandidateHeap& heap = heaps_[at(c)];
+    CandidateHeap& heap = heaps_[c];
     while (!heap.empty() && !can_take(heap.top().face, c))
         heap.pop();
     return heap.empty() ? -1 : heap.top().face;
@@ -113,8 +113,7 @@ std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress
     std::vector<Index> order(mesh_.points.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        return std::make_tuple(boundary_[at(a)], cost_[at(a)]) <
-               std::make_tuple(boundary_[at(b)], cost_[at(b)]);
+        return std::make_tuple(boundary_[a], cost_[a]) < std::make_tuple(boundary_[b], cost_[b]);
     });
     std::vector<Index> seeds;
     Index taken = 0;
@@ -126,15 +125,15 @@ std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress
         heaps_.resize(1);
         heaps_.front().clear();
         heaps_.resize(seeds.size());
-        heaps_[at(c)].clear();
+        heaps_[c].clear();
         state_.face_count.push_back(0);
         state_.cost.push_back(0.0);
         take(seed, c, 0.0F);
-        for (Index v = best(c); v >= 0; v = best(c)) {
-            if (state_.cost[at(c)] + cost_[at(v)] > threshold)
+        for (Vertex v = best(c); v >= 0; v = best(c)) {
+            if (state_.cost[c] + cost_[v] > threshold)
                 break;
-            const float distance = heaps_[at(c)].top().distance;
-            heaps_[at(c)].pop();
+            const float distance = heaps_[c].top().distance;
+            heaps_[c].pop();
             take(v, c, distance);
             if (++taken % update_every == 0)
                 progress.update(0.0);
@@ -147,19 +146,17 @@ VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progr
     start(seeds.size());
     const Index count = static_cast<Index>(seeds.size());
     for (Index c = 0; c < count; ++c)
-        take(seeds[at(c)], c, 0.0F);
+        take(seeds[c], c, 0.0F);
     Tournament<double> tournament(count);
-    const auto rank = [&](Index c) {
-        tournament.set(c, best(c) < 0 ? infinite : state_.cost[at(c)]);
-    };
+    const auto rank = [&](Index c) { tournament.set(c, best(c) < 0 ? infinite : state_.cost[c]); };
     for (Index c = 0; c < count; ++c)
         rank(c);
     for (Index taken = 0; tournament.key(tournament.winner()) < infinite;) {
         const Index c = tournament.winner();
-        const Index v = best(c); // another chart may have come in between
+        const Vertex v = best(c); // another chart may have come in between
         if (v >= 0) {
-            const float distance = heaps_[at(c)].top().distance;
-            heaps_[at(c)].pop();
+            const float distance = heaps_[c].top().distance;
+            heaps_[c].pop();
             take(v, c, distance);
             if (++taken % update_every == 0)
                 progress.update(0.0);
@@ -174,42 +171,41 @@ atlas::ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
     charts.chart = grown.chart;
     charts.count = static_cast<Index>(grown.face_count.size());
     charts.seam.assign(mesh.twin.size(), 1);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index c = grown.chart[at(h / 3)];
-        if (mesh.twin[at(h)] >= 0 && c >= 0 && c == grown.chart[at(mesh.twin[at(h)] / 3)] &&
-            (grown.inside[at(mesh.origin(h))] == c || grown.inside[at(mesh.target(h))] == c))
-            charts.seam[at(h)] = 0;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index c = grown.chart[h / 3];
+        if (mesh.twin[h] >= 0 && c >= 0 && c == grown.chart[mesh.twin[h] / 3] &&
+            (grown.inside[mesh.origin(h)] == c || grown.inside[mesh.target(h)] == c))
+            charts.seam[h] = 0;
     }
     // The face with the longest share of its border to gain goes first; half-edges of taken faces.
     using Offer = std::pair<double, Index>;
     std::priority_queue<Offer> offers;
-    const auto offer_across = [&](Index h) {
-        const Index twin = mesh.twin[at(h)];
-        if (twin < 0 || charts.chart[at(twin / 3)] >= 0)
+    const auto offer_across = [&](HalfEdge h) {
+        const HalfEdge twin = mesh.twin[h];
+        if (twin < 0 || charts.chart[twin / 3] >= 0)
             return;
         double shared = 0.0;
         double all = 0.0;
-        for (Index k = 3 * (twin / 3); k < 3 * (twin / 3) + 3; ++k) {
+        for (const HalfEdge k : half_edges_of((twin / 3))) {
             all += mesh.edge_length(k);
-            if (mesh.twin[at(k)] >= 0 &&
-                charts.chart[at(mesh.twin[at(k)] / 3)] == charts.chart[at(h / 3)])
+            if (mesh.twin[k] >= 0 && charts.chart[mesh.twin[k] / 3] == charts.chart[h / 3])
                 shared += mesh.edge_length(k);
         }
         // Among the edges to one chart the longest is the best hinge: it counts a little.
         offers.emplace((shared + 1e-3 * mesh.edge_length(h)) / all, -h);
     };
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (charts.chart[at(h / 3)] >= 0)
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (charts.chart[h / 3] >= 0)
             offer_across(h);
     while (!offers.empty()) {
-        const Index h = -offers.top().second;
+        const HalfEdge h = -offers.top().second;
         offers.pop();
-        const Index twin = mesh.twin[at(h)];
-        if (charts.chart[at(twin / 3)] >= 0)
+        const HalfEdge twin = mesh.twin[h];
+        if (charts.chart[twin / 3] >= 0)
             continue;
-        charts.chart[at(twin / 3)] = charts.chart[at(h / 3)];
-        charts.seam[at(h)] = charts.seam[at(twin)] = 0;
-        for (Index k = 3 * (twin / 3); k < 3 * (twin / 3) + 3; ++k)
+        charts.chart[twin / 3] = charts.chart[h / 3];
+        charts.seam[h] = charts.seam[twin] = 0;
+        for (const HalfEdge k : half_edges_of((twin / 3)))
             offer_across(k);
     }
     return charts;

@@ -40,9 +40,9 @@ public:
 
 private:
     void start(std::size_t charts);
-    bool is_free(Index v) const;
-    bool can_take(Index v, Index c) const;
-    void take(Index v, Index c, float distance);
+    bool is_free(Vertex v) const;
+    bool can_take(Vertex v, Index c) const;
+    void take(Vertex v, Index c, float distance);
     Index best(Index c);
 
     const Mesh& mesh_;

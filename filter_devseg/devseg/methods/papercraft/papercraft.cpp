@@ -38,8 +38,8 @@ double diagonal_of(const Mesh& mesh) {
 
 std::vector<Index> valences(const Mesh& mesh) {
     std::vector<Index> valence(mesh.points.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        ++valence[at(mesh.origin(h))];
+    for (const HalfEdge h : mesh.all_half_edges())
+        ++valence[mesh.origin(h)];
     return valence;
 }
 
@@ -52,10 +52,10 @@ std::vector<double> spread(const Mesh& mesh, std::vector<double> value, int roun
         std::vector<double> next(value.size(), 0.0);
         for (std::size_t v = 0; v < value.size(); ++v)
             next[v] = 0.5 * value[v];
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-            const Index from = mesh.origin(h);
-            const Index to = boundary[at(mesh.target(h))] != 0 ? from : mesh.target(h);
-            next[at(to)] += 0.5 * value[at(from)] / valence[at(from)];
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            const Vertex from = mesh.origin(h);
+            const Index to = boundary[mesh.target(h)] != 0 ? from : mesh.target(h);
+            next[to] += 0.5 * value[from] / valence[from];
         }
         value = std::move(next);
     }
@@ -97,11 +97,11 @@ std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
                         const growth::VertexCharts& grown, Index number) {
     const mesh::FaceComponents components = mesh::face_components(mesh, [](Index) { return true; });
     std::vector<Index> component(mesh.points.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        component[at(mesh.origin(h))] = components.label[at(h / 3)];
+    for (const HalfEdge h : mesh.all_half_edges())
+        component[mesh.origin(h)] = components.label[h / 3];
     std::vector<Index> left(at(components.count), 0);
     for (const Index seed : seeds)
-        ++left[at(component[at(seed)])];
+        ++left[component[seed]];
     std::vector<std::size_t> order(seeds.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -109,7 +109,7 @@ std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
     });
     std::vector<std::uint8_t> gone(seeds.size(), 0);
     for (const std::size_t c : order) {
-        Index& rest = left[at(component[at(seeds[c])])];
+        Index& rest = left[component[seeds[c]]];
         if (number == 0 || rest == 1)
             continue;
         --rest;
@@ -125,9 +125,9 @@ std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
 
 double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     double length = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] > h && charts.seam[at(h)] != 0 &&
-            charts.chart[at(h / 3)] == charts.chart[at(mesh.twin[at(h)] / 3)])
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h && charts.seam[h] != 0 &&
+            charts.chart[h / 3] == charts.chart[mesh.twin[h] / 3])
             length += mesh.edge_length(h);
     return length;
 }
@@ -181,9 +181,8 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     result.slit_length = slit_length(mesh, result.charts);
     const std::vector<Index> valence = valences(mesh);
     result.defect_share.assign(mesh.faces.size(), 0.0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        result.defect_share[at(h / 3)] +=
-            std::abs(defect[at(mesh.origin(h))]) / valence[at(mesh.origin(h))];
+    for (const HalfEdge h : mesh.all_half_edges())
+        result.defect_share[h / 3] += std::abs(defect[mesh.origin(h)]) / valence[mesh.origin(h)];
     return result;
 }
 

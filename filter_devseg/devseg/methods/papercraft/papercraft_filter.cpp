@@ -1,10 +1,11 @@
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/papercraft/papercraft.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::papercraft {
+
+using namespace declare;
 
 namespace {
 
@@ -23,10 +24,10 @@ constexpr const char* papercraft_help =
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
     "Journal for Geometry and Graphics 19(1), 2015, pages 119-129";
 
-declare::FilterOutput run_papercraft(const declare::FilterInput& input,
-                                     const PapercraftOptions& options, Progress& progress) {
+FilterOutput run_papercraft(const FilterInput& input, const PapercraftOptions& options,
+                            Progress& progress) {
     PapercraftResult result = segment_papercraft(input.mesh, options, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {
         {"charts_number", result.charts.count},
         {"initial_charts_number", result.initial_charts},
@@ -35,7 +36,7 @@ declare::FilterOutput run_papercraft(const declare::FilterInput& input,
         {"slit_length", result.slit_length * input.mesh.unit_length},
         {"seam_length", metrics::seam_length(input.mesh, result.charts)},
     };
-    output.face_color = declare::face_chart_colors(input.mesh, result.charts);
+    output.face_color = face_chart_colors(input.mesh, result.charts);
     output.face_quality = std::move(result.defect_share);
     output.charts = std::move(result.charts);
     return output;
@@ -43,12 +44,12 @@ declare::FilterOutput run_papercraft(const declare::FilterInput& input,
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> papercraft_filters() {
+std::vector<FilterDeclaration> filters() {
     using O = PapercraftOptions;
     return {
-        declare::Declare<O>("Segmentation: Papercraft with Creases and Slits",
-                            "compute_segmentation_papercraft_per_face",
-                            declare::FilterCategory::remeshing, papercraft_help)
+        Declare<O>("Segmentation: Papercraft with Creases and Slits",
+                   "compute_segmentation_papercraft_per_face", FilterCategory::remeshing,
+                   papercraft_help)
             .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                      "From 1 to the number of faces. Fewer charts have more and longer slits. A "
                      "mesh of more components gets one chart for each of them.")
@@ -66,7 +67,7 @@ std::vector<declare::FilterDeclaration> papercraft_filters() {
             .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                      "0 takes angles as they are; other numbers vary them a little, for other "
                      "charts. The same number always gives the same charts.")
-            .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
+            .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("initial_charts_number", "charts of the initial segmentation")
             .result("rounds_number", "rounds of removing charts and growing the others")

@@ -33,7 +33,7 @@ public:
                 continue;
             std::vector<Index> back;
             for (auto h = segment.half_edges.rbegin(); h != segment.half_edges.rend(); ++h)
-                back.push_back(mesh.twin[at(*h)]);
+                back.push_back(mesh.twin[*h]);
             add(segment.half_edges, reach);
             add(std::move(back), reach);
         }
@@ -41,36 +41,36 @@ public:
 
     const std::vector<Arm>& all() const { return arms_; }
     /// The arm that begins with a half-edge; −1 = none.
-    Index starting_with(Index h) const { return starting_[at(h)]; }
+    Index starting_with(HalfEdge h) const { return starting_[h]; }
 
     /// The next arm around the same vertex, on the left; −1 where the mesh's boundary comes first.
     Index next_on_left(Index arm) const {
-        const Index start = arms_[at(arm)].half_edges.front();
-        for (Index h = mesh_.twin[at(Mesh::previous(start))]; h >= 0 && h != start;
-             h = mesh_.twin[at(Mesh::previous(h))])
-            if (starting_[at(h)] >= 0)
-                return starting_[at(h)];
+        const Index start = arms_[arm].half_edges.front();
+        for (HalfEdge h = mesh_.twin[Mesh::previous(start)]; h >= 0 && h != start;
+             h = mesh_.twin[Mesh::previous(h)])
+            if (starting_[h] >= 0)
+                return starting_[h];
         return -1;
     }
 
 private:
     void add(std::vector<Index> half_edges, double reach) {
         // To the point at which the arm is as long as the reach.
-        Vec3 end = mesh_.points[at(mesh_.target(half_edges.back()))];
+        Vec3 end = mesh_.points[mesh_.target(half_edges.back())];
         double left = reach;
-        for (const Index h : half_edges) {
+        for (const HalfEdge h : half_edges) {
             const double length = mesh_.edge_length(h);
             if (length >= left) {
-                end = mesh_.points[at(mesh_.origin(h))] +
-                      left / length *
-                          (mesh_.points[at(mesh_.target(h))] - mesh_.points[at(mesh_.origin(h))]);
+                end =
+                    mesh_.points[mesh_.origin(h)] +
+                    left / length * (mesh_.points[mesh_.target(h)] - mesh_.points[mesh_.origin(h)]);
                 break;
             }
             left -= length;
         }
         Arm arm;
-        arm.direction = (end - mesh_.points[at(mesh_.origin(half_edges.front()))]).normalized();
-        starting_[at(half_edges.front())] = static_cast<Index>(arms_.size());
+        arm.direction = (end - mesh_.points[mesh_.origin(half_edges.front())]).normalized();
+        starting_[half_edges.front()] = static_cast<Index>(arms_.size());
         arm.half_edges = std::move(half_edges);
         arms_.push_back(std::move(arm));
     }
@@ -87,7 +87,7 @@ std::vector<AcuteCorner> corners_between(const Arms& arms, double max_angle) {
         if (left < 0)
             continue;
         const Arm& first = arms.all()[i];
-        const Arm& second = arms.all()[at(left)];
+        const Arm& second = arms.all()[left];
         const double cosine = first.direction.dot(second.direction);
         if (cosine > std::cos(max_angle))
             corners.push_back({first.half_edges.front(), second.half_edges.front(), cosine});
@@ -103,7 +103,7 @@ public:
     CornerBlunter(const SeamSetting& setting, SeamMarks& seam, Progress& progress)
         : s_(setting), mesh_(setting.mesh()), graph_(build_vertex_graph(mesh_)),
           reach_(reach_share * std::sqrt(mesh_.total_area)), seam_(seam), progress_(progress) {
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+        for (const HalfEdge h : mesh_.all_half_edges())
             length_.push_back(mesh_.edge_length(h));
     }
 
@@ -127,8 +127,8 @@ private:
     using Line = std::vector<Index>; // half-edges
 
     bool blunt(const Arms& arms, const AcuteCorner& corner) {
-        const Line& first = arms.all()[at(arms.starting_with(corner.first))].half_edges;
-        const Line& second = arms.all()[at(arms.starting_with(corner.second))].half_edges;
+        const Line& first = arms.all()[arms.starting_with(corner.first)].half_edges;
+        const Line& second = arms.all()[arms.starting_with(corner.second)].half_edges;
         for (const Line* line : {&first, &second})
             if (is_dart(*line) && replace(*line, {}))
                 return true;
@@ -146,25 +146,25 @@ private:
 
     bool is_dart(const Line& line) const {
         double length = 0.0;
-        for (const Index h : line)
-            length += length_[at(h)];
+        for (const HalfEdge h : line)
+            length += length_[h];
         return length < slides.back() * reach_ && degree_at(mesh_.target(line.back())) == 1;
     }
 
-    Index degree_at(Index v) const {
+    Index degree_at(Vertex v) const {
         Index degree = 0;
-        for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
-            const Index h = graph_.half_edge[at(i)];
-            degree += seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0 ? 1 : 0;
+        for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
+            const HalfEdge h = graph_.half_edge[i];
+            degree += seam_[h] != 0 || mesh_.twin[h] < 0 ? 1 : 0;
         }
         return degree;
     }
 
     Line start_of(const Line& line, double length) const {
         Line start;
-        for (const Index h : line) {
+        for (const HalfEdge h : line) {
             start.push_back(h);
-            length -= length_[at(h)];
+            length -= length_[h];
             if (length <= 0.0)
                 break;
         }
@@ -181,21 +181,20 @@ private:
             return {};
         double radius = 0.0;
         for (const Line* line : {&a, &b})
-            for (const Index h : *line)
-                radius += length_[at(h)];
+            for (const HalfEdge h : *line)
+                radius += length_[h];
         std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
         const std::vector<Index> patch = patches_of(mesh_, seam_, {corner.first / 3}).front();
-        for (const Index f : patch)
-            for (const Index v : mesh_.faces[at(f)])
-                may_enter[at(v)] =
-                    (mesh_.points[at(v)] - mesh_.points[at(tip)]).norm() < radius ? 1 : 0;
-        for (const Index f : patch)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
-                    may_enter[at(mesh_.origin(h))] = may_enter[at(mesh_.target(h))] = 0;
-        may_enter[at(start)] = may_enter[at(end)] = 1;
+        for (const Face f : patch)
+            for (const Vertex v : mesh_.faces[f])
+                may_enter[v] = (mesh_.points[v] - mesh_.points[tip]).norm() < radius ? 1 : 0;
+        for (const Face f : patch)
+            for (const HalfEdge h : half_edges_of(f))
+                if (seam_[h] != 0 || mesh_.twin[h] < 0)
+                    may_enter[mesh_.origin(h)] = may_enter[mesh_.target(h)] = 0;
+        may_enter[start] = may_enter[end] = 1;
         const PathTree tree = shortest_paths(graph_, length_, {start}, progress_, may_enter);
-        if (!std::isfinite(tree.distance[at(end)]))
+        if (!std::isfinite(tree.distance[end]))
             return {};
         Line path = trace_path(mesh_, tree, end);
         return closes_off(corner, a, b, path) ? path : Line{};
@@ -204,28 +203,28 @@ private:
     bool closes_off(const AcuteCorner& corner, const Line& a, const Line& b,
                     const Line& path) const {
         SeamMarks marks = seam_;
-        for (const Index h : path) {
-            if (seam_[at(h)] != 0)
+        for (const HalfEdge h : path) {
+            if (seam_[h] != 0)
                 return false;
             mark(mesh_, h, 1, marks);
         }
         Index border = 0;
         const std::vector<Index> closed_off = patches_of(mesh_, marks, {corner.first / 3}).front();
-        for (const Index f : closed_off)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                border += marks[at(h)] != 0 || mesh_.twin[at(h)] < 0 ? 1 : 0;
+        for (const Face f : closed_off)
+            for (const HalfEdge h : half_edges_of(f))
+                border += marks[h] != 0 || mesh_.twin[h] < 0 ? 1 : 0;
         return border == static_cast<Index>(a.size() + b.size() + path.size());
     }
 
     // Opens one line and closes another where that helps and patches stay developable.
     bool replace(const Line& opened, const Line& closed) {
-        for (const Index h : opened)
-            if (!s_.hard.empty() && s_.hard[at(h)] != 0)
+        for (const HalfEdge h : opened)
+            if (!s_.hard.empty() && s_.hard[h] != 0)
                 return false;
         SeamMarks marks = seam_;
-        for (const Index h : opened)
+        for (const HalfEdge h : opened)
             mark(mesh_, h, 0, marks);
-        for (const Index h : closed)
+        for (const HalfEdge h : closed)
             mark(mesh_, h, 1, marks);
         const auto count = [&](const SeamMarks& seam) {
             return corners_between(Arms(mesh_, seam, s_.hard, reach_), acute).size();
@@ -234,8 +233,8 @@ private:
             return false;
         std::vector<Index> start;
         for (const Line* line : {&opened, &closed})
-            for (const Index h : *line)
-                for (const Index side : {h, mesh_.twin[at(h)]})
+            for (const HalfEdge h : *line)
+                for (const HalfEdge side : {h, mesh_.twin[h]})
                     start.push_back(side / 3);
         ++tried_;
         progress_.check();

@@ -41,7 +41,7 @@ public:
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
                               least_leaning, 1.0)),
           seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
-        for (Index h = 0; h < to.half_edge_count(); ++h)
+        for (const HalfEdge h : to.all_half_edges())
             cost_.push_back(cost_of(h, reach_));
     }
 
@@ -56,9 +56,9 @@ public:
         for (const SeamSegment& segment : segments)
             add_lines(segment, lines);
         for (const std::vector<Index>& line : lines)
-            for (const Index v : {line.front(), line.back()})
+            for (const Vertex v : {line.front(), line.back()})
                 if (place(v) >= 0)
-                    taken_[at(place(v))] = 1;
+                    taken_[place(v)] = 1;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             progress.update(static_cast<double>(i) / static_cast<double>(lines.size()));
             carry(lines[i], progress);
@@ -75,7 +75,7 @@ private:
         for (std::size_t part = 0; part < parts; ++part) {
             std::vector<Index> line;
             for (std::size_t k = part * count / parts; k < (part + 1) * count / parts; ++k) {
-                const Index h = segment.half_edges[k];
+                const HalfEdge h = segment.half_edges[k];
                 if (line.empty())
                     line.push_back(from_.origin(h));
                 line.push_back(from_.target(h));
@@ -84,12 +84,12 @@ private:
         }
     }
 
-    Index place(Index v) {
-        if (place_[at(v)] < 0)
-            place_[at(v)] = search_.vertex(points_[at(v)], normal_[at(v)], [&](Index u) {
-                return on_border_[at(v)] == 0 || may_border_[at(u)] != 0;
+    Index place(Vertex v) {
+        if (place_[v] < 0)
+            place_[v] = search_.vertex(points_[v], normal_[v], [&](Index u) {
+                return on_border_[v] == 0 || may_border_[u] != 0;
             });
-        return place_[at(v)];
+        return place_[v];
     }
 
     void carry(const std::vector<Index>& line, const Progress& progress) {
@@ -102,63 +102,61 @@ private:
         for (std::size_t v = 0; v < free.size(); ++v)
             if (taken_[v] != 0)
                 free[v] = 0;
-        free[at(start)] = free[at(end)] = 1;
+        free[start] = free[end] = 1;
         // Where other seams leave no room the path shares their edges.
         for (const std::vector<std::uint8_t>& allowed :
              {free, strip, std::vector<std::uint8_t>{}}) {
             const PathTree tree = shortest_paths(graph_, cost_, {start}, progress, allowed);
-            if (!std::isfinite(tree.distance[at(end)]))
+            if (!std::isfinite(tree.distance[end]))
                 continue;
-            for (const Index h : trace_path(to_, tree, end)) {
+            for (const HalfEdge h : trace_path(to_, tree, end)) {
                 mark(to_, h, 1, seam_);
-                taken_[at(to_.origin(h))] = taken_[at(to_.target(h))] = 1;
+                taken_[to_.origin(h)] = taken_[to_.target(h)] = 1;
             }
             return;
         }
     }
 
-    double cost_of(Index h, double away) const {
+    double cost_of(HalfEdge h, double away) const {
         const double d = away / leaning_;
-        return to_.edge_length(h) * (1.0 + d * d) *
-               (1.0 - stray_share + stray_share * stray_[at(h)]);
+        return to_.edge_length(h) * (1.0 + d * d) * (1.0 - stray_share + stray_share * stray_[h]);
     }
 
     // Sets the cost of the edges near the line; returns the vertices there.
     std::vector<std::uint8_t> lean_towards(const std::vector<Index>& line) {
         std::vector<Vec3> points;
-        for (const Index v : line)
-            points.push_back(points_[at(v)]);
+        for (const Vertex v : line)
+            points.push_back(points_[v]);
         std::vector<double> away(to_.points.size(), reach_);
         std::vector<std::uint8_t> strip(to_.points.size(), 0);
         std::vector<Index> queue;
-        const auto visit = [&](Index v) {
-            if (strip[at(v)] != 0)
+        const auto visit = [&](Vertex v) {
+            if (strip[v] != 0)
                 return;
-            const double distance = distance_to_line(to_.points[at(v)], points);
+            const double distance = distance_to_line(to_.points[v], points);
             if (distance > reach_)
                 return;
-            strip[at(v)] = 1;
-            away[at(v)] = distance;
+            strip[v] = 1;
+            away[v] = distance;
             queue.push_back(v);
         };
-        for (const Index v : line)
+        for (const Vertex v : line)
             if (const Index u = place(v); u >= 0) {
                 visit(u);
             }
         for (std::size_t k = 0; k < queue.size(); ++k)
-            for (Index i = graph_.begin[at(queue[k])]; i < graph_.begin[at(queue[k]) + 1]; ++i)
-                visit(graph_.vertex[at(i)]);
-        for (const Index h : near_)
-            cost_[at(h)] = cost_of(h, reach_);
+            for (Index i = graph_.begin[queue[k]]; i < graph_.begin[at(queue[k]) + 1]; ++i)
+                visit(graph_.vertex[i]);
+        for (const HalfEdge h : near_)
+            cost_[h] = cost_of(h, reach_);
         near_.clear();
-        for (const Index v : queue)
-            for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
-                const Index h = graph_.half_edge[at(i)];
-                cost_[at(h)] =
-                    cost_of(h, 0.5 * (away[at(to_.origin(h))] + away[at(to_.target(h))]));
+        for (const Vertex v : queue)
+            for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
+                const HalfEdge h = graph_.half_edge[i];
+                cost_[h] = cost_of(h, 0.5 * (away[to_.origin(h)] + away[to_.target(h)]));
                 near_.push_back(h);
             }
-        strip[at(place(line.front()))] = strip[at(place(line.back()))] = 1;
+        strip[place(line.front())] = strip[place(line.back())] = 1;
         return strip;
     }
 
@@ -192,24 +190,23 @@ void cut_corners(const Mesh& mesh, SeamMarks& seam) {
     std::vector<Index> degree = seam_degrees(mesh, seam);
     for (bool changed = true; changed;) {
         changed = false;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-            const Index n = Mesh::next(h);
-            const Index third = Mesh::previous(h);
-            if (seam[at(h)] == 0 || seam[at(n)] == 0 || seam[at(third)] != 0 ||
-                mesh.twin[at(third)] < 0)
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            const HalfEdge n = Mesh::next(h);
+            const HalfEdge third = Mesh::previous(h);
+            if (seam[h] == 0 || seam[n] == 0 || seam[third] != 0 || mesh.twin[third] < 0)
                 continue;
-            if (degree[at(mesh.target(h))] != 2) {
-                const Index longer = mesh.edge_length(h) >= mesh.edge_length(n) ? h : n;
-                const Index outer = longer == h ? mesh.origin(h) : mesh.target(n);
-                if (degree[at(outer)] != 2 || !(mesh.edge_length(third) < mesh.edge_length(longer)))
+            if (degree[mesh.target(h)] != 2) {
+                const HalfEdge longer = mesh.edge_length(h) >= mesh.edge_length(n) ? h : n;
+                const Vertex outer = longer == h ? mesh.origin(h) : mesh.target(n);
+                if (degree[outer] != 2 || !(mesh.edge_length(third) < mesh.edge_length(longer)))
                     continue;
                 mark(mesh, longer, 0, seam);
-                --degree[at(mesh.target(h))];
-                ++degree[at(longer == h ? mesh.target(n) : mesh.origin(h))];
+                --degree[mesh.target(h)];
+                ++degree[longer == h ? mesh.target(n) : mesh.origin(h)];
             } else {
                 mark(mesh, h, 0, seam);
                 mark(mesh, n, 0, seam);
-                degree[at(mesh.target(h))] = 0;
+                degree[mesh.target(h)] = 0;
             }
             mark(mesh, third, 1, seam);
             changed = true;

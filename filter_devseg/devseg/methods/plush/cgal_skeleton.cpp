@@ -111,12 +111,12 @@ struct Curves {
 Surface to_surface(const Mesh& mesh, const std::vector<Index>& label, Index component) {
     Surface surface;
     std::vector<Surface::Vertex_index> vertex(mesh.points.size());
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        if (label[at(f)] != component)
+    for (const Face f : mesh.all_faces()) {
+        if (label[f] != component)
             continue;
         std::array<Surface::Vertex_index, 3> corners;
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t v = at(mesh.faces[at(f)][k]);
+            const std::size_t v = at(mesh.faces[f][k]);
             const Vec3& p = mesh.points[v];
             if (!vertex[v].is_valid())
                 vertex[v] = surface.add_vertex({p.x(), p.y(), p.z()});
@@ -152,8 +152,8 @@ Curves contract(const Surface& surface, const Progress& progress) {
     }
     curves.links.resize(curves.points.size());
     for (const auto e : CGAL::make_range(edges(skeleton))) {
-        curves.links[at(number[source(e, skeleton)])].push_back(number[target(e, skeleton)]);
-        curves.links[at(number[target(e, skeleton)])].push_back(number[source(e, skeleton)]);
+        curves.links[number[source(e, skeleton)]].push_back(number[target(e, skeleton)]);
+        curves.links[number[target(e, skeleton)]].push_back(number[source(e, skeleton)]);
     }
     return curves;
 }
@@ -183,21 +183,21 @@ void simplify(const std::vector<Vec3>& line, std::size_t first, std::size_t last
 
 // Follows each curve from one end or branch to the next, and adds its bones.
 void add_bones(const Curves& curves, double size, Skeleton& skeleton) {
-    const auto is_node = [&](Index v) { return curves.links[at(v)].size() != 2; };
+    const auto is_node = [&](Vertex v) { return curves.links[v].size() != 2; };
     for (Index start = 0; start < static_cast<Index>(curves.points.size()); ++start) {
         if (!is_node(start))
             continue;
-        for (const Index first : curves.links[at(start)]) {
+        for (const Index first : curves.links[start]) {
             std::vector<Index> walk{start, first};
             while (!is_node(walk.back()) && walk.size() <= curves.points.size()) {
-                const auto& next = curves.links[at(walk.back())];
+                const auto& next = curves.links[walk.back()];
                 walk.push_back(next[0] == walk[walk.size() - 2] ? next[1] : next[0]);
             }
             if (walk.back() < start || (walk.back() == start && walk[1] > walk[walk.size() - 2]))
                 continue; // the other direction is taken
             std::vector<Vec3> line;
-            for (const Index v : walk)
-                line.push_back(curves.points[at(v)]);
+            for (const Vertex v : walk)
+                line.push_back(curves.points[v]);
             std::vector<std::size_t> kept{0};
             simplify(line, 0, line.size() - 1, tolerance * size, kept);
             for (std::size_t i = 1; i < kept.size(); ++i) {
@@ -230,14 +230,14 @@ Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
         mesh::face_components(coarse.mesh, [](Index) { return true; });
     std::vector<Index> faces(at(parts.count), 0);
     std::vector<std::uint8_t> is_open(at(parts.count), 0);
-    for (Index h = 0; h < coarse.mesh.half_edge_count(); ++h) {
-        faces[at(parts.label[at(h / 3)])] += h % 3 == 0 ? 1 : 0;
-        if (coarse.mesh.twin[at(h)] < 0)
-            is_open[at(parts.label[at(h / 3)])] = 1;
+    for (const HalfEdge h : coarse.mesh.all_half_edges()) {
+        faces[parts.label[h / 3]] += h % 3 == 0 ? 1 : 0;
+        if (coarse.mesh.twin[h] < 0)
+            is_open[parts.label[h / 3]] = 1;
     }
     const ThrowingChecks guard;
     for (Index c = 0; c < parts.count; ++c) {
-        if (is_open[at(c)] != 0 || faces[at(c)] < least_faces)
+        if (is_open[c] != 0 || faces[c] < least_faces)
             continue;
         try {
             const SkeletonArena arena;

@@ -28,8 +28,8 @@ class LimbFinder {
 public:
     LimbFinder(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& curvature)
         : mesh_(mesh), graph_(graph), curvature_(curvature), length_(mesh.twin.size()) {
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            length_[at(h)] = mesh.edge_length(h);
+        for (const HalfEdge h : mesh.all_half_edges())
+            length_[h] = mesh.edge_length(h);
     }
 
     Limb find(Index tip, const Progress& progress) const {
@@ -38,8 +38,7 @@ public:
         double farthest = 0.0;
         for (std::size_t f = 0; f < distance.size(); ++f) {
             const Triangle& t = mesh_.faces[f];
-            distance[f] =
-                (tree.distance[at(t[0])] + tree.distance[at(t[1])] + tree.distance[at(t[2])]) / 3.0;
+            distance[f] = (tree.distance[t[0]] + tree.distance[t[1]] + tree.distance[t[2]]) / 3.0;
             if (std::isfinite(distance[f]))
                 farthest = std::max(farthest, distance[f]);
         }
@@ -86,9 +85,8 @@ private:
         return root;
     }
 
-    double concavity_cost(Index h) const {
-        const double bend =
-            0.5 * (curvature_[at(mesh_.origin(h))] + curvature_[at(mesh_.target(h))]);
+    double concavity_cost(HalfEdge h) const {
+        const double bend = 0.5 * (curvature_[mesh_.origin(h)] + curvature_[mesh_.target(h)]);
         return mesh_.edge_length(h) / (1.0 + concave_gain * std::max(0.0, -bend)) *
                (1.0 + 0.5 * std::min(4.0, std::max(0.0, bend)));
     }
@@ -102,9 +100,9 @@ private:
                 start[f] = graph::CutSide::sink;
         }
         graph::MinCut cut(start);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (mesh_.twin[at(h)] > h)
-                cut.link(h / 3, mesh_.twin[at(h)] / 3, concavity_cost(h));
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (mesh_.twin[h] > h)
+                cut.link(h / 3, mesh_.twin[h] / 3, concavity_cost(h));
         const std::vector<graph::CutSide> side = cut.solve();
         return component(tip, side);
     }
@@ -113,21 +111,21 @@ private:
         std::vector<std::uint8_t> seen(mesh_.faces.size(), 0);
         std::vector<Index> faces;
         double area = 0.0;
-        const auto take = [&](Index f) {
-            if (seen[at(f)] != 0 || side[at(f)] != graph::CutSide::source)
+        const auto take = [&](Face f) {
+            if (seen[f] != 0 || side[f] != graph::CutSide::source)
                 return;
-            seen[at(f)] = 1;
+            seen[f] = 1;
             faces.push_back(f);
-            area += mesh_.face_areas[at(f)];
+            area += mesh_.face_areas[f];
         };
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            for (const Index v : mesh_.faces[at(f)])
+        for (const Face f : mesh_.all_faces())
+            for (const Vertex v : mesh_.faces[f])
                 if (v == tip)
                     take(f);
         for (std::size_t k = 0; k < faces.size(); ++k)
-            for (Index h = 3 * faces[k]; h < 3 * faces[k] + 3; ++h)
-                if (mesh_.twin[at(h)] >= 0)
-                    take(mesh_.twin[at(h)] / 3);
+            for (const HalfEdge h : half_edges_of(faces[k]))
+                if (mesh_.twin[h] >= 0)
+                    take(mesh_.twin[h] / 3);
         std::sort(faces.begin(), faces.end());
         if (area > most_share * mesh_.total_area)
             faces.clear();
@@ -142,8 +140,8 @@ private:
 
 double area_of(const Mesh& mesh, const std::vector<Index>& faces) {
     double area = 0.0;
-    for (const Index f : faces)
-        area += mesh.face_areas[at(f)];
+    for (const Face f : faces)
+        area += mesh.face_areas[f];
     return area;
 }
 
@@ -179,12 +177,12 @@ std::vector<Limb> find_limbs(const Mesh& mesh, const VertexGraph& graph,
 
 std::vector<Index> limb_border(const Mesh& mesh, const Limb& limb) {
     std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
-    for (const Index f : limb.faces)
-        inside[at(f)] = 1;
+    for (const Face f : limb.faces)
+        inside[f] = 1;
     std::vector<Index> border;
-    for (const Index f : limb.faces)
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            if (mesh.twin[at(h)] >= 0 && inside[at(mesh.twin[at(h)] / 3)] == 0)
+    for (const Face f : limb.faces)
+        for (const HalfEdge h : half_edges_of(f))
+            if (mesh.twin[h] >= 0 && inside[mesh.twin[h] / 3] == 0)
                 border.push_back(h);
     return border;
 }

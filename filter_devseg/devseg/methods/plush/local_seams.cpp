@@ -38,9 +38,9 @@ public:
         if (!trial.is_disk) {
             SeamMarks marks = seam_;
             atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces, marks), marks, progress);
-            for (const Index f : faces)
-                for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                    if (marks[at(h)] != seam_[at(h)])
+            for (const Face f : faces)
+                for (const HalfEdge h : half_edges_of(f))
+                    if (marks[h] != seam_[h])
                         split.cuts.push_back(h);
             return split;
         }
@@ -75,20 +75,19 @@ private:
         std::vector<std::uint8_t> state(mesh_.faces.size(), 0); // 1: of the patch, 2: cut off
         double area = 0.0;
         for (std::size_t i = 0; i < trial.face.size(); ++i) {
-            state[at(trial.face[i])] = 1;
-            change[at(trial.face[i])] = (trial.change[i] - usual) / (trial.change[worst] - usual);
-            area += mesh_.face_areas[at(trial.face[i])];
+            state[trial.face[i]] = 1;
+            change[trial.face[i]] = (trial.change[i] - usual) / (trial.change[worst] - usual);
+            area += mesh_.face_areas[trial.face[i]];
         }
         std::vector<Index> part{trial.face[worst]};
-        state[at(part.front())] = 2;
+        state[part.front()] = 2;
         double part_area = 0.0;
         for (std::size_t k = 0; k < part.size(); ++k) {
-            part_area += mesh_.face_areas[at(part[k])];
-            for (Index h = 3 * part[k]; h < 3 * part[k] + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && seam_[at(h)] == 0 && state[at(twin / 3)] == 1 &&
-                    change[at(twin / 3)] > 0.5) {
-                    state[at(twin / 3)] = 2;
+            part_area += mesh_.face_areas[part[k]];
+            for (const HalfEdge h : half_edges_of(part[k])) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin >= 0 && seam_[h] == 0 && state[twin / 3] == 1 && change[twin / 3] > 0.5) {
+                    state[twin / 3] = 2;
                     part.push_back(twin / 3);
                 }
             }
@@ -97,10 +96,9 @@ private:
             return {};
         smooth(trial.face, state);
         std::vector<Index> cuts;
-        for (const Index f : trial.face)
-            for (Index h = 3 * f; h < 3 * f + 3 && state[at(f)] == 2; ++h)
-                if (mesh_.twin[at(h)] >= 0 && seam_[at(h)] == 0 &&
-                    state[at(mesh_.twin[at(h)] / 3)] == 1)
+        for (const Face f : trial.face)
+            for (HalfEdge h = 3 * f; h < 3 * f + 3 && state[f] == 2; ++h)
+                if (mesh_.twin[h] >= 0 && seam_[h] == 0 && state[mesh_.twin[h] / 3] == 1)
                     cuts.push_back(h);
         return cuts;
     }
@@ -108,14 +106,14 @@ private:
     // Faces take the side (1 or 2) of most of their neighbours, a few times.
     void smooth(const std::vector<Index>& faces, std::vector<std::uint8_t>& state) const {
         for (int round = 0; round < smoothing_rounds; ++round)
-            for (const Index f : faces) {
+            for (const Face f : faces) {
                 int same = 0;
                 int other = 0;
-                for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                    if (mesh_.twin[at(h)] >= 0 && seam_[at(h)] == 0)
-                        ++(state[at(mesh_.twin[at(h)] / 3)] == state[at(f)] ? same : other);
+                for (const HalfEdge h : half_edges_of(f))
+                    if (mesh_.twin[h] >= 0 && seam_[h] == 0)
+                        ++(state[mesh_.twin[h] / 3] == state[f] ? same : other);
                 if (other > same)
-                    state[at(f)] = state[at(f)] == 1 ? 2 : 1;
+                    state[f] = state[f] == 1 ? 2 : 1;
             }
     }
 
@@ -123,28 +121,26 @@ private:
     std::vector<Index> path_through(const PatchTrial& trial, const Progress& progress) const {
         const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
         std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
-        for (const Index v : surface.vertex)
-            may_enter[at(v)] = 1;
+        for (const Vertex v : surface.vertex)
+            may_enter[v] = 1;
         std::vector<std::uint8_t> on_border(mesh_.points.size(), 0);
-        for (const Index h : surface.loops.front())
-            on_border[at(surface.vertex[at(surface.origin(h))])] = 1;
+        for (const HalfEdge h : surface.loops.front())
+            on_border[surface.vertex[surface.origin(h)]] = 1;
         const Index tip = worst_inner_vertex(trial, on_border);
         if (tip < 0)
             return {};
         const PathTree tree =
             shortest_paths(graph_, weight_, {tip}, progress, may_enter, on_border);
         const std::vector<Index>& loop = surface.loops.front();
-        const auto vertex = [&](std::size_t i) {
-            return surface.vertex[at(surface.origin(loop[i]))];
-        };
+        const auto vertex = [&](std::size_t i) { return surface.vertex[surface.origin(loop[i])]; };
         const auto usable = [&](std::size_t i) {
-            return inside(tree.half_edge[at(vertex(i))], trial) &&
-                   std::isfinite(tree.distance[at(vertex(i))]);
+            return inside(tree.half_edge[vertex(i)], trial) &&
+                   std::isfinite(tree.distance[vertex(i)]);
         };
         std::size_t near = loop.size();
         for (std::size_t i = 0; i < loop.size(); ++i)
-            if (usable(i) && (near == loop.size() ||
-                              tree.distance[at(vertex(i))] < tree.distance[at(vertex(near))]))
+            if (usable(i) &&
+                (near == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(near)]))
                 near = i;
         if (near == loop.size())
             return {};
@@ -152,26 +148,25 @@ private:
         for (std::size_t k = loop.size() / 4; k <= loop.size() - loop.size() / 4; ++k) {
             const std::size_t i = (near + k) % loop.size();
             if (usable(i) && vertex(i) != vertex(near) &&
-                (far == loop.size() ||
-                 tree.distance[at(vertex(i))] < tree.distance[at(vertex(far))]))
+                (far == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(far)]))
                 far = i;
         }
         std::vector<Index> cuts = trace_path(mesh_, tree, vertex(near));
         if (far < loop.size())
-            for (const Index h : trace_path(mesh_, tree, vertex(far)))
+            for (const HalfEdge h : trace_path(mesh_, tree, vertex(far)))
                 cuts.push_back(h);
         cuts.erase(
-            std::remove_if(cuts.begin(), cuts.end(), [&](Index h) { return seam_[at(h)] != 0; }),
+            std::remove_if(cuts.begin(), cuts.end(), [&](HalfEdge h) { return seam_[h] != 0; }),
             cuts.end());
         return cuts;
     }
 
-    bool inside(Index h, const PatchTrial& trial) const {
+    bool inside(HalfEdge h, const PatchTrial& trial) const {
         if (h < 0)
             return false;
         return std::binary_search(trial.face.begin(), trial.face.end(), h / 3) ||
-               (mesh_.twin[at(h)] >= 0 &&
-                std::binary_search(trial.face.begin(), trial.face.end(), mesh_.twin[at(h)] / 3));
+               (mesh_.twin[h] >= 0 &&
+                std::binary_search(trial.face.begin(), trial.face.end(), mesh_.twin[h] / 3));
     }
 
     Index worst_inner_vertex(const PatchTrial& trial,
@@ -182,8 +177,8 @@ private:
             order.emplace_back(-std::abs(trial.change[i] - usual), i);
         std::sort(order.begin(), order.end());
         for (const auto& [change, i] : order)
-            for (const Index v : mesh_.faces[at(trial.face[i])])
-                if (on_border[at(v)] == 0)
+            for (const Vertex v : mesh_.faces[trial.face[i]])
+                if (on_border[v] == 0)
                     return v;
         return -1;
     }
@@ -192,21 +187,20 @@ private:
     std::vector<Index> halves(const std::vector<Index>& faces) const {
         std::vector<std::uint8_t> state(mesh_.faces.size(), 0);
         std::vector<Index> reached{faces.front()};
-        state[at(faces.front())] = 1;
+        state[faces.front()] = 1;
         for (std::size_t k = 0; k < reached.size() && 2 * reached.size() < faces.size(); ++k)
-            for (Index h = 3 * reached[k]; h < 3 * reached[k] + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && seam_[at(h)] == 0 && state[at(twin / 3)] == 0 &&
+            for (const HalfEdge h : half_edges_of(reached[k])) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin >= 0 && seam_[h] == 0 && state[twin / 3] == 0 &&
                     2 * reached.size() < faces.size()) {
-                    state[at(twin / 3)] = 1;
+                    state[twin / 3] = 1;
                     reached.push_back(twin / 3);
                 }
             }
         std::vector<Index> cuts;
-        for (const Index f : reached)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                if (mesh_.twin[at(h)] >= 0 && seam_[at(h)] == 0 &&
-                    state[at(mesh_.twin[at(h)] / 3)] == 0)
+        for (const Face f : reached)
+            for (const HalfEdge h : half_edges_of(f))
+                if (mesh_.twin[h] >= 0 && seam_[h] == 0 && state[mesh_.twin[h] / 3] == 0)
                     cuts.push_back(h);
         return cuts;
     }
@@ -223,11 +217,11 @@ std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, cons
                                              const std::vector<std::uint8_t>& settled) {
     const mesh::FaceComponents patches = find_patches(surface.mesh, seam);
     std::vector<std::vector<Index>> faces(at(patches.count));
-    for (Index f = 0; f < surface.mesh.face_count(); ++f) {
-        const Index own = patches.label[at(f)];
-        if (settled[at(f)] == 0 &&
-            (!surface.is_symmetric() || own <= patches.label[at(surface.face_image(f))]))
-            faces[at(own)].push_back(f);
+    for (const Face f : surface.mesh.all_faces()) {
+        const Index own = patches.label[f];
+        if (settled[f] == 0 &&
+            (!surface.is_symmetric() || own <= patches.label[surface.face_image(f)]))
+            faces[own].push_back(f);
     }
     faces.erase(std::remove_if(faces.begin(), faces.end(),
                                [](const std::vector<Index>& f) { return f.empty(); }),
@@ -259,17 +253,17 @@ LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& gra
         for (std::size_t i = 0; i < splits.size(); ++i) {
             result.splits += splits[i].is_needed ? 1 : 0;
             if (!splits[i].is_needed || splits[i].cuts.empty())
-                for (const Index f : faces[i]) {
-                    settled[at(f)] = 1;
+                for (const Face f : faces[i]) {
+                    settled[f] = 1;
                     if (surface.is_symmetric())
-                        settled[at(surface.face_image(f))] = 1;
+                        settled[surface.face_image(f)] = 1;
                 }
             result.all_developable =
                 result.all_developable && !(splits[i].is_needed && splits[i].cuts.empty());
-            for (const Index h : splits[i].cuts) {
+            for (const HalfEdge h : splits[i].cuts) {
                 mark(mesh, h, 1, seam);
                 if (surface.is_symmetric())
-                    mark(mesh, surface.image[at(h)], 1, seam);
+                    mark(mesh, surface.image[h], 1, seam);
             }
         }
     }

@@ -39,7 +39,7 @@ public:
                 cut = dart(patch);
             if (cut.empty())
                 return std::nullopt;
-            for (const Index h : cut) {
+            for (const HalfEdge h : cut) {
                 mark(mesh_, h, 1, marks_);
                 cuts_.push_back(h);
             }
@@ -56,7 +56,7 @@ private:
         try {
             const auto pairs = overlaps(surface, has_map);
             if (!pairs.empty())
-                for (const Index h : flatten::separating_path(mesh_, surface, pairs, progress_))
+                for (const HalfEdge h : flatten::separating_path(mesh_, surface, pairs, progress_))
                     cut.push_back(surface.mesh_half_edge(h));
         } catch (const NumericalFailure&) { // needles: nothing to learn from
         }
@@ -82,11 +82,11 @@ private:
     std::vector<Index> dart(const std::vector<Index>& patch) const {
         std::vector<std::uint8_t> inside(mesh_.points.size(), 0);
         std::vector<std::uint8_t> on_border(mesh_.points.size(), 0);
-        for (const Index f : patch)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                inside[at(mesh_.origin(h))] = 1;
-                if (marks_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
-                    on_border[at(mesh_.origin(h))] = on_border[at(mesh_.target(h))] = 1;
+        for (const Face f : patch)
+            for (const HalfEdge h : half_edges_of(f)) {
+                inside[mesh_.origin(h)] = 1;
+                if (marks_[h] != 0 || mesh_.twin[h] < 0)
+                    on_border[mesh_.origin(h)] = on_border[mesh_.target(h)] = 1;
             }
         const Index tip = shrunk_vertex(conformal_change(mesh_, patch, marks_), on_border);
         if (tip < 0)
@@ -95,7 +95,7 @@ private:
         Index end = -1;
         for (std::size_t v = 0; v < on_border.size(); ++v)
             if (on_border[v] != 0 && std::isfinite(tree.distance[v]) &&
-                (end < 0 || tree.distance[v] < tree.distance[at(end)]))
+                (end < 0 || tree.distance[v] < tree.distance[end]))
                 end = static_cast<Index>(v);
         if (end < 0)
             return {};
@@ -107,14 +107,14 @@ private:
         std::vector<double> area(mesh_.points.size(), 0.0);
         std::vector<double> flat_area(mesh_.points.size(), 0.0);
         for (std::size_t i = 0; i < map.face.size(); ++i)
-            for (const Index v : mesh_.faces[at(map.face[i])]) {
-                area[at(v)] += mesh_.face_areas[at(map.face[i])];
-                flat_area[at(v)] += mesh_.face_areas[at(map.face[i])] * (1.0 + map.change[i]);
+            for (const Vertex v : mesh_.faces[map.face[i]]) {
+                area[v] += mesh_.face_areas[map.face[i]];
+                flat_area[v] += mesh_.face_areas[map.face[i]] * (1.0 + map.change[i]);
             }
         Index least = -1;
         for (std::size_t v = 0; v < area.size(); ++v)
             if (area[v] > 0.0 && on_border[v] == 0 &&
-                (least < 0 || flat_area[v] * area[at(least)] < flat_area[at(least)] * area[v]))
+                (least < 0 || flat_area[v] * area[least] < flat_area[least] * area[v]))
                 least = static_cast<Index>(v);
         return least;
     }

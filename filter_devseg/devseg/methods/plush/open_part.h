@@ -13,10 +13,10 @@ struct OpenPart {
     std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
     SeamMarks seam;                  // 3 #F: seams so far; or empty
 
-    bool is_open(Index f) const { return faces.empty() || faces[at(f)] != 0; }
+    bool is_open(Face f) const { return faces.empty() || faces[f] != 0; }
     bool has_open_faces() const;
     /// Whether both faces of the edge are open.
-    bool is_inside(const Mesh& mesh, Index h) const;
+    bool is_inside(const Mesh& mesh, HalfEdge h) const;
 };
 
 /// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the

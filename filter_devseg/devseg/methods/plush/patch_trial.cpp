@@ -118,14 +118,14 @@ bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std
     std::sort(patch.begin(), patch.end());
     if (surface_.is_symmetric()) {
         std::vector<Index> image;
-        for (const Index f : patch)
+        for (const Face f : patch)
             image.push_back(surface_.face_image(f));
         std::sort(image.begin(), image.end());
         patch = std::min(patch, image);
     }
     std::vector<Index> key;
-    for (const Index f : patch)
-        key.push_back(8 * f + 4 * seam[at(3 * f)] + 2 * seam[at(3 * f + 1)] + seam[at(3 * f + 2)]);
+    for (const Face f : patch)
+        key.push_back(8 * f + 4 * seam[3 * f] + 2 * seam[3 * f + 1] + seam[3 * f + 2]);
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         const auto found = known_.find(key);

@@ -3,11 +3,12 @@
 
 #include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/plush/plush_seams.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::plush {
+
+using namespace declare;
 
 namespace {
 
@@ -43,8 +44,7 @@ struct Options : PlushOptions {
 };
 
 // 1 on the edges between faces of different materials; empty without materials.
-std::vector<std::uint8_t> find_hard_seams(const declare::FilterInput& input,
-                                          MaterialBorders borders) {
+std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBorders borders) {
     std::vector<std::uint8_t> hard;
     if (borders == MaterialBorders::none)
         return hard;
@@ -56,20 +56,19 @@ std::vector<std::uint8_t> find_hard_seams(const declare::FilterInput& input,
                                           "select the faces of one material or choose None");
     const Mesh& mesh = input.mesh;
     hard.assign(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin < 0)
             continue;
         const std::size_t f = at(h / 3);
         const std::size_t g = at(twin / 3);
-        hard[at(h)] =
+        hard[h] =
             by_color ? input.color[f] != input.color[g] : input.selected[f] != input.selected[g];
     }
     return hard;
 }
 
-declare::FilterOutput run_plush(const declare::FilterInput& input, const Options& options,
-                                Progress& progress) {
+FilterOutput run_plush(const FilterInput& input, const Options& options, Progress& progress) {
     const Mesh& mesh = input.mesh;
     const std::vector<std::uint8_t> hard = find_hard_seams(input, options.material_borders);
     Skeleton skeleton;
@@ -77,7 +76,7 @@ declare::FilterOutput run_plush(const declare::FilterInput& input, const Options
         skeleton = read_skeleton(options.skeleton_file,
                                  [&](const Vec3& p) { return input.from_model(p); });
     PlushSeams seams = segment_plush_seams(mesh, options, std::move(skeleton), hard, progress);
-    declare::FilterOutput output;
+    FilterOutput output;
     output.values = {{"charts_number", seams.charts.count},
                      {"darts_number", seams.darts},
                      {"limbs_number", seams.limbs},
@@ -94,17 +93,16 @@ declare::FilterOutput run_plush(const declare::FilterInput& input, const Options
     if (!seams.all_developable)
         output.notes.push_back("some patches change their area by more than max_area_change; a "
                                "larger bound or a cleaner mesh helps");
-    output.face_color = declare::face_chart_colors(mesh, seams.charts);
+    output.face_color = face_chart_colors(mesh, seams.charts);
     output.face_quality = std::move(seams.area_change);
     output.charts = std::move(seams.charts);
     return output;
 }
 
-declare::FilterDeclaration plush() {
+FilterDeclaration plush() {
     using O = Options;
-    return declare::Declare<O>("Segmentation: Plush Toy Seams",
-                               "compute_segmentation_plush_seams_per_face",
-                               declare::FilterCategory::remeshing, plush_help)
+    return Declare<O>("Segmentation: Plush Toy Seams", "compute_segmentation_plush_seams_per_face",
+                      FilterCategory::remeshing, plush_help)
         .real(&O::max_area_change, "max_area_change", "Largest change of area", 0.01, 1.0,
               "How much the area of a face may change when its patch is flattened, as a share: "
               "0.15 = 15 %. Cotton takes 0.05 to 0.1, plush and fleece 0.15 to 0.2.")
@@ -137,7 +135,7 @@ declare::FilterDeclaration plush() {
         .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                  "0 takes the least natural seams away first; other numbers change that order a "
                  "little at random. The same number always gives the same seams.")
-        .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
+        .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "patches, each a disk")
         .result("darts_number", "seams that end inside a patch")
         .result("limbs_number", "limbs with a seam around their root, before seams were removed")
@@ -160,7 +158,7 @@ declare::FilterDeclaration plush() {
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> plush_filters() {
+std::vector<FilterDeclaration> filters() {
     return {plush()};
 }
 

@@ -130,9 +130,9 @@ public:
     /// Of half-edges as parts of darts: their lengths, less where seams look natural.
     std::vector<double> natural_cost() const {
         std::vector<double> cost;
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+        for (const HalfEdge h : mesh_.all_half_edges())
             cost.push_back(mesh_.edge_length(h) *
-                           (1.0 - stray_share + stray_share * weights_.stray[at(h)]));
+                           (1.0 - stray_share + stray_share * weights_.stray[h]));
         return cost;
     }
 
@@ -141,10 +141,10 @@ public:
     /// What the seams of this surface follow.
     SeamGuides guides() const {
         SeamGuides guides{skeleton_, {}};
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (limb_borders_[at(h)] != 0)
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (limb_borders_[h] != 0)
                 guides.limb_borders.push_back(
-                    {mesh_.points[at(mesh_.origin(h))], mesh_.points[at(mesh_.target(h))]});
+                    {mesh_.points[mesh_.origin(h)], mesh_.points[mesh_.target(h)]});
         return guides;
     }
 
@@ -165,7 +165,7 @@ private:
             curvature_, skeleton_, bones, progress_);
         for (std::size_t h = 0; h < surface_.image.size() / 2; ++h) {
             for (std::vector<double>* values : {&weights_.weight, &weights_.stray}) {
-                double& image = (*values)[at(surface_.image[h])];
+                double& image = (*values)[surface_.image[h]];
                 (*values)[h] = image = 0.5 * ((*values)[h] + image);
             }
         }
@@ -179,16 +179,16 @@ private:
     // Those in the open part; those on the mirror image are left to it.
     std::vector<Index> limb_tips() const {
         std::vector<std::uint8_t> is_left_out(mesh_.points.size(), 0);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+        for (const HalfEdge h : mesh_.all_half_edges())
             if (!open_.is_open(h / 3))
-                is_left_out[at(mesh_.origin(h))] = 1;
-        for (Index h = mesh_.half_edge_count() / 2;
+                is_left_out[mesh_.origin(h)] = 1;
+        for (HalfEdge h = mesh_.half_edge_count() / 2;
              h < mesh_.half_edge_count() && surface_.is_symmetric(); ++h)
             if (!surface_.starts_on_plane(h))
-                is_left_out[at(mesh_.origin(h))] = 1;
+                is_left_out[mesh_.origin(h)] = 1;
         std::vector<Index> first;
-        for (const Index v : extrema_)
-            if (is_left_out[at(v)] == 0)
+        for (const Vertex v : extrema_)
+            if (is_left_out[v] == 0)
                 first.push_back(v);
         return first;
     }
@@ -200,17 +200,17 @@ private:
             find_limbs(mesh_, graph_, curvature_, limb_tips(), progress_);
         result_.limbs = std::max(result_.limbs, static_cast<Index>(limbs.size()));
         for (const Limb& limb : limbs)
-            for (const Index h : limb_border(mesh_, limb)) {
+            for (const HalfEdge h : limb_border(mesh_, limb)) {
                 mark(mesh_, h, 1, seam_);
-                limb_borders_[at(h)] = 1;
+                limb_borders_[h] = 1;
             }
         mirror_marks(surface_, limb_borders_);
         add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, progress_);
         clean_patches();
         progress_.begin_phase("cutting patches", 0.15);
         std::vector<std::uint8_t> settled(mesh_.faces.size(), 0);
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            settled[at(f)] = open_.is_open(f) ? 0 : 1;
+        for (const Face f : mesh_.all_faces())
+            settled[f] = open_.is_open(f) ? 0 : 1;
         add_local_seams(surface_, graph_, weights_.weight, {max_area_change_, true}, settled, seam_,
                         progress_);
         result_.candidates +=
@@ -218,7 +218,7 @@ private:
     }
 
     void mark_plane() {
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
+        for (const HalfEdge h : mesh_.all_half_edges())
             if (surface_.is_on_plane(h))
                 mark(mesh_, h, 1, seam_);
     }
@@ -230,9 +230,9 @@ private:
             atlas::absorb_fragments(mesh_, find_patches(mesh_, seam_).label, fragment);
         remove_teeth(mesh_, label);
         seam_ = atlas::make_chart_map(mesh_, label, {}, false).seam;
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (!hard_.empty() && (hard_[at(h)] != 0 || !open_.is_inside(mesh_, h)))
-                seam_[at(h)] = hard_[at(h)];
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (!hard_.empty() && (hard_[h] != 0 || !open_.is_inside(mesh_, h)))
+                seam_[h] = hard_[h];
         mark_plane();
         mirror_marks(surface_, seam_);
     }
@@ -284,9 +284,9 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
     parallel_for(
         result.charts.count,
         [&](int c) {
-            const std::vector<Index> faces{groups.faces.begin() + groups.begin[at(c)],
+            const std::vector<Index> faces{groups.faces.begin() + groups.begin[c],
                                            groups.faces.begin() + groups.begin[at(c) + 1]};
-            trials[at(c)] = try_patch(mesh, faces, seam, {max_area_change, false}, true, progress);
+            trials[c] = try_patch(mesh, faces, seam, {max_area_change, false}, true, progress);
         },
         progress);
     result.area_change.assign(mesh.faces.size(), 0.0);
@@ -294,7 +294,7 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
         result.max_area_change = std::max(result.max_area_change, trial.area_change);
         result.all_developable = result.all_developable && trial.accepted;
         for (std::size_t i = 0; i < trial.change.size(); ++i)
-            result.area_change[at(trial.face[i])] = std::abs(trial.change[i]);
+            result.area_change[trial.face[i]] = std::abs(trial.change[i]);
     }
     for (const Index degree : seam_degrees(mesh, seam))
         result.darts += degree == 1 ? 1 : 0;

@@ -33,13 +33,13 @@ private:
     // The smallest first.
     std::vector<std::vector<Index>> remnants(double most_area) const {
         std::vector<Index> all;
-        for (Index f = 0; f < mesh_.face_count(); ++f)
+        for (const Face f : mesh_.all_faces())
             all.push_back(f);
         std::vector<std::pair<double, std::vector<Index>>> found;
         for (std::vector<Index>& patch : patches_of(mesh_, seam_, all)) {
             double area = 0.0;
-            for (const Index f : patch)
-                area += mesh_.face_areas[at(f)];
+            for (const Face f : patch)
+                area += mesh_.face_areas[f];
             if (area <= most_area)
                 found.emplace_back(area, std::move(patch));
         }
@@ -55,10 +55,10 @@ private:
         const atlas::ChartSurface surface = atlas::extract_surface(mesh_, patch, seam_);
         for (const Index neighbour : atlas::neighbour_labels(mesh_, label, surface)) {
             std::vector<Index> border;
-            for (const Index f : patch)
-                for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                    if (mesh_.twin[at(h)] >= 0 && label[at(mesh_.twin[at(h)] / 3)] == neighbour &&
-                        (s_.hard.empty() || s_.hard[at(h)] == 0))
+            for (const Face f : patch)
+                for (const HalfEdge h : half_edges_of(f))
+                    if (mesh_.twin[h] >= 0 && label[mesh_.twin[h] / 3] == neighbour &&
+                        (s_.hard.empty() || s_.hard[h] == 0))
                         border.push_back(h);
             if (!border.empty() && join_along(border))
                 return;
@@ -67,7 +67,7 @@ private:
 
     bool join_along(const std::vector<Index>& border) {
         SeamMarks marks = seam_;
-        for (const Index h : border)
+        for (const HalfEdge h : border)
             mark(mesh_, h, 0, marks);
         ++tried_;
         progress_.check();
@@ -76,7 +76,7 @@ private:
         const auto cuts = mend_patch(mesh_, graph_, cost_, joined, marks, limits_, progress_);
         if (!cuts || length(*cuts) > longest_darts * length(border))
             return false;
-        for (const Index h : *cuts)
+        for (const HalfEdge h : *cuts)
             mark(mesh_, h, 1, marks);
         if (patches_of(mesh_, marks, joined).size() > 1)
             return false;
@@ -87,32 +87,32 @@ private:
     // Darts that ended on the common border, from one side or the other.
     void open_what_floats(const std::vector<Index>& faces, SeamMarks& marks) const {
         std::vector<std::uint8_t> inside(mesh_.faces.size(), 0);
-        for (const Index f : faces)
-            inside[at(f)] = 1;
+        for (const Face f : faces)
+            inside[f] = 1;
         std::vector<Index> inner; // half-edges of cuts
         std::vector<std::uint8_t> is_tied(mesh_.points.size(), 0);
-        for (const Index f : faces)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || inside[at(twin / 3)] == 0)
-                    is_tied[at(mesh_.origin(h))] = is_tied[at(mesh_.target(h))] = 1;
-                else if (marks[at(h)] != 0)
+        for (const Face f : faces)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || inside[twin / 3] == 0)
+                    is_tied[mesh_.origin(h)] = is_tied[mesh_.target(h)] = 1;
+                else if (marks[h] != 0)
                     inner.push_back(h);
             }
         for (bool grows = true; grows;) {
             grows = false;
-            for (const Index h : inner)
-                if (is_tied[at(mesh_.origin(h))] != 0 && is_tied[at(mesh_.target(h))] == 0)
-                    is_tied[at(mesh_.target(h))] = grows = true;
+            for (const HalfEdge h : inner)
+                if (is_tied[mesh_.origin(h)] != 0 && is_tied[mesh_.target(h)] == 0)
+                    is_tied[mesh_.target(h)] = grows = true;
         }
-        for (const Index h : inner)
-            if (is_tied[at(mesh_.origin(h))] == 0 && (s_.hard.empty() || s_.hard[at(h)] == 0))
+        for (const HalfEdge h : inner)
+            if (is_tied[mesh_.origin(h)] == 0 && (s_.hard.empty() || s_.hard[h] == 0))
                 mark(mesh_, h, 0, marks);
     }
 
     double length(const std::vector<Index>& half_edges) const {
         double sum = 0.0;
-        for (const Index h : half_edges)
+        for (const HalfEdge h : half_edges)
             sum += mesh_.edge_length(h);
         return sum;
     }

@@ -15,11 +15,11 @@ std::vector<std::vector<Index>> find_threads(const Mesh& mesh, const SeamMarks& 
     const std::vector<Index> degree = seam_degrees(mesh, seam);
     const std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh);
     std::vector<std::vector<Index>> threads(mesh.points.size());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index v = mesh.origin(h);
-        if (seam[at(h)] == 0 || degree[at(v)] < 2 || on_border[at(v)] != 0)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vertex v = mesh.origin(h);
+        if (seam[h] == 0 || degree[v] < 2 || on_border[v] != 0)
             continue;
-        threads[at(v)].push_back(mesh.target(h));
+        threads[v].push_back(mesh.target(h));
     }
     return threads;
 }
@@ -37,7 +37,7 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
                 continue;
             Vec3 sum = Vec3::Zero();
             for (const Index u : threads[v])
-                sum += points[at(u)];
+                sum += points[u];
             next[v] = 0.5 * points[v] + 0.5 / static_cast<double>(threads[v].size()) * sum;
             if (round % rounds_on_surface != 0)
                 continue;

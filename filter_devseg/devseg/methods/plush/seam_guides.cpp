@@ -20,8 +20,8 @@ constexpr double sample_distance = 0.005;  // of the diagonal
 
 double diagonal_of(const Mesh& mesh) {
     Eigen::AlignedBox3d box;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        box.extend(mesh.points[at(mesh.origin(h))]);
+    for (const HalfEdge h : mesh.all_half_edges())
+        box.extend(mesh.points[mesh.origin(h)]);
     return box.diagonal().norm();
 }
 
@@ -36,14 +36,14 @@ public:
     explicit EdgeShapes(const Mesh& mesh)
         : mesh_(mesh), reach_(beside * diagonal_of(mesh)), seen_(mesh.faces.size(), -1) {}
 
-    EdgeShape at_edge(Index h) {
-        const Index twin = mesh_.twin[at(h)];
+    EdgeShape at_edge(HalfEdge h) {
+        const HalfEdge twin = mesh_.twin[h];
         const Side left = side_of(h);
         if (twin < 0)
             return {0.0, left.normal};
         const Side right = side_of(twin);
         const Vec3 edge =
-            (mesh_.points[at(mesh_.target(h))] - mesh_.points[at(mesh_.origin(h))]).normalized();
+            (mesh_.points[mesh_.target(h)] - mesh_.points[mesh_.origin(h)]).normalized();
         const double angle =
             std::atan2(left.normal.cross(right.normal).dot(edge), left.normal.dot(right.normal));
         // Large faces see more of a curved surface.
@@ -58,28 +58,28 @@ private:
     };
 
     // Of the faces that hang together with the half-edge's own on its side and are near.
-    Side side_of(Index h) {
-        const Vec3& a = mesh_.points[at(mesh_.origin(h))];
-        const Vec3& b = mesh_.points[at(mesh_.target(h))];
+    Side side_of(HalfEdge h) {
+        const Vec3& a = mesh_.points[mesh_.origin(h)];
+        const Vec3& b = mesh_.points[mesh_.target(h)];
         const Vec3 middle = 0.5 * (a + b);
-        const Vec3 inward = mesh_.face_normals[at(h / 3)].cross(b - a);
+        const Vec3 inward = mesh_.face_normals[h / 3].cross(b - a);
         std::vector<Index> faces{h / 3};
-        seen_[at(h / 3)] = h;
+        seen_[h / 3] = h;
         Vec3 normal = Vec3::Zero();
         Vec3 center = Vec3::Zero();
         double area = 0.0;
         for (std::size_t k = 0; k < faces.size(); ++k) {
-            normal += mesh_.face_areas[at(faces[k])] * mesh_.face_normals[at(faces[k])];
-            center += mesh_.face_areas[at(faces[k])] * mesh_.face_centers[at(faces[k])];
-            area += mesh_.face_areas[at(faces[k])];
-            for (Index e = 3 * faces[k]; e < 3 * faces[k] + 3; ++e) {
-                const Index twin = mesh_.twin[at(e)];
-                if (e == h || twin < 0 || seen_[at(twin / 3)] == h)
+            normal += mesh_.face_areas[faces[k]] * mesh_.face_normals[faces[k]];
+            center += mesh_.face_areas[faces[k]] * mesh_.face_centers[faces[k]];
+            area += mesh_.face_areas[faces[k]];
+            for (const HalfEdge e : half_edges_of(faces[k])) {
+                const HalfEdge twin = mesh_.twin[e];
+                if (e == h || twin < 0 || seen_[twin / 3] == h)
                     continue;
-                const Vec3 away = mesh_.face_centers[at(twin / 3)] - middle;
+                const Vec3 away = mesh_.face_centers[twin / 3] - middle;
                 if (away.norm() > reach_ || away.dot(inward) <= 0.0)
                     continue;
-                seen_[at(twin / 3)] = h;
+                seen_[twin / 3] = h;
                 faces.push_back(twin / 3);
             }
         }
@@ -93,10 +93,10 @@ private:
 
 // The direction of a seam at each of its edges: between the points half a window before and behind.
 std::vector<Vec3> smooth_directions(const Mesh& mesh, const SeamSegment& segment, double width) {
-    std::vector<Vec3> point{mesh.points[at(mesh.origin(segment.half_edges.front()))]};
+    std::vector<Vec3> point{mesh.points[mesh.origin(segment.half_edges.front())]};
     std::vector<double> place{0.0};
-    for (const Index h : segment.half_edges) {
-        point.push_back(mesh.points[at(mesh.target(h))]);
+    for (const HalfEdge h : segment.half_edges) {
+        point.push_back(mesh.points[mesh.target(h)]);
         place.push_back(place.back() + mesh.edge_length(h));
     }
     const auto point_at = [&](double s) {
@@ -122,11 +122,11 @@ struct Sample {
 
 std::vector<Sample> sample_seams(const Mesh& mesh, const SeamMarks& seam, double distance) {
     std::vector<Sample> samples;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        if (seam[at(h)] == 0 || mesh.twin[at(h)] < h)
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (seam[h] == 0 || mesh.twin[h] < h)
             continue;
-        const Vec3& a = mesh.points[at(mesh.origin(h))];
-        const Vec3& b = mesh.points[at(mesh.target(h))];
+        const Vec3& a = mesh.points[mesh.origin(h)];
+        const Vec3& b = mesh.points[mesh.target(h)];
         const int count = std::max(1, static_cast<int>(std::ceil((b - a).norm() / distance)));
         for (int k = 0; k < count; ++k)
             samples.push_back({a + (k + 0.5) / count * (b - a), (b - a).norm() / count});
@@ -165,14 +165,14 @@ bool is_along_border(const Vec3& middle, const Vec3& direction,
 std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress) {
     EdgeShapes shapes(mesh);
     std::vector<EdgeShape> result(mesh.twin.size());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+    for (const HalfEdge h : mesh.all_half_edges()) {
         if (h % 1024 == 0)
             progress.check();
-        const Index twin = mesh.twin[at(h)];
+        const HalfEdge twin = mesh.twin[h];
         if (twin < h)
-            result[at(h)] = shapes.at_edge(h);
+            result[h] = shapes.at_edge(h);
         if (twin >= 0 && twin < h)
-            result[at(twin)] = result[at(h)];
+            result[twin] = result[h];
     }
     return result;
 }
@@ -195,7 +195,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
     EdgeShapes shapes(mesh);
     double guided = 0.0;
     double total = 0.0;
-    const auto is_guided = [&](Index h, const Vec3& direction) {
+    const auto is_guided = [&](HalfEdge h, const Vec3& direction) {
         const Index a = mesh.origin(h);
         const Index b = mesh.target(h);
         const EdgeShape shape = shapes.at_edge(h);
@@ -206,7 +206,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
             std::abs(skeleton_direction(skeleton, bones, a, b, shape.normal)
                          .direction.dot(lying.stableNormalized())) >= std::cos(along))
             return true;
-        return is_along_border(0.5 * (mesh.points[at(a)] + mesh.points[at(b)]), direction,
+        return is_along_border(0.5 * (mesh.points[a] + mesh.points[b]), direction,
                                guides.limb_borders, near_border * diagonal);
     };
     for (const SeamSegment& segment :
@@ -214,7 +214,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
         const std::vector<Vec3> direction = smooth_directions(mesh, segment, window * diagonal);
         for (std::size_t i = 0; i < direction.size(); ++i) {
             progress.check();
-            const Index h = segment.half_edges[i];
+            const HalfEdge h = segment.half_edges[i];
             total += mesh.edge_length(h);
             if (is_guided(h, direction[i]))
                 guided += mesh.edge_length(h);

@@ -11,7 +11,7 @@ namespace devseg::plush {
 /// Marks of half-edges (3 #F), symmetric: a half-edge and its twin agree.
 using SeamMarks = std::vector<std::uint8_t>;
 
-void mark(const Mesh& mesh, Index half_edge, std::uint8_t value, SeamMarks& seam);
+void mark(const Mesh& mesh, HalfEdge half_edge, std::uint8_t value, SeamMarks& seam);
 
 /// A line of seam edges from one end to the next. Ends are the vertices where not exactly two seam
 /// edges meet, those on the mesh's boundary, and where material borders begin.

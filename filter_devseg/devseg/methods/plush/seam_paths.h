@@ -40,7 +40,7 @@ PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& wei
                         const std::vector<std::uint8_t>& is_goal = {});
 
 /// Half-edges from the tree's root to a vertex, the last one first, in either direction.
-std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Index vertex);
+std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Vertex vertex);
 
 /// Marks the shortest paths between all pairs of the vertices; edges that are seams already count
 /// less, so that paths that run side by side become one.

@@ -22,8 +22,8 @@ using Key = std::pair<Index, Index>; // lowest half-edge and number of edges of 
 
 Key key_of(const Mesh& mesh, const SeamSegment& segment) {
     Index lowest = segment.half_edges.front();
-    for (const Index h : segment.half_edges)
-        lowest = std::min({lowest, h, mesh.twin[at(h)]});
+    for (const HalfEdge h : segment.half_edges)
+        lowest = std::min<Index>({lowest, h, mesh.twin[h]});
     return {lowest, static_cast<Index>(segment.half_edges.size())};
 }
 
@@ -115,19 +115,19 @@ private:
         degree_ = seam_degrees(mesh_, seam_);
         faces_.assign(at(patches_.count), {});
         area_.assign(at(patches_.count), 0.0);
-        for (Index f = 0; f < mesh_.face_count(); ++f) {
-            faces_[at(patches_.label[at(f)])].push_back(f);
-            area_[at(patches_.label[at(f)])] += mesh_.face_areas[at(f)];
+        for (const Face f : mesh_.all_faces()) {
+            faces_[patches_.label[f]].push_back(f);
+            area_[patches_.label[f]] += mesh_.face_areas[f];
         }
         segment_of_.assign(mesh_.twin.size(), 0);
         for (std::size_t i = 0; i < segments_.size(); ++i)
-            for (const Index h : segments_[i].half_edges)
-                segment_of_[at(h)] = segment_of_[at(mesh_.twin[at(h)])] = i;
+            for (const HalfEdge h : segments_[i].half_edges)
+                segment_of_[h] = segment_of_[mesh_.twin[h]] = i;
     }
 
     std::size_t image_of(std::size_t i) const {
         return s_.surface.is_symmetric()
-                   ? segment_of_[at(s_.surface.image[at(segments_[i].half_edges.front())])]
+                   ? segment_of_[s_.surface.image[segments_[i].half_edges.front()]]
                    : i;
     }
 
@@ -137,11 +137,9 @@ private:
                !s_.surface.is_on_plane(segments_[i].half_edges.front());
     }
 
-    Index left(std::size_t i) const {
-        return patches_.label[at(segments_[i].half_edges.front() / 3)];
-    }
+    Index left(std::size_t i) const { return patches_.label[segments_[i].half_edges.front() / 3]; }
     Index right(std::size_t i) const {
-        return patches_.label[at(mesh_.twin[at(segments_[i].half_edges.front())] / 3)];
+        return patches_.label[mesh_.twin[segments_[i].half_edges.front()] / 3];
     }
 
     // A factor near 1 that depends on the seed and on where the segment is; 1 for the seed 0.
@@ -157,7 +155,7 @@ private:
 
     double order(std::size_t i) const {
         const SeamSegment& segment = segments_[i];
-        const double size = std::min(area_[at(left(i))], area_[at(right(i))]) / mesh_.total_area;
+        const double size = std::min(area_[left(i)], area_[right(i)]) / mesh_.total_area;
         if (mode_ == Mode::joins)
             return segment.length * segment.weight / std::max(size, 1e-9);
         return jitter(segment) * std::pow(segment.weight, options_.weight_power) *
@@ -204,11 +202,11 @@ private:
                     if (std::find(removal.patches.begin(), removal.patches.end(), p) ==
                         removal.patches.end()) {
                         removal.patches.push_back(p);
-                        is_free = is_free && taken[at(p)] == 0;
+                        is_free = is_free && taken[p] == 0;
                     }
             }
             for (const Index p : removal.patches)
-                taken[at(p)] = 1;
+                taken[p] = 1;
             if (is_free) {
                 find_choices(removal);
                 round.push_back(std::move(removal));
@@ -217,14 +215,12 @@ private:
         return round;
     }
 
-    double smaller_area(std::size_t i) const {
-        return std::min(area_[at(left(i))], area_[at(right(i))]);
-    }
+    double smaller_area(std::size_t i) const { return std::min(area_[left(i)], area_[right(i)]); }
 
     // Large patches with many slits would be hard to sew, and seams easily fail on another surface.
     bool is_large_together(std::size_t i) const {
         return left(i) != right(i) &&
-               area_[at(left(i))] + area_[at(right(i))] > options_.most_together * mesh_.total_area;
+               area_[left(i)] + area_[right(i)] > options_.most_together * mesh_.total_area;
     }
 
     bool may_go(std::size_t i) const {
@@ -243,9 +239,9 @@ private:
     // 1 where a segment ends inside a patch, −1 where it starts there, 0 for neither.
     int free_end(std::size_t i) const {
         const std::vector<Index>& line = segments_[i].half_edges;
-        if (degree_[at(mesh_.target(line.back()))] == 1)
+        if (degree_[mesh_.target(line.back())] == 1)
             return 1;
-        return degree_[at(mesh_.origin(line.front()))] == 1 ? -1 : 0;
+        return degree_[mesh_.origin(line.front())] == 1 ? -1 : 0;
     }
 
     Removal removal_of(std::size_t i) const {
@@ -286,14 +282,14 @@ private:
         std::vector<Index> edges;
         const SeamSegment& segment = segments_[removal.segment];
         double before = 0.0;
-        for (const Index h : segment.half_edges) {
+        for (const HalfEdge h : segment.half_edges) {
             const double middle = (before + 0.5 * mesh_.edge_length(h)) / segment.length;
             before += mesh_.edge_length(h);
             if (middle < window.from || middle > window.to)
                 continue;
             edges.push_back(h);
             if (s_.surface.is_symmetric())
-                edges.push_back(s_.surface.image[at(h)]);
+                edges.push_back(s_.surface.image[h]);
         }
         return edges;
     }
@@ -302,7 +298,7 @@ private:
     std::vector<std::vector<Index>> flood(const Removal& removal, const SeamMarks& marks) const {
         std::vector<Index> open;
         for (const Index p : removal.patches)
-            open.insert(open.end(), faces_[at(p)].begin(), faces_[at(p)].end());
+            open.insert(open.end(), faces_[p].begin(), faces_[p].end());
         std::sort(open.begin(), open.end());
         return patches_of(mesh_, marks, open);
     }
@@ -336,14 +332,14 @@ private:
     bool works(const Removal& removal, const std::vector<Index>& edges) const {
         PatchTester& tester = is_large_together(removal.segment) ? s_.strict_tester : s_.tester;
         SeamMarks marks = seam_;
-        for (const Index h : edges)
+        for (const HalfEdge h : edges)
             mark(mesh_, h, 0, marks);
         return tester.accepts_all(flood(removal, marks), marks, progress_);
     }
 
     bool apply(const Removal& removal) {
         if (removal.taken != Removal::none)
-            for (const Index h : removal.choices[removal.taken])
+            for (const HalfEdge h : removal.choices[removal.taken])
                 mark(mesh_, h, 0, seam_);
         else
             for (const std::size_t k : {removal.segment, removal.image})

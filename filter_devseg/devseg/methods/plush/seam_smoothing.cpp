@@ -28,11 +28,10 @@ public:
                  Progress& progress)
         : s_(setting), mesh_(setting.mesh()), graph_(graph), seam_(seam), progress_(progress),
           cost_(seam.size()), side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            cost_[at(h)] =
-                mesh_.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[at(h)]);
-            side_[at(mesh_.origin(h))] = s_.surface.is_symmetric() && s_.surface.image[at(h)] < h;
-            on_plane_[at(mesh_.origin(h))] = s_.surface.starts_on_plane(h) ? 1 : 0;
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            cost_[h] = mesh_.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[h]);
+            side_[mesh_.origin(h)] = s_.surface.is_symmetric() && s_.surface.image[h] < h;
+            on_plane_[mesh_.origin(h)] = s_.surface.starts_on_plane(h) ? 1 : 0;
         }
     }
 
@@ -59,12 +58,12 @@ private:
         for (const SeamSegment& segment : find_segments(mesh_, seam_, s_.hard, s_.weight)) {
             const std::vector<Index>& line = segment.half_edges;
             if (segment.is_hard || line.size() < 3 || s_.surface.is_on_plane(line.front()) ||
-                done[at(line.front())] != 0)
+                done[line.front()] != 0)
                 continue;
             if (s_.surface.is_symmetric())
-                for (const Index h : line) {
-                    const Index image = s_.surface.image[at(h)];
-                    done[at(image)] = done[at(mesh_.twin[at(image)])] = 1;
+                for (const HalfEdge h : line) {
+                    const Index image = s_.surface.image[h];
+                    done[image] = done[mesh_.twin[image]] = 1;
                 }
             if (segment.is_loop)
                 split_loop(line, turn, lines);
@@ -76,14 +75,14 @@ private:
 
     Line up_to_plane(const std::vector<Index>& line) const {
         for (std::size_t k = 1; k < line.size(); ++k)
-            if (on_plane_[at(mesh_.origin(line[k]))] != 0)
+            if (on_plane_[mesh_.origin(line[k])] != 0)
                 return {{line.begin(), line.begin() + static_cast<std::ptrdiff_t>(k)}, true};
         return {line, false};
     }
 
     // Where it crosses the plane, the part on one side; else two halves.
     void split_loop(std::vector<Index> line, int turn, std::vector<Line>& lines) const {
-        const auto crosses = [&](Index h) { return on_plane_[at(mesh_.origin(h))] != 0; };
+        const auto crosses = [&](HalfEdge h) { return on_plane_[mesh_.origin(h)] != 0; };
         auto first = std::find_if(line.begin(), line.end(), crosses);
         const bool is_crossing = first != line.end();
         if (!is_crossing)
@@ -101,23 +100,22 @@ private:
     std::vector<std::uint8_t> corridor(const std::vector<Index>& line) const {
         std::vector<std::uint8_t> near(mesh_.points.size(), 0);
         std::vector<Index> ring;
-        for (const Index h : line)
-            for (const Index v : {mesh_.origin(h), mesh_.target(h)})
-                if (near[at(v)] == 0) {
-                    near[at(v)] = 1;
+        for (const HalfEdge h : line)
+            for (const Vertex v : {mesh_.origin(h), mesh_.target(h)})
+                if (near[v] == 0) {
+                    near[v] = 1;
                     ring.push_back(v);
                 }
         const std::uint8_t side =
-            s_.surface.is_symmetric() && s_.surface.image[at(line.front())] < line.front();
+            s_.surface.is_symmetric() && s_.surface.image[line.front()] < line.front();
         for (int k = 0; k < corridor_rings; ++k) {
             std::vector<Index> next;
-            for (const Index v : ring)
-                for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
-                    const Index u = graph_.vertex[at(i)];
-                    if (near[at(u)] != 0 || is_on_seam(u) ||
-                        (side_[at(u)] != side && on_plane_[at(u)] == 0))
+            for (const Vertex v : ring)
+                for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
+                    const Index u = graph_.vertex[i];
+                    if (near[u] != 0 || is_on_seam(u) || (side_[u] != side && on_plane_[u] == 0))
                         continue;
-                    near[at(u)] = 1;
+                    near[u] = 1;
                     next.push_back(u);
                 }
             ring = std::move(next);
@@ -129,10 +127,10 @@ private:
     std::vector<Index> shorter_path(const Line& whole) const {
         const std::vector<Index>& line = whole.half_edges;
         double before = 0.0;
-        for (const Index h : line) {
-            if (seam_[at(h)] == 0)
+        for (const HalfEdge h : line) {
+            if (seam_[h] == 0)
                 return {}; // another line took its place
-            before += cost_[at(h)];
+            before += cost_[h];
         }
         const Index start = mesh_.origin(line.front());
         Index end = mesh_.target(line.back());
@@ -142,40 +140,40 @@ private:
         // Paths end where they reach the plane.
         const PathTree tree = shortest_paths(graph_, cost_, {start}, progress_, near, on_plane_);
         for (std::size_t v = 0; v < near.size() && whole.may_slide; ++v)
-            if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[at(end)])
+            if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[end])
                 end = static_cast<Index>(v);
-        if (!(tree.distance[at(end)] < worth * before))
+        if (!(tree.distance[end] < worth * before))
             return {};
         return trace_path(mesh_, tree, end);
     }
 
-    bool is_on_seam(Index v) const {
-        for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
-            const Index h = graph_.half_edge[at(i)];
-            if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
+    bool is_on_seam(Vertex v) const {
+        for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
+            const HalfEdge h = graph_.half_edge[i];
+            if (seam_[h] != 0 || mesh_.twin[h] < 0)
                 return true;
         }
         return false;
     }
 
     void mark_both(const std::vector<Index>& line, std::uint8_t value, SeamMarks& marks) const {
-        for (const Index h : line) {
+        for (const HalfEdge h : line) {
             mark(mesh_, h, value, marks);
             if (s_.surface.is_symmetric())
-                mark(mesh_, s_.surface.image[at(h)], value, marks);
+                mark(mesh_, s_.surface.image[h], value, marks);
         }
     }
 
     // Whether the new path meets no seam but at its ends.
     bool is_free(const std::vector<Index>& line, const std::vector<Index>& path,
                  const SeamMarks& without) const {
-        for (const Index h : path)
-            for (const Index v : {mesh_.origin(h), mesh_.target(h)}) {
+        for (const HalfEdge h : path)
+            for (const Vertex v : {mesh_.origin(h), mesh_.target(h)}) {
                 if (v == mesh_.origin(line.front()) || v == mesh_.target(line.back()))
                     continue;
-                for (Index i = graph_.begin[at(v)]; i < graph_.begin[at(v) + 1]; ++i) {
-                    const Index e = graph_.half_edge[at(i)];
-                    if (without[at(e)] != 0 || mesh_.twin[at(e)] < 0)
+                for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
+                    const Index e = graph_.half_edge[i];
+                    if (without[e] != 0 || mesh_.twin[e] < 0)
                         return false;
                 }
             }
@@ -199,8 +197,8 @@ private:
         // The patches beside the old and the new line, as they would be.
         std::vector<Index> start;
         for (const std::vector<Index>* edges : {&line, &path})
-            for (const Index h : *edges)
-                for (const Index side : {h, mesh_.twin[at(h)]})
+            for (const HalfEdge h : *edges)
+                for (const HalfEdge side : {h, mesh_.twin[h]})
                     start.push_back(side / 3);
         const std::vector<std::vector<Index>> parts = patches_of(mesh_, marks, start);
         std::vector<std::uint8_t> fits(parts.size(), 0);
@@ -229,18 +227,18 @@ private:
 void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
     for (int round = 0; round < most_rounds; ++round) {
         bool changed = false;
-        for (Index f = 0; f < mesh.face_count(); ++f) {
+        for (const Face f : mesh.all_faces()) {
             std::array<Index, 3> other{-1, -1, -1};
             for (std::size_t k = 0; k < 3; ++k) {
-                const Index twin = mesh.twin[at(3 * f) + k];
-                if (twin >= 0 && label[at(twin / 3)] != label[at(f)])
-                    other[k] = label[at(twin / 3)];
+                const HalfEdge twin = mesh.twin[at(3 * f) + k];
+                if (twin >= 0 && label[twin / 3] != label[f])
+                    other[k] = label[twin / 3];
             }
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t n = (k + 1) % 3;
                 if (other[k] < 0 || other[k] != other[n] || other[(k + 2) % 3] == other[k])
                     continue;
-                label[at(f)] = other[k];
+                label[f] = other[k];
                 changed = true;
                 break;
             }

@@ -91,20 +91,20 @@ BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progr
     std::vector<Index> nearest(mesh.points.size(), 0);
     std::vector<double> heat(mesh.points.size());
     const double floor = 1e-6 * mesh.total_area;
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    for (const Vertex v : mesh.all_vertices()) {
         double least = infinite;
         for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
             const auto& [i, j] = skeleton.bones[b];
-            const double d = squared_distance(mesh.points[at(v)], skeleton.joints[at(i)],
-                                              skeleton.joints[at(j)]);
+            const double d =
+                squared_distance(mesh.points[v], skeleton.joints[i], skeleton.joints[j]);
             if (d < least) {
                 least = d;
-                nearest[at(v)] = static_cast<Index>(b);
+                nearest[v] = static_cast<Index>(b);
             }
         }
-        heat[at(v)] =
-            conductance * std::max(areas[at(v)], 1e-12 * mesh.total_area) / std::max(least, floor);
-        matrix.coeffRef(v, v) += heat[at(v)];
+        heat[v] =
+            conductance * std::max(areas[v], 1e-12 * mesh.total_area) / std::max(least, floor);
+        matrix.coeffRef(v, v) += heat[v];
     }
     progress.check();
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
@@ -115,13 +115,13 @@ BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progr
     for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
         progress.check();
         Eigen::VectorXd source = Eigen::VectorXd::Zero(mesh.vertex_count());
-        for (Index v = 0; v < mesh.vertex_count(); ++v)
-            if (nearest[at(v)] == static_cast<Index>(b))
-                source[v] = heat[at(v)];
+        for (const Vertex v : mesh.all_vertices())
+            if (nearest[v] == static_cast<Index>(b))
+                source[v] = heat[v];
         const Eigen::VectorXd share = solver.solve(source);
-        for (Index v = 0; v < mesh.vertex_count(); ++v)
+        for (const Vertex v : mesh.all_vertices())
             if (share[v] > least_weight)
-                weights[at(v)].emplace_back(static_cast<Index>(b), share[v]);
+                weights[v].emplace_back(static_cast<Index>(b), share[v]);
     }
     for (auto& row : weights) {
         std::stable_sort(row.begin(), row.end(),
@@ -143,10 +143,10 @@ SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights
     double uu = 0.0;
     double uv = 0.0;
     double vv = 0.0;
-    for (const Index vertex : {a, b})
-        for (const auto& [bone, weight] : weights[at(vertex)]) {
-            const auto& [i, j] = skeleton.bones[at(bone)];
-            const Vec3 along = (skeleton.joints[at(j)] - skeleton.joints[at(i)]).normalized();
+    for (const Vertex vertex : {a, b})
+        for (const auto& [bone, weight] : weights[vertex]) {
+            const auto& [i, j] = skeleton.bones[bone];
+            const Vec3 along = (skeleton.joints[j] - skeleton.joints[i]).normalized();
             uu += 0.5 * weight * along.dot(u) * along.dot(u);
             uv += 0.5 * weight * along.dot(u) * along.dot(v);
             vv += 0.5 * weight * along.dot(v) * along.dot(v);

@@ -17,7 +17,7 @@ constexpr double shift = 1e-8;      // of the mean diagonal: constants are in th
 constexpr double least_size = 1e-9; // internal units: faces whose corners coincide need a shape
 constexpr double smoothing_edges = 2.0; // radius of the curvature's smoothing, in mean edges
 
-flatten::RestTriangle rest_of(const Mesh& mesh, Index f) {
+flatten::RestTriangle rest_of(const Mesh& mesh, Face f) {
     return flatten::make_rest_triangle(
         {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
         least_size);
@@ -41,8 +41,8 @@ Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::V
 
 VertexGraph build_vertex_graph(const Mesh& mesh) {
     std::vector<std::array<Index, 3>> links; // vertex, neighbour, half-edge
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] < h) {
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] < h) {
             links.push_back({mesh.origin(h), mesh.target(h), h});
             links.push_back({mesh.target(h), mesh.origin(h), h});
         }
@@ -61,12 +61,12 @@ VertexGraph build_vertex_graph(const Mesh& mesh) {
 Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(12 * mesh.faces.size());
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         const flatten::RestTriangle rest = rest_of(mesh, f);
         for (Index k = 0; k < 3; ++k) {
-            const Index i = mesh.faces[at(f)][at(k)];
-            const Index j = mesh.faces[at(f)][at((k + 1) % 3)];
-            const double w = 0.5 * rest.cotangent[at(k)];
+            const Index i = mesh.faces[f][k];
+            const Index j = mesh.faces[f][(k + 1) % 3];
+            const double w = 0.5 * rest.cotangent[k];
             entries.emplace_back(i, i, w);
             entries.emplace_back(j, j, w);
             entries.emplace_back(i, j, -w);
@@ -80,33 +80,33 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
 
 double mean_edge_length(const Mesh& mesh) {
     double sum = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+    for (const HalfEdge h : mesh.all_half_edges())
         sum += mesh.edge_length(h);
     return sum / std::max<Index>(1, mesh.half_edge_count());
 }
 
 std::vector<double> vertex_areas(const Mesh& mesh) {
     std::vector<double> areas(mesh.points.size(), 0.0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        areas[at(mesh.origin(h))] += mesh.face_areas[at(h / 3)] / 3.0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        areas[mesh.origin(h)] += mesh.face_areas[h / 3] / 3.0;
     return areas;
 }
 
 std::vector<double> conformal_factor(const Mesh& mesh) {
     const std::vector<double> areas = vertex_areas(mesh);
     std::vector<double> defect(mesh.points.size(), 2.0 * pi);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Vec3& corner = mesh.points[at(mesh.origin(h))];
-        const Vec3 p = mesh.points[at(mesh.target(h))] - corner;
-        const Vec3 q = mesh.points[at(mesh.origin(Mesh::previous(h)))] - corner;
-        defect[at(mesh.origin(h))] -= std::atan2(p.cross(q).norm(), p.dot(q));
-        if (mesh.twin[at(h)] < 0) // each boundary vertex has one such half-edge
-            defect[at(mesh.origin(h))] -= pi;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vec3& corner = mesh.points[mesh.origin(h)];
+        const Vec3 p = mesh.points[mesh.target(h)] - corner;
+        const Vec3 q = mesh.points[mesh.origin(Mesh::previous(h))] - corner;
+        defect[mesh.origin(h)] -= std::atan2(p.cross(q).norm(), p.dot(q));
+        if (mesh.twin[h] < 0) // each boundary vertex has one such half-edge
+            defect[mesh.origin(h)] -= pi;
     }
     const double total = std::accumulate(defect.begin(), defect.end(), 0.0);
     Eigen::VectorXd rhs(mesh.vertex_count());
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        rhs[v] = total * areas[at(v)] / mesh.total_area - defect[at(v)];
+    for (const Vertex v : mesh.all_vertices())
+        rhs[v] = total * areas[v] / mesh.total_area - defect[v];
     const Eigen::VectorXd solution = solve_shifted(cotangent_laplacian(mesh), rhs);
     std::vector<double> factor(solution.data(), solution.data() + solution.size());
     const double mean = solution.mean();
@@ -119,27 +119,27 @@ std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<doub
                                 Index count) {
     struct Extremum {
         double prominence;
-        Index vertex;
+        Vertex vertex;
     };
-    const auto neighbours = [&](Index v, auto visit) {
-        for (Index i = graph.begin[at(v)]; i < graph.begin[at(v) + 1]; ++i)
-            visit(graph.vertex[at(i)]);
+    const auto neighbours = [&](Vertex v, auto visit) {
+        for (Index i = graph.begin[v]; i < graph.begin[at(v) + 1]; ++i)
+            visit(graph.vertex[i]);
     };
     std::vector<Extremum> found;
-    for (Index v = 0; v < static_cast<Index>(value.size()); ++v) {
-        bool lowest = graph.begin[at(v)] < graph.begin[at(v) + 1];
+    for (Vertex v = 0; v < static_cast<Index>(value.size()); ++v) {
+        bool lowest = graph.begin[v] < graph.begin[at(v) + 1];
         bool highest = lowest;
         neighbours(v, [&](Index u) {
             neighbours(u, [&](Index w) {
                 if (w == v || !(lowest || highest))
                     return;
-                const double difference = value[at(w)] - value[at(v)];
+                const double difference = value[w] - value[v];
                 lowest = lowest && (difference > 0.0 || (difference == 0.0 && w > v));
                 highest = highest && (difference < 0.0 || (difference == 0.0 && w > v));
             });
         });
         if (lowest || highest)
-            found.push_back({std::abs(value[at(v)]), v});
+            found.push_back({std::abs(value[v]), v});
     }
     std::stable_sort(found.begin(), found.end(), [](const Extremum& a, const Extremum& b) {
         return a.prominence > b.prominence;
@@ -154,13 +154,13 @@ std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<doub
 std::vector<double> mean_curvature(const Mesh& mesh) {
     const std::vector<double> areas = vertex_areas(mesh);
     Eigen::VectorXd integral = Eigen::VectorXd::Zero(mesh.vertex_count());
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
         if (twin < 0)
             continue;
-        const Vec3& n = mesh.face_normals[at(h / 3)];
-        const Vec3& m = mesh.face_normals[at(twin / 3)];
-        const Vec3 edge = mesh.points[at(mesh.target(h))] - mesh.points[at(mesh.origin(h))];
+        const Vec3& n = mesh.face_normals[h / 3];
+        const Vec3& m = mesh.face_normals[twin / 3];
+        const Vec3 edge = mesh.points[mesh.target(h)] - mesh.points[mesh.origin(h)];
         const double angle = std::atan2(n.cross(m).dot(edge.normalized()), n.dot(m));
         // A quarter of length times angle to each end, once from each side.
         integral[mesh.origin(h)] += 0.25 * edge.norm() * angle;
@@ -170,8 +170,8 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
     const double radius = smoothing_edges * mean_edge_length(mesh);
     matrix *= radius * radius;
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        matrix.coeffRef(v, v) += areas[at(v)];
+    for (const Vertex v : mesh.all_vertices())
+        matrix.coeffRef(v, v) += areas[v];
     const Eigen::VectorXd smooth = solve_shifted(matrix, integral);
     const double sphere = std::sqrt(mesh.total_area / (4.0 * pi));
     std::vector<double> curvature(mesh.points.size());

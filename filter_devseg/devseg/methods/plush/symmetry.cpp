@@ -31,14 +31,14 @@ struct Pairing {
 std::vector<Pairing> pair_up(const Mesh& mesh, const mesh::SurfaceSearch& search,
                              const std::vector<Index>& vertices, const MirrorPlane& plane) {
     std::vector<Pairing> pairs;
-    for (const Index v : vertices) {
-        const Vec3 image = plane.reflect(mesh.points[at(v)]);
+    for (const Vertex v : vertices) {
+        const Vec3 image = plane.reflect(mesh.points[v]);
         const Index near = search.vertex(image, reflect_direction(plane, search.normal(v)),
                                          [](Index) { return true; });
         if (near < 0)
             continue;
         const Vec3 q = search.on_faces(image, near, [](Index) { return true; }).second;
-        pairs.push_back({mesh.points[at(v)], q, (q - image).norm()});
+        pairs.push_back({mesh.points[v], q, (q - image).norm()});
     }
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pairing& a, const Pairing& b) { return a.distance < b.distance; });
@@ -73,12 +73,12 @@ MirrorPlane fit_plane(const std::vector<Pairing>& pairs, std::size_t count) {
 std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
     Vec3 center = Vec3::Zero();
     Eigen::AlignedBox3d box;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        center += mesh.face_areas[at(f)] / mesh.total_area * mesh.face_centers[at(f)];
+    for (const Face f : mesh.all_faces())
+        center += mesh.face_areas[f] / mesh.total_area * mesh.face_centers[f];
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const Vec3 d = mesh.face_centers[at(f)] - center;
-        spread += mesh.face_areas[at(f)] * d * d.transpose();
+    for (const Face f : mesh.all_faces()) {
+        const Vec3 d = mesh.face_centers[f] - center;
+        spread += mesh.face_areas[f] * d * d.transpose();
     }
     for (const Vec3& p : mesh.points)
         box.extend(p);
@@ -172,8 +172,8 @@ private:
 
     double extent(const MirrorPlane& plane) const {
         double farthest = 0.0;
-        for (const Index v : vertices_)
-            farthest = std::max(farthest, std::abs(plane.height(mesh_.points[at(v)])));
+        for (const Vertex v : vertices_)
+            farthest = std::max(farthest, std::abs(plane.height(mesh_.points[v])));
         return farthest;
     }
 

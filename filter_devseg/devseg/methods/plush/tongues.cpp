@@ -50,25 +50,24 @@ private:
     void spread(std::vector<double>& distance) const {
         using Entry = std::pair<double, Index>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            if (distance[at(f)] == 0.0)
+        for (const Face f : mesh_.all_faces())
+            if (distance[f] == 0.0)
                 queue.emplace(0.0, f);
         Heartbeat beat(progress_);
         while (!queue.empty()) {
             beat();
             const auto [d, f] = queue.top();
             queue.pop();
-            if (d > distance[at(f)])
+            if (d > distance[f])
                 continue;
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin < 0 || seam_[at(h)] != 0)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || seam_[h] != 0)
                     continue;
                 const Index g = twin / 3;
-                const double next =
-                    d + (mesh_.face_centers[at(f)] - mesh_.face_centers[at(g)]).norm();
-                if (next < distance[at(g)]) {
-                    distance[at(g)] = next;
+                const double next = d + (mesh_.face_centers[f] - mesh_.face_centers[g]).norm();
+                if (next < distance[g]) {
+                    distance[g] = next;
                     queue.emplace(next, g);
                 }
             }
@@ -78,29 +77,29 @@ private:
     // What is left of the patches when disks of the radius have rolled over them, in components.
     std::vector<Tongue> find_tongues() const {
         std::vector<std::uint8_t> on_seam(mesh_.points.size(), 0);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (seam_[at(h)] != 0 || mesh_.twin[at(h)] < 0)
-                on_seam[at(mesh_.origin(h))] = on_seam[at(mesh_.target(h))] = 1;
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (seam_[h] != 0 || mesh_.twin[h] < 0)
+                on_seam[mesh_.origin(h)] = on_seam[mesh_.target(h)] = 1;
         std::vector<double> to_seam(mesh_.faces.size(), infinite);
-        for (Index f = 0; f < mesh_.face_count(); ++f)
-            for (const Index v : mesh_.faces[at(f)])
-                if (on_seam[at(v)] != 0)
-                    to_seam[at(f)] = 0.0;
+        for (const Face f : mesh_.all_faces())
+            for (const Vertex v : mesh_.faces[f])
+                if (on_seam[v] != 0)
+                    to_seam[f] = 0.0;
         spread(to_seam);
         std::vector<double> to_body(mesh_.faces.size(), infinite);
         for (std::size_t f = 0; f < to_body.size(); ++f)
             if (to_seam[f] > radius_)
                 to_body[f] = 0.0;
         spread(to_body);
-        const auto is_thin = [&](Index f) { return to_body[at(f)] > slack * radius_; };
-        const mesh::FaceComponents parts = mesh::face_components(mesh_, [&](Index h) {
-            return seam_[at(h)] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[at(h)] / 3);
+        const auto is_thin = [&](Face f) { return to_body[f] > slack * radius_; };
+        const mesh::FaceComponents parts = mesh::face_components(mesh_, [&](HalfEdge h) {
+            return seam_[h] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[h] / 3);
         });
         std::vector<Tongue> tongues(at(parts.count));
-        for (Index f = 0; f < mesh_.face_count(); ++f) {
-            Tongue& tongue = tongues[at(parts.label[at(f)])];
+        for (const Face f : mesh_.all_faces()) {
+            Tongue& tongue = tongues[parts.label[f]];
             tongue.faces.push_back(f);
-            tongue.reach = std::max(tongue.reach, to_body[at(f)] - slack * radius_);
+            tongue.reach = std::max(tongue.reach, to_body[f] - slack * radius_);
         }
         // Patches that are thin everywhere have no body.
         tongues.erase(std::remove_if(tongues.begin(), tongues.end(),
@@ -129,10 +128,10 @@ private:
         if (!surface.is_disk())
             return;
         // Who lies on the other side: −1 the tongue's own body, −2 nobody.
-        const auto beyond = [&](Index h) -> Index {
-            if (mesh_.twin[at(h)] < 0 || (!s_.hard.empty() && s_.hard[at(h)] != 0))
+        const auto beyond = [&](HalfEdge h) -> Index {
+            if (mesh_.twin[h] < 0 || (!s_.hard.empty() && s_.hard[h] != 0))
                 return -2;
-            return seam_[at(h)] == 0 ? -1 : patches.label[at(mesh_.twin[at(h)] / 3)];
+            return seam_[h] == 0 ? -1 : patches.label[mesh_.twin[h] / 3];
         };
         struct Side {
             Index beyond = 0;
@@ -140,7 +139,7 @@ private:
             double length = 0.0;
         };
         std::vector<Index> loop;
-        for (const Index h : surface.loops.front())
+        for (const HalfEdge h : surface.loops.front())
             loop.push_back(surface.mesh_half_edge(h));
         auto first = loop.begin(); // a place where a side begins
         while (first != loop.end() &&
@@ -150,7 +149,7 @@ private:
             return;
         std::rotate(loop.begin(), first, loop.end());
         std::vector<Side> sides;
-        for (const Index h : loop) {
+        for (const HalfEdge h : loop) {
             if (sides.empty() || sides.back().beyond != beyond(h))
                 sides.push_back({beyond(h), {}, 0.0});
             sides.back().edges.push_back(h);
@@ -169,9 +168,9 @@ private:
     }
 
     void apply_to(const Change& change, SeamMarks& marks) const {
-        for (const Index h : change.closed)
+        for (const HalfEdge h : change.closed)
             mark(mesh_, h, 1, marks);
-        for (const Index h : change.opened)
+        for (const HalfEdge h : change.opened)
             mark(mesh_, h, 0, marks);
     }
 
@@ -179,8 +178,8 @@ private:
     std::vector<std::vector<Index>> patches_beside(const Change& change,
                                                    const SeamMarks& marks) const {
         std::vector<Index> start = change.tongue;
-        for (const Index h : change.closed)
-            start.push_back(mesh_.twin[at(h)] / 3);
+        for (const HalfEdge h : change.closed)
+            start.push_back(mesh_.twin[h] / 3);
         return patches_of(mesh_, marks, start);
     }
 
@@ -191,12 +190,12 @@ private:
         for (const Change& change : changes) {
             bool is_free = true;
             for (const auto* edges : {&change.opened, &change.closed})
-                for (const Index h : *edges)
-                    is_free = is_free && is_used[at(h)] == 0;
+                for (const HalfEdge h : *edges)
+                    is_free = is_free && is_used[h] == 0;
             if (!is_free)
                 continue;
             for (const auto* edges : {&change.opened, &change.closed})
-                for (const Index h : *edges)
+                for (const HalfEdge h : *edges)
                     mark(mesh_, h, 1, is_used);
             group.push_back(&change);
         }
@@ -206,9 +205,9 @@ private:
             for (const Change* change : group)
                 apply_to(*change, marks);
             for (const Change* change : group)
-                for (const Index h : change->closed) {
+                for (const HalfEdge h : change->closed) {
                     start.push_back(h / 3);
-                    start.push_back(mesh_.twin[at(h)] / 3);
+                    start.push_back(mesh_.twin[h] / 3);
                 }
             const std::vector<std::vector<Index>> patches = patches_of(mesh_, marks, start);
             std::vector<std::uint8_t> fails(mesh_.faces.size(), 0);
@@ -217,13 +216,13 @@ private:
                 [&](int i) {
                     const auto& patch = patches[static_cast<std::size_t>(i)];
                     if (!s_.tester.accepts(patch, marks, progress_))
-                        for (const Index f : patch)
-                            fails[at(f)] = 1;
+                        for (const Face f : patch)
+                            fails[f] = 1;
                 },
                 progress_);
             const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change* change) {
-                const Index h = change->closed.front();
-                return fails[at(h / 3)] != 0 || fails[at(mesh_.twin[at(h)] / 3)] != 0;
+                const HalfEdge h = change->closed.front();
+                return fails[h / 3] != 0 || fails[mesh_.twin[h] / 3] != 0;
             });
             if (kept == group.end()) {
                 seam_ = std::move(marks);
@@ -252,14 +251,14 @@ private:
         for (std::size_t k = 0; k < changes.size(); ++k) {
             bool is_free = is_accepted[k] != 0;
             for (const auto& patch : patches[k])
-                for (const Index f : patch)
-                    is_free = is_free && is_changed[at(f)] == 0;
+                for (const Face f : patch)
+                    is_free = is_free && is_changed[f] == 0;
             if (!is_free)
                 continue;
             apply_to(changes[k], seam_);
             for (const auto& patch : patches[k])
-                for (const Index f : patch)
-                    is_changed[at(f)] = 1;
+                for (const Face f : patch)
+                    is_changed[f] = 1;
         }
     }
 

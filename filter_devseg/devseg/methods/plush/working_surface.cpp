@@ -24,9 +24,9 @@ constexpr double most_area = 1.25;
 Index euler_characteristic(const Mesh& mesh) {
     std::vector<std::uint8_t> used(mesh.points.size(), 0);
     Index twice = 0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        used[at(mesh.origin(h))] = 1;
-        twice += mesh.twin[at(h)] < 0 ? 2 : 1;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        used[mesh.origin(h)] = 1;
+        twice += mesh.twin[h] < 0 ? 2 : 1;
     }
     const auto vertices = static_cast<Index>(std::count(used.begin(), used.end(), 1));
     return vertices - twice / 2 + mesh.face_count();
@@ -37,7 +37,7 @@ void link_twins(Mesh& mesh) {
         Index low, high, half_edge;
     };
     std::vector<Edge> edges;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+    for (const HalfEdge h : mesh.all_half_edges())
         edges.push_back({std::min(mesh.origin(h), mesh.target(h)),
                          std::max(mesh.origin(h), mesh.target(h)), h});
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
@@ -46,8 +46,8 @@ void link_twins(Mesh& mesh) {
     mesh.twin.assign(3 * mesh.faces.size(), -1);
     for (std::size_t i = 0; i + 1 < edges.size(); ++i)
         if (edges[i].low == edges[i + 1].low && edges[i].high == edges[i + 1].high) {
-            mesh.twin[at(edges[i].half_edge)] = edges[i + 1].half_edge;
-            mesh.twin[at(edges[i + 1].half_edge)] = edges[i].half_edge;
+            mesh.twin[edges[i].half_edge] = edges[i + 1].half_edge;
+            mesh.twin[edges[i + 1].half_edge] = edges[i].half_edge;
         }
 }
 
@@ -63,7 +63,7 @@ public:
         Mesh half;
         half.points = points_;
         half.unit_length = mesh_.unit_length;
-        for (Index f = 0; f < mesh_.face_count(); ++f)
+        for (const Face f : mesh_.all_faces())
             add_part(f, half);
         link_twins(half);
         mesh::compute_face_geometry(half);
@@ -74,9 +74,9 @@ private:
     void snap_vertices() {
         points_ = mesh_.points;
         std::vector<double> shortest(points_.size(), infinite);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            for (const Index v : {mesh_.origin(h), mesh_.target(h)})
-                shortest[at(v)] = std::min(shortest[at(v)], mesh_.edge_length(h));
+        for (const HalfEdge h : mesh_.all_half_edges())
+            for (const Vertex v : {mesh_.origin(h), mesh_.target(h)})
+                shortest[v] = std::min(shortest[v], mesh_.edge_length(h));
         for (std::size_t v = 0; v < points_.size(); ++v) {
             height_.push_back(plane_.height(points_[v]));
             if (std::abs(height_[v]) > snap * shortest[v])
@@ -86,26 +86,26 @@ private:
         }
     }
 
-    Index crossing(Index h, Mesh& half) {
-        const Index twin = mesh_.twin[at(h)];
-        if (crossing_[at(h)] < 0) {
+    Index crossing(HalfEdge h, Mesh& half) {
+        const HalfEdge twin = mesh_.twin[h];
+        if (crossing_[h] < 0) {
             const Index a = std::min(mesh_.origin(h), mesh_.target(h));
             const Index b = std::max(mesh_.origin(h), mesh_.target(h));
-            const double t = height_[at(a)] / (height_[at(a)] - height_[at(b)]);
-            crossing_[at(h)] = half.vertex_count();
+            const double t = height_[a] / (height_[a] - height_[b]);
+            crossing_[h] = half.vertex_count();
             if (twin >= 0)
-                crossing_[at(twin)] = crossing_[at(h)];
-            const Vec3 p = points_[at(a)] + t * (points_[at(b)] - points_[at(a)]);
+                crossing_[twin] = crossing_[h];
+            const Vec3 p = points_[a] + t * (points_[b] - points_[a]);
             half.points.push_back(p - plane_.height(p) * plane_.normal);
         }
-        return crossing_[at(h)];
+        return crossing_[h];
     }
 
-    void add_part(Index f, Mesh& half) {
-        const auto height = [&](Index v) { return height_[at(v)]; };
+    void add_part(Face f, Mesh& half) {
+        const auto height = [&](Vertex v) { return height_[v]; };
         std::vector<Index> corners;
         bool is_below = false;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        for (const HalfEdge h : half_edges_of(f)) {
             const Index a = mesh_.origin(h);
             const Index b = mesh_.target(h);
             is_below = is_below || height(a) < 0.0;
@@ -117,7 +117,7 @@ private:
         if (!is_below || corners.size() < 3)
             return;
         const auto distance = [&](std::size_t i, std::size_t k) {
-            return (half.points[at(corners[i])] - half.points[at(corners[k])]).norm();
+            return (half.points[corners[i]] - half.points[corners[k]]).norm();
         };
         if (corners.size() == 4 && distance(1, 3) < distance(0, 2))
             std::rotate(corners.begin(), corners.begin() + 1, corners.end());
@@ -137,32 +137,31 @@ Mesh clean_half(const Mesh& half, double surface_area) {
     const mesh::FaceComponents pieces = mesh::face_components(half, [](Index) { return true; });
     std::vector<double> area(at(pieces.count), 0.0);
     for (std::size_t f = 0; f < half.faces.size(); ++f)
-        area[at(pieces.label[f])] += half.face_areas[f];
+        area[pieces.label[f]] += half.face_areas[f];
     std::vector<Index> kept;
-    for (Index f = 0; f < half.face_count(); ++f)
-        if (area[at(pieces.label[at(f)])] > speck * surface_area)
+    for (const Face f : half.all_faces())
+        if (area[pieces.label[f]] > speck * surface_area)
             kept.push_back(f);
     return atlas::mesh_of(
         half, atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
 }
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
-Index mirrored(Index h, Index faces) {
+HalfEdge mirrored(HalfEdge h, Index faces) {
     return 3 * (h / 3 + faces) + 2 - h % 3;
 }
 
 WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
     const Index n = half.face_count();
-    const auto is_seam = [&](Index h) {
-        return half.twin[at(h)] < 0 &&
-               std::abs(plane.height(half.points[at(half.origin(h))])) < on_plane &&
-               std::abs(plane.height(half.points[at(half.target(h))])) < on_plane;
+    const auto is_seam = [&](HalfEdge h) {
+        return half.twin[h] < 0 && std::abs(plane.height(half.points[half.origin(h)])) < on_plane &&
+               std::abs(plane.height(half.points[half.target(h)])) < on_plane;
     };
     std::vector<Index> other(half.points.size(), -1);
-    for (Index h = 0; h < half.half_edge_count(); ++h)
+    for (const HalfEdge h : half.all_half_edges())
         if (is_seam(h))
-            for (const Index v : {half.origin(h), half.target(h)})
-                other[at(v)] = v;
+            for (const Vertex v : {half.origin(h), half.target(h)})
+                other[v] = v;
     WorkingSurface result;
     Mesh& mesh = result.mesh;
     mesh.points = half.points;
@@ -174,22 +173,22 @@ WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
         }
     mesh.faces = half.faces;
     for (const Triangle& t : half.faces)
-        mesh.faces.push_back({other[at(t[0])], other[at(t[2])], other[at(t[1])]});
+        mesh.faces.push_back({other[t[0]], other[t[2]], other[t[1]]});
     mesh.twin.assign(at(6 * n), -1);
     result.image.assign(at(6 * n), -1);
-    for (Index h = 0; h < 3 * n; ++h) {
-        const Index image = mirrored(h, n);
-        result.image[at(h)] = image;
-        result.image[at(image)] = h;
-        const Index twin = is_seam(h) ? image : half.twin[at(h)];
-        mesh.twin[at(h)] = twin;
+    for (HalfEdge h = 0; h < 3 * n; ++h) {
+        const HalfEdge image = mirrored(h, n);
+        result.image[h] = image;
+        result.image[image] = h;
+        const HalfEdge twin = is_seam(h) ? image : half.twin[h];
+        mesh.twin[h] = twin;
         if (twin >= 0)
-            mesh.twin[at(image)] = twin == image ? h : mirrored(twin, n);
+            mesh.twin[image] = twin == image ? h : mirrored(twin, n);
     }
     mesh::compute_face_geometry(mesh);
     // To the last bit: what is measured on both sides must agree.
-    for (Index f = 0; f < n; ++f)
-        mesh.face_areas[at(f + n)] = mesh.face_areas[at(f)];
+    for (Face f = 0; f < n; ++f)
+        mesh.face_areas[f + n] = mesh.face_areas[f];
     return result;
 }
 
@@ -233,7 +232,7 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
 
 void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& marks) {
     for (std::size_t h = 0; h < surface.image.size() / 2; ++h)
-        marks[at(surface.image[h])] = marks[h];
+        marks[surface.image[h]] = marks[h];
 }
 
 } // namespace devseg::plush

@@ -18,13 +18,13 @@ struct WorkingSurface {
     std::vector<Index> image; // 3 #F: the half-edge on the mirrored edge, an involution; or empty
 
     bool is_symmetric() const { return !image.empty(); }
-    Index face_image(Index f) const { return image[at(3 * f)] / 3; }
+    Index face_image(Face f) const { return image[3 * f] / 3; }
     /// Whether the origin of the half-edge is its own mirror image.
-    bool starts_on_plane(Index h) const {
-        return is_symmetric() && mesh.target(image[at(h)]) == mesh.origin(h);
+    bool starts_on_plane(HalfEdge h) const {
+        return is_symmetric() && mesh.target(image[h]) == mesh.origin(h);
     }
     /// Whether the edge lies on the plane, between the two halves.
-    bool is_on_plane(Index h) const { return is_symmetric() && image[at(h)] == mesh.twin[at(h)]; }
+    bool is_on_plane(HalfEdge h) const { return is_symmetric() && image[h] == mesh.twin[h]; }
 };
 
 /// The mesh with at most about `most_faces` faces, without a mirror plane.

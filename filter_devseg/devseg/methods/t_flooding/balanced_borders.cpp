@@ -37,24 +37,23 @@ public:
           crease_(metrics::long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
           depth_(mesh.faces.size()), node_(mesh.faces.size(), -1), reached_(mesh.faces.size(), 0),
           corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0), changes_(at(count), 0) {
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        for (const HalfEdge h : mesh.all_half_edges()) {
             border_cost_.push_back(static_cast<float>(
-                mesh.edge_length(h) * (areas.crease[at(h)] != 0 ? options.crease_cost : 1.0)));
-            const Index twin = mesh.twin[at(h)];
+                mesh.edge_length(h) * (areas.crease[h] != 0 ? options.crease_cost : 1.0)));
+            const HalfEdge twin = mesh.twin[h];
             step_.push_back(
-                twin < 0
-                    ? 0.0F
-                    : static_cast<float>(
-                          (mesh.face_centers[at(h / 3)] - mesh.face_centers[at(twin / 3)]).norm()));
-            ++valence_[at(mesh.origin(h))];
+                twin < 0 ? 0.0F
+                         : static_cast<float>(
+                               (mesh.face_centers[h / 3] - mesh.face_centers[twin / 3]).norm()));
+            ++valence_[mesh.origin(h)];
         }
         face_area_ = areas.face;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            face_area_[at(h / 3)] += 0.5 * areas.edge[at(h)] + areas.vertex[at(mesh.origin(h))] /
-                                                                   valence_[at(mesh.origin(h))];
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] < 0)
-                valence_[at(mesh.origin(h))] = valence_[at(mesh.target(h))] = -1;
+        for (const HalfEdge h : mesh.all_half_edges())
+            face_area_[h / 3] +=
+                0.5 * areas.edge[h] + areas.vertex[mesh.origin(h)] / valence_[mesh.origin(h)];
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] < 0)
+                valence_[mesh.origin(h)] = valence_[mesh.target(h)] = -1;
         double steps = 0.0;
         for (const float step : step_)
             steps += step;
@@ -70,10 +69,10 @@ public:
         measure_depths(progress);
         gauss_area_ = metrics::chart_gauss_areas(mesh_, areas_, chart_, count_);
         std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            const Index twin = mesh_.twin[at(h)];
-            if (twin >= 0 && chart_[at(h / 3)] < chart_[at(twin / 3)])
-                borders.push_back({{chart_[at(h / 3)], chart_[at(twin / 3)]}, h});
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            const HalfEdge twin = mesh_.twin[h];
+            if (twin >= 0 && chart_[h / 3] < chart_[twin / 3])
+                borders.push_back({{chart_[h / 3], chart_[twin / 3]}, h});
         }
         std::sort(borders.begin(), borders.end());
         for (std::size_t i = 0; i < borders.size();) {
@@ -82,13 +81,13 @@ public:
             for (; i < borders.size() && borders[i].first == pair; ++i)
                 edges.push_back(borders[i].second);
             // Nothing new since a try that failed: it would fail again.
-            const int now = changes_[at(pair.first)] + changes_[at(pair.second)];
+            const int now = changes_[pair.first] + changes_[pair.second];
             const auto tried = settled_.find(pair);
             if (tried != settled_.end() && tried->second == now)
                 continue;
             if (move_border(pair, edges)) {
-                ++changes_[at(pair.first)];
-                ++changes_[at(pair.second)];
+                ++changes_[pair.first];
+                ++changes_[pair.second];
             } else {
                 settled_[pair] = now;
             }
@@ -100,18 +99,18 @@ private:
     // Faces at borders that follow a long crease stay where they are.
     void fix_creases() {
         std::fill(fixed_.begin(), fixed_.end(), 0);
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h)
-            if (crease_[at(h)] != 0 && chart_[at(h / 3)] != chart_[at(mesh_.twin[at(h)] / 3)])
-                fixed_[at(h / 3)] = 1;
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (crease_[h] != 0 && chart_[h / 3] != chart_[mesh_.twin[h] / 3])
+                fixed_[h / 3] = 1;
     }
 
     void measure_depths(Progress& progress) {
         std::fill(depth_.begin(), depth_.end(), std::numeric_limits<float>::infinity());
         heap_.clear();
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            const Index twin = mesh_.twin[at(h)];
-            if ((twin < 0 || chart_[at(twin / 3)] != chart_[at(h / 3)]) && depth_[at(h / 3)] > 0) {
-                depth_[at(h / 3)] = 0.0F;
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            const HalfEdge twin = mesh_.twin[h];
+            if ((twin < 0 || chart_[twin / 3] != chart_[h / 3]) && depth_[h / 3] > 0) {
+                depth_[h / 3] = 0.0F;
                 heap_.push({0.0F, 0.0F, h / 3});
             }
         }
@@ -120,21 +119,21 @@ private:
         for (Index settled = 1; !heap_.empty(); ++settled) {
             const growth::CandidateHeap::Entry entry = heap_.top();
             heap_.pop();
-            if (entry.key > depth_[at(entry.face)])
+            if (entry.key > depth_[entry.face])
                 continue;
             if (settled % update_every == 0)
                 progress.update(0.0);
-            const Index c = chart_[at(entry.face)];
-            if (anchor_[at(c)] < 0 || entry.key > deepest_[at(c)]) {
-                deepest_[at(c)] = entry.key;
-                anchor_[at(c)] = entry.face;
+            const Index c = chart_[entry.face];
+            if (anchor_[c] < 0 || entry.key > deepest_[c]) {
+                deepest_[c] = entry.key;
+                anchor_[c] = entry.face;
             }
-            for (Index h = 3 * entry.face; h < 3 * entry.face + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                const float through = entry.key + step_[at(h)];
-                if (twin < 0 || chart_[at(twin / 3)] != c || through >= depth_[at(twin / 3)])
+            for (const HalfEdge h : half_edges_of(entry.face)) {
+                const HalfEdge twin = mesh_.twin[h];
+                const float through = entry.key + step_[h];
+                if (twin < 0 || chart_[twin / 3] != c || through >= depth_[twin / 3])
                     continue;
-                depth_[at(twin / 3)] = through;
+                depth_[twin / 3] = through;
                 heap_.push({through, through, twin / 3});
             }
         }
@@ -146,17 +145,17 @@ private:
         std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
         const float reach = static_cast<float>(share * options_.reach);
         const float widest = static_cast<float>(share) * widest_;
-        const auto offer = [&](Index f, float d) {
-            const std::size_t c = at(chart_[at(f)]);
-            if (fixed_[at(f)] != 0 || f == anchor_[c] || d > std::min(reach * deepest_[c], widest))
+        const auto offer = [&](Face f, float d) {
+            const std::size_t c = at(chart_[f]);
+            if (fixed_[f] != 0 || f == anchor_[c] || d > std::min(reach * deepest_[c], widest))
                 return;
             front.emplace_back(-d, f);
             std::push_heap(front.begin(), front.end());
         };
-        for (const Index h : edges) {
-            const Index twin = mesh_.twin[at(h)];
+        for (const HalfEdge h : edges) {
+            const HalfEdge twin = mesh_.twin[h];
             // Other borders that moved in this sweep may have given a side to a third chart.
-            if (chart_[at(h / 3)] != pair.first || chart_[at(twin / 3)] != pair.second)
+            if (chart_[h / 3] != pair.first || chart_[twin / 3] != pair.second)
                 continue;
             offer(h / 3, 0.0F);
             offer(twin / 3, 0.0F);
@@ -165,14 +164,14 @@ private:
             std::pop_heap(front.begin(), front.end());
             const auto [d, f] = front.back();
             front.pop_back();
-            if (node_[at(f)] >= 0)
+            if (node_[f] >= 0)
                 continue;
-            node_[at(f)] = static_cast<Index>(faces.size());
+            node_[f] = static_cast<Index>(faces.size());
             faces.push_back(f);
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                if (twin >= 0 && node_[at(twin / 3)] < 0 && chart_[at(twin / 3)] == chart_[at(f)])
-                    offer(twin / 3, step_[at(h)] - d);
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin >= 0 && node_[twin / 3] < 0 && chart_[twin / 3] == chart_[f])
+                    offer(twin / 3, step_[h] - d);
             }
         }
         return faces;
@@ -188,45 +187,45 @@ private:
 
     // [length + κ/2 Σ area²] of the two charts after `moved` has gone from a to b.
     double energy(const Pair& pair, const Parting& parting) const {
-        const double a = gauss_area_[at(pair.first)] - parting.moved;
-        const double b = gauss_area_[at(pair.second)] + parting.moved;
+        const double a = gauss_area_[pair.first] - parting.moved;
+        const double b = gauss_area_[pair.second] + parting.moved;
         return parting.length + 0.5 * stiffness_ * (a * a + b * b);
     }
     double difference(const Pair& pair, const Parting& parting) const {
-        return gauss_area_[at(pair.first)] - gauss_area_[at(pair.second)] - 2.0 * parting.moved;
+        return gauss_area_[pair.first] - gauss_area_[pair.second] - 2.0 * parting.moved;
     }
 
     // Border of a parting: links of the strip's faces to each other and to the charts' cores.
     template <class Visit>
     void visit_links(const Pair& pair, const std::vector<Index>& faces, Visit visit) const {
         const Index core_a = static_cast<Index>(faces.size());
-        for (const Index f : faces)
-            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
+        for (const Face f : faces)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
                 if (twin < 0)
                     continue;
-                const Index other = node_[at(twin / 3)];
-                const Index c = chart_[at(twin / 3)];
+                const Index other = node_[twin / 3];
+                const Index c = chart_[twin / 3];
                 if (other >= 0 && h < twin)
-                    visit(node_[at(f)], other, border_cost_[at(h)]);
+                    visit(node_[f], other, border_cost_[h]);
                 else if (other < 0 && c == pair.first)
-                    visit(node_[at(f)], core_a, border_cost_[at(h)]);
+                    visit(node_[f], core_a, border_cost_[h]);
                 else if (other < 0 && c == pair.second)
-                    visit(node_[at(f)], core_a + 1, border_cost_[at(h)]);
+                    visit(node_[f], core_a + 1, border_cost_[h]);
             }
     }
 
     void evaluate(const Pair& pair, const std::vector<Index>& faces, Parting& parting) const {
         parting.length = parting.moved = 0.0;
         visit_links(pair, faces, [&](Index a, Index b, float cost) {
-            if (parting.side[at(a)] != parting.side[at(b)])
+            if (parting.side[a] != parting.side[b])
                 parting.length += cost;
         });
         for (std::size_t i = 0; i < faces.size(); ++i) {
-            const bool was_a = chart_[at(faces[i])] == pair.first;
+            const bool was_a = chart_[faces[i]] == pair.first;
             const bool is_a = parting.side[i] == graph::CutSide::source;
-            parting.moved += (was_a ? 1 : 0) * face_area_[at(faces[i])] -
-                             (is_a ? 1 : 0) * face_area_[at(faces[i])];
+            parting.moved +=
+                (was_a ? 1 : 0) * face_area_[faces[i]] - (is_a ? 1 : 0) * face_area_[faces[i]];
         }
     }
 
@@ -252,22 +251,22 @@ private:
                 stack.push_back(faces[i]);
             }
         };
-        const auto for_neighbours = [&](Index f, auto visit) {
-            for (Index h = 3 * f; h < 3 * f + 3; ++h)
-                if (mesh_.twin[at(h)] >= 0)
-                    visit(mesh_.twin[at(h)] / 3);
+        const auto for_neighbours = [&](Face f, auto visit) {
+            for (const HalfEdge h : half_edges_of(f))
+                if (mesh_.twin[h] >= 0)
+                    visit(mesh_.twin[h] / 3);
         };
         for (std::size_t i = 0; i < faces.size(); ++i)
             for_neighbours(faces[i], [&](Index g) {
-                if (node_[at(g)] < 0 && chart_[at(g)] == own)
+                if (node_[g] < 0 && chart_[g] == own)
                     hold(i);
             });
         while (!stack.empty()) {
-            const Index f = stack.back();
+            const Face f = stack.back();
             stack.pop_back();
             for_neighbours(f, [&](Index g) {
-                if (node_[at(g)] >= 0)
-                    hold(at(node_[at(g)]));
+                if (node_[g] >= 0)
+                    hold(at(node_[g]));
             });
         }
         for (std::size_t i = 0; i < faces.size(); ++i)
@@ -281,7 +280,7 @@ private:
     Parting best_parting(const Pair& pair, const std::vector<Index>& faces) {
         const Index core_a = static_cast<Index>(faces.size());
         std::vector<graph::CutSide> sides(faces.size() + 2, graph::CutSide::open);
-        sides[at(core_a)] = graph::CutSide::source;
+        sides[core_a] = graph::CutSide::source;
         sides[at(core_a) + 1] = graph::CutSide::sink;
         graph::MinCut cut(std::move(sides));
         visit_links(pair, faces, [&](Index a, Index b, float cost) { cut.link(a, b, cost); });
@@ -299,7 +298,7 @@ private:
             next = 0.5 * last;
         for (; next < std::abs(due); next *= 2.0) {
             for (std::size_t i = 0; i < faces.size(); ++i)
-                cut.raise(links[i], (next - price) * face_area_[at(faces[i])]);
+                cut.raise(links[i], (next - price) * face_area_[faces[i]]);
             price = next;
             Parting trial = solve(pair, faces, cut);
             const double left = stiffness_ * difference(pair, trial);
@@ -321,13 +320,13 @@ private:
             now.side.assign(faces.size() + 2, graph::CutSide::source);
             now.side.back() = graph::CutSide::sink;
             for (std::size_t i = 0; i < faces.size(); ++i)
-                if (chart_[at(faces[i])] == pair.second)
+                if (chart_[faces[i]] == pair.second)
                     now.side[i] = graph::CutSide::sink;
             evaluate(pair, faces, now);
             const Parting best = best_parting(pair, faces);
             improves = energy(pair, best) < energy(pair, now) * worthwhile;
-            for (const Index f : faces)
-                node_[at(f)] = -1;
+            for (const Face f : faces)
+                node_[f] = -1;
             if (improves && apply(pair, faces, best))
                 return true;
         }
@@ -346,39 +345,39 @@ private:
     Topology topology(Index start) {
         Topology result;
         stack_.assign(1, start);
-        reached_[at(start)] = 1;
+        reached_[start] = 1;
         for (std::size_t i = 0; i < stack_.size(); ++i)
-            for (Index h = 3 * stack_[i]; h < 3 * stack_[i] + 3; ++h) {
-                const Index twin = mesh_.twin[at(h)];
-                const Index v = mesh_.origin(h);
-                result.doubled_euler += ++corners_[at(v)] == valence_[at(v)] ? 2 : 0;
-                if (twin < 0 || chart_[at(twin / 3)] != chart_[at(start)]) {
+            for (const HalfEdge h : half_edges_of(stack_[i])) {
+                const HalfEdge twin = mesh_.twin[h];
+                const Vertex v = mesh_.origin(h);
+                result.doubled_euler += ++corners_[v] == valence_[v] ? 2 : 0;
+                if (twin < 0 || chart_[twin / 3] != chart_[start]) {
                     ++result.doubled_euler;
-                } else if (reached_[at(twin / 3)] == 0) {
-                    reached_[at(twin / 3)] = 1;
+                } else if (reached_[twin / 3] == 0) {
+                    reached_[twin / 3] = 1;
                     stack_.push_back(twin / 3);
                 }
             }
         result.faces = stack_.size();
         result.doubled_euler -= static_cast<Index>(stack_.size());
-        for (const Index f : stack_) {
-            reached_[at(f)] = 0;
-            for (const Index v : mesh_.faces[at(f)])
-                corners_[at(v)] = 0;
+        for (const Face f : stack_) {
+            reached_[f] = 0;
+            for (const Vertex v : mesh_.faces[f])
+                corners_[v] = 0;
         }
         return result;
     }
 
     // Takes the new sides unless a chart would fall apart or change its topology.
     bool apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
-        const Topology before_a = topology(anchor_[at(pair.first)]);
-        const Topology before_b = topology(anchor_[at(pair.second)]);
+        const Topology before_a = topology(anchor_[pair.first]);
+        const Topology before_b = topology(anchor_[pair.second]);
         std::vector<Pair> undo; // (face, chart)
         std::size_t size_a = before_a.faces;
         std::size_t size_b = before_b.faces;
         for (std::size_t i = 0; i < faces.size(); ++i) {
             const bool to_a = parting.side[i] == graph::CutSide::source;
-            Index& c = chart_[at(faces[i])];
+            Index& c = chart_[faces[i]];
             if (c == (to_a ? pair.first : pair.second))
                 continue;
             undo.emplace_back(faces[i], c);
@@ -390,20 +389,20 @@ private:
         }
         if (undo.empty())
             return false;
-        const Topology a = topology(anchor_[at(pair.first)]);
-        const Topology b = topology(anchor_[at(pair.second)]);
+        const Topology a = topology(anchor_[pair.first]);
+        const Topology b = topology(anchor_[pair.second]);
         const auto keeps = [](const Topology& after, std::size_t size, const Topology& before) {
             return after.faces == size &&
                    (after.doubled_euler == before.doubled_euler ||
                     (after.doubled_euler > before.doubled_euler && after.doubled_euler <= disk));
         };
         if (keeps(a, size_a, before_a) && keeps(b, size_b, before_b)) {
-            gauss_area_[at(pair.first)] -= parting.moved;
-            gauss_area_[at(pair.second)] += parting.moved;
+            gauss_area_[pair.first] -= parting.moved;
+            gauss_area_[pair.second] += parting.moved;
             return true;
         }
         for (const auto& [f, c] : undo)
-            chart_[at(f)] = c;
+            chart_[f] = c;
         return false;
     }
 

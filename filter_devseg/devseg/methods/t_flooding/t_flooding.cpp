@@ -51,17 +51,17 @@ public:
           valence_(mesh.points.size(), 0), has_corner_(mesh.faces.size(), 0),
           time_(mesh.faces.size(), 0.0F) {
         for (const Triangle& t : mesh.faces)
-            for (const Index v : t)
-                ++valence_[at(v)];
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (areas.edge[at(h)] > 0.0 || areas.vertex[at(mesh.origin(h))] > 0.0)
-                has_corner_[at(h / 3)] = 1;
+            for (const Vertex v : t)
+                ++valence_[v];
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (areas.edge[h] > 0.0 || areas.vertex[mesh.origin(h)] > 0.0)
+                has_corner_[h / 3] = 1;
         find_largest_curvature();
         wall_ = metrics::long_creases(mesh, areas.crease, options.charts_number);
         step_.resize(mesh.twin.size(), 0.0F);
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] >= 0)
-                step_[at(h)] = delay(h, areas.face[at(mesh.twin[at(h)] / 3)] + areas.edge[at(h)]);
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] >= 0)
+                step_[h] = delay(h, areas.face[mesh.twin[h] / 3] + areas.edge[h]);
     }
 
     void start_over(std::vector<double> offsets) {
@@ -73,36 +73,36 @@ public:
     }
 
     // Δt of a step across h into the face behind it, with the corners that it would complete.
-    growth::CandidateHeap::Entry candidate(Index h, Index c) const {
-        const Index f = mesh_.twin[at(h)] / 3;
-        const float step = has_corner_[at(f)] == 0
-                               ? step_[at(h)]
-                               : delay(h, areas_.face[at(f)] + areas_.edge[at(h)] + corners(f, c));
-        const float time = time_[at(h / 3)] + step;
-        return {wall_[at(h)] != 0 ? (time + 1.0F) * behind_crease : time, time, f};
+    growth::CandidateHeap::Entry candidate(HalfEdge h, Index c) const {
+        const Face f = mesh_.twin[h] / 3;
+        const float step = has_corner_[f] == 0
+                               ? step_[h]
+                               : delay(h, areas_.face[f] + areas_.edge[h] + corners(f, c));
+        const float time = time_[h / 3] + step;
+        return {wall_[h] != 0 ? (time + 1.0F) * behind_crease : time, time, f};
     }
 
     // The look-ahead of [YGZS05, section 3.3]: the area that the chart would have.
     growth::GrowthKey key(Index c, const growth::CandidateHeap::Entry& entry) const {
         const int tier = entry.key >= behind_crease ? 1 : 0;
-        return {tier, area_[at(c)] + offset_[at(c)] + gain(entry.face, c), entry.distance};
+        return {tier, area_[c] + offset_[c] + gain(entry.face, c), entry.distance};
     }
 
-    void take(Index f, Index c, float time) {
-        area_[at(c)] += gain(f, c);
-        chart_[at(f)] = c;
-        time_[at(f)] = time;
-        if (has_corner_[at(f)] == 0)
+    void take(Face f, Index c, float time) {
+        area_[c] += gain(f, c);
+        chart_[f] = c;
+        time_[f] = time;
+        if (has_corner_[f] == 0)
             return;
-        for (const Index v : mesh_.faces[at(f)]) {
-            Index& owner = corner_owner_[at(v)];
+        for (const Vertex v : mesh_.faces[f]) {
+            Index& owner = corner_owner_[v];
             owner = owner == -1 || owner == c ? c : shared;
-            ++corner_count_[at(v)];
+            ++corner_count_[v];
         }
     }
 
     /// Δt of the step across a half-edge, without corners: the metric of reseeding.
-    float step(Index h) const { return step_[at(h)]; }
+    float step(HalfEdge h) const { return step_[h]; }
     const std::vector<double>& area() const { return area_; }
 
 private:
@@ -116,44 +116,44 @@ private:
             if (area > 0.0 && std::isfinite(gauss_area / area))
                 largest_curvature_ = std::max(largest_curvature_, gauss_area / area);
         };
-        for (Index h = 0; h < mesh_.half_edge_count(); ++h) {
-            const double own = mesh_.face_areas[at(h / 3)];
-            const Index twin = mesh_.twin[at(h)];
-            least[at(mesh_.origin(h))] = std::min(least[at(mesh_.origin(h))], own);
-            consider(areas_.face[at(h / 3)], own);
+        for (const HalfEdge h : mesh_.all_half_edges()) {
+            const double own = mesh_.face_areas[h / 3];
+            const HalfEdge twin = mesh_.twin[h];
+            least[mesh_.origin(h)] = std::min(least[mesh_.origin(h)], own);
+            consider(areas_.face[h / 3], own);
             if (twin >= 0)
-                consider(areas_.edge[at(h)], std::min(own, mesh_.face_areas[at(twin / 3)]));
+                consider(areas_.edge[h], std::min(own, mesh_.face_areas[twin / 3]));
         }
         for (std::size_t v = 0; v < least.size(); ++v)
             consider(areas_.vertex[v], least[v]);
     }
 
     // [YGZS05, equations 7 to 9] with curvatures as fractions of the largest.
-    float delay(Index h, double gauss_area) const {
-        const Index f = mesh_.twin[at(h)] / 3;
-        const double distance = (mesh_.face_centers[at(f)] - mesh_.face_centers[at(h / 3)]).norm();
-        const double bound = mesh_.face_areas[at(f)] * largest_curvature_;
+    float delay(HalfEdge h, double gauss_area) const {
+        const Face f = mesh_.twin[h] / 3;
+        const double distance = (mesh_.face_centers[f] - mesh_.face_centers[h / 3]).norm();
+        const double bound = mesh_.face_areas[f] * largest_curvature_;
         const double curvature = gauss_area < bound ? gauss_area / bound : gauss_area > 0.0;
         return static_cast<float>(distance * std::pow(curvature + epsilon_, power_));
     }
 
     // Area of the corners that face f would complete in chart c.
-    double corners(Index f, Index c) const {
+    double corners(Face f, Index c) const {
         double sum = 0.0;
-        for (const Index v : mesh_.faces[at(f)])
-            if (areas_.vertex[at(v)] > 0.0 && valence_[at(v)] == corner_count_[at(v)] + 1 &&
-                corner_owner_[at(v)] == c)
-                sum += areas_.vertex[at(v)];
+        for (const Vertex v : mesh_.faces[f])
+            if (areas_.vertex[v] > 0.0 && valence_[v] == corner_count_[v] + 1 &&
+                corner_owner_[v] == c)
+                sum += areas_.vertex[v];
         return sum;
     }
 
-    double gain(Index f, Index c) const {
-        double sum = areas_.face[at(f)];
-        if (has_corner_[at(f)] == 0)
+    double gain(Face f, Index c) const {
+        double sum = areas_.face[f];
+        if (has_corner_[f] == 0)
             return sum;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            if (mesh_.twin[at(h)] >= 0 && chart_[at(mesh_.twin[at(h)] / 3)] == c)
-                sum += areas_.edge[at(h)];
+        for (const HalfEdge h : half_edges_of(f))
+            if (mesh_.twin[h] >= 0 && chart_[mesh_.twin[h] / 3] == c)
+                sum += areas_.edge[h];
         return sum + corners(f, c);
     }
 
@@ -221,7 +221,7 @@ public:
             if (seeds_rest)
                 continue;
             seeds = border_.farthest_faces(
-                chart_, seeds, [&](Index h) { return cost_.step(h); }, progress_);
+                chart_, seeds, [&](HalfEdge h) { return cost_.step(h); }, progress_);
             seeds_rest = !seen.insert(seeds).second;
         }
     }

@@ -1,9 +1,10 @@
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
-#include "devseg/filters/filter_groups.h"
 #include "devseg/methods/t_flooding/t_flooding.h"
 
 namespace devseg::t_flooding {
+
+using namespace declare;
 
 namespace {
 
@@ -27,16 +28,15 @@ struct Options : TFloodingOptions {
     bool cut_tips = true;
 };
 
-declare::FilterOutput run_t_flooding(const declare::FilterInput& input, const Options& options,
-                                     Progress& progress) {
+FilterOutput run_t_flooding(const FilterInput& input, const Options& options, Progress& progress) {
     TFloodingResult result = segment_t_flooding(input.mesh, options, progress);
-    declare::FilterOutput output =
-        declare::segmentation_output(input, result.chart, std::move(result.face_gauss_area),
-                                     {options.cut_tips, {all_horns}}, progress);
+    FilterOutput output =
+        segmentation_output(input, result.chart, std::move(result.face_gauss_area),
+                            {options.cut_tips, {all_horns}}, progress);
     // Charts are numbered anew by their first face: the values follow.
     std::vector<double> gauss_area(result.chart_gauss_area.size());
     for (std::size_t f = 0; f < result.chart.size(); ++f)
-        gauss_area[at(output.charts->chart[f])] = result.chart_gauss_area[at(result.chart[f])];
+        gauss_area[output.charts->chart[f]] = result.chart_gauss_area[result.chart[f]];
     output.values.insert(output.values.end(), {{"chart_gauss_area", std::move(gauss_area)},
                                                {"gauss_area_std", result.gauss_area_std},
                                                {"total_gauss_area", result.total_gauss_area},
@@ -47,11 +47,11 @@ declare::FilterOutput run_t_flooding(const declare::FilterInput& input, const Op
 
 } // namespace
 
-std::vector<declare::FilterDeclaration> t_flooding_filters() {
+std::vector<FilterDeclaration> filters() {
     using O = Options;
     return {
-        declare::Declare<O>("Segmentation: t-flooding", "compute_segmentation_t_flooding_per_face",
-                            declare::FilterCategory::remeshing, t_flooding_help)
+        Declare<O>("Segmentation: t-flooding", "compute_segmentation_t_flooding_per_face",
+                   FilterCategory::remeshing, t_flooding_help)
             .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
                      "From 1 to the number of faces. A mesh of more components gets one chart for "
                      "each of them.")
@@ -79,7 +79,7 @@ std::vector<declare::FilterDeclaration> t_flooding_filters() {
             .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
                      "0 starts at the face farthest from the centre; other numbers at a random "
                      "face. The same number always gives the same charts.")
-            .writes(declare::writes_charts | declare::writes_quality | declare::writes_color)
+            .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("cut_length", "length of the cuts inside of charts, model units")
             .result("seam_length", "length of all cut edges, model units")

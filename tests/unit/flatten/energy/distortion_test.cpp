@@ -94,7 +94,7 @@ TEST(Distortion, TheCollapseStepIsWhereTheFirstTriangleHasNoArea) {
     const Disk disk(shapes::with_noise(shapes::grid(5, 5), 0.03, 2));
     std::vector<Vec2> uv;
     for (const Index v : disk.surface.vertex)
-        uv.push_back(disk.mesh.points[at(v)].head<2>());
+        uv.push_back(disk.mesh.points[v].head<2>());
     const Positions x = positions(uv);
     const auto least_area = [&](const Positions& y) {
         double least = std::numeric_limits<double>::infinity();

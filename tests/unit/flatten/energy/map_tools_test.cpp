@@ -111,7 +111,7 @@ TEST(CountFlips, CountsTurnedAndCollapsedFaces) {
     const Disk disk(shapes::grid(3, 3));
     std::vector<Vec2> uv;
     for (const Index v : disk.surface.vertex)
-        uv.push_back(disk.mesh.points[at(v)].head<2>());
+        uv.push_back(disk.mesh.points[v].head<2>());
     EXPECT_EQ(count_flips(disk.problem, uv), 0);
     std::vector<Vec2> mirrored = uv;
     for (Vec2& p : mirrored)
@@ -131,7 +131,7 @@ TEST(MapTools, JacobianOfAnAffineMapIsTheMap) {
     map << 1.5, -0.7, 0.2, 0.9;
     std::vector<Vec2> uv;
     for (const Index v : disk.surface.vertex)
-        uv.push_back(map * disk.mesh.points[at(v)].head<2>() + Vec2(3.0, 4.0));
+        uv.push_back(map * disk.mesh.points[v].head<2>() + Vec2(3.0, 4.0));
     for (std::size_t f = 0; f < disk.problem.faces.size(); ++f) {
         // The rest triangle is turned to lie with its first edge along x.
         const Eigen::Matrix2d j = jacobian(disk.problem, uv, f);
@@ -146,7 +146,7 @@ TEST(MapTools, ScaleToAreaKeepsTheShape) {
     Random random(33);
     std::vector<Vec2> uv;
     for (const Index v : disk.surface.vertex) {
-        const Vec3& p = disk.mesh.points[at(v)];
+        const Vec3& p = disk.mesh.points[v];
         uv.emplace_back(7.0 * p.x() + 100.0, 3.0 * p.y() - 50.0);
     }
     std::vector<Vec2> scaled = uv;
@@ -166,8 +166,8 @@ TEST(RestShape, TrianglesKeepTheirLengthsAndCotangents) {
     const Mesh& mesh = disk.mesh;
     double area = 0.0;
     for (std::size_t f = 0; f < disk.problem.faces.size(); ++f) {
-        const Triangle& t = mesh.faces[at(disk.surface.face[f])];
-        const auto point = [&](std::size_t k) { return mesh.points[at(t[k % 3])]; };
+        const Triangle& t = mesh.faces[disk.surface.face[f]];
+        const auto point = [&](std::size_t k) { return mesh.points[t[k % 3]]; };
         const Eigen::Matrix2d& edges = disk.problem.edges[f];
         EXPECT_NEAR(edges.col(0).norm(), (point(1) - point(0)).norm(), 1e-12);
         EXPECT_NEAR(edges.col(1).norm(), (point(2) - point(0)).norm(), 1e-12);
@@ -194,7 +194,7 @@ TEST(RestShape, TheBoundaryRunsCounterclockwiseOnceAround) {
     ASSERT_EQ(boundary.size(), 14U);
     for (std::size_t i = 0; i < boundary.size(); ++i) {
         const auto at_index = [&](std::size_t k) {
-            return Vec2(disk.mesh.points[at(disk.surface.vertex[at(boundary[k])])].head<2>());
+            return Vec2(disk.mesh.points[disk.surface.vertex[boundary[k]]].head<2>());
         };
         const Vec2 p = at_index(i);
         const Vec2 q = at_index((i + 1) % boundary.size());

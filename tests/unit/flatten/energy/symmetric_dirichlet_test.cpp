@@ -43,7 +43,7 @@ std::vector<mesh::RawMesh> curved() {
 std::vector<Vec2> identity(const Disk& disk) {
     std::vector<Vec2> uv;
     for (const Index v : disk.surface.vertex)
-        uv.push_back(disk.mesh.points[at(v)].head<2>());
+        uv.push_back(disk.mesh.points[v].head<2>());
     return uv;
 }
 

@@ -28,8 +28,8 @@ double shear(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (std::size_t c = 0; c < 3; ++c) {
             const Triangle& t = problem.faces[f];
-            const Vec2 p = uv[at(t[(c + 1) % 3])] - uv[at(t[c])];
-            const Vec2 q = uv[at(t[(c + 2) % 3])] - uv[at(t[c])];
+            const Vec2 p = uv[t[(c + 1) % 3]] - uv[t[c]];
+            const Vec2 q = uv[t[(c + 2) % 3]] - uv[t[c]];
             const double angle = std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
             const double change = angle - std::atan2(1.0, problem.cotangent[f][(c + 1) % 3]);
             sum += problem.area[f] * change * change / 3.0;
@@ -43,7 +43,7 @@ Eigen::MatrixXd constraint_gradients(const FlatteningProblem& problem,
                                      const Eigen::VectorXd& angles) {
     std::vector<Index> inner(at(problem.vertex_count), 0);
     for (const Index v : problem.boundary)
-        inner[at(v)] = -1;
+        inner[v] = -1;
     Index count = 0;
     for (Index& number : inner)
         if (number >= 0)
@@ -56,7 +56,7 @@ Eigen::MatrixXd constraint_gradients(const FlatteningProblem& problem,
             const Eigen::Index previous = 3 * f + (c + 2) % 3;
             gradients(f, 3 * f + c) = 1.0;
             const Index v =
-                inner[at(problem.faces[static_cast<std::size_t>(f)][static_cast<std::size_t>(c)])];
+                inner[problem.faces[static_cast<std::size_t>(f)][static_cast<std::size_t>(c)]];
             if (v < 0)
                 continue;
             gradients(faces + v, 3 * f + c) = 1.0;

@@ -81,7 +81,7 @@ void expect_lengths(const std::vector<Vec2>& points, const std::vector<double>& 
 std::vector<Vec2> boundary_of(const Disk& disk, const std::vector<Vec2>& uv) {
     std::vector<Vec2> points;
     for (const Index v : disk.problem.boundary)
-        points.push_back(uv[at(v)]);
+        points.push_back(uv[v]);
     return points;
 }
 
@@ -184,11 +184,11 @@ TEST(Lpfb, BothSidesOfADartAreEquallyLong) {
     int pairs = 0;
     const atlas::ChartSurface& surface = disk.surface;
     const auto length = [&](Index h) {
-        return (result.uv[at(surface.target(h))] - result.uv[at(surface.origin(h))]).norm();
+        return (result.uv[surface.target(h)] - result.uv[surface.origin(h)]).norm();
     };
     for (const Index h : surface.loops.front())
         for (const Index g : surface.loops.front())
-            if (disk.mesh.twin[at(surface.mesh_half_edge(h))] == surface.mesh_half_edge(g)) {
+            if (disk.mesh.twin[surface.mesh_half_edge(h)] == surface.mesh_half_edge(g)) {
                 EXPECT_NEAR(length(h), length(g), 1e-9 * length(h));
                 ++pairs;
             }
@@ -223,11 +223,11 @@ std::vector<Vec2> pulls(const FlatteningProblem& problem, const std::vector<Vec2
                 const double angle =
                     std::acos((edge - third).dot(-third) / ((edge - third).norm() * third.norm()));
                 const double w = mean_value ? tangent / edge.norm() : 1.0 / std::tan(angle);
-                pull[at(t[c])] += w * (uv[at(t[other])] - uv[at(t[c])]);
+                pull[t[c]] += w * (uv[t[other]] - uv[t[c]]);
             }
     }
     for (const Index v : problem.boundary)
-        pull[at(v)].setZero();
+        pull[v].setZero();
     return pull;
 }
 

@@ -41,8 +41,8 @@ std::vector<Disk> curved() {
 double shoelace(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double twice = 0.0;
     for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
-        const Vec2& p = uv[at(problem.boundary[i])];
-        const Vec2& q = uv[at(problem.boundary[(i + 1) % problem.boundary.size()])];
+        const Vec2& p = uv[problem.boundary[i]];
+        const Vec2& q = uv[problem.boundary[(i + 1) % problem.boundary.size()]];
         twice += p.x() * q.y() - p.y() * q.x();
     }
     return 0.5 * twice;
@@ -53,13 +53,13 @@ double energy_from_cotangents(const Disk& disk, const std::vector<Vec2>& uv) {
     double dirichlet = 0.0;
     for (std::size_t f = 0; f < disk.problem.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
-            const Triangle& t = disk.mesh.faces[at(disk.surface.face[f])];
-            const Vec3& tip = disk.mesh.points[at(t[(k + 2) % 3])];
-            const Vec3 a = disk.mesh.points[at(t[k])] - tip;
-            const Vec3 b = disk.mesh.points[at(t[(k + 1) % 3])] - tip;
+            const Triangle& t = disk.mesh.faces[disk.surface.face[f]];
+            const Vec3& tip = disk.mesh.points[t[(k + 2) % 3]];
+            const Vec3 a = disk.mesh.points[t[k]] - tip;
+            const Vec3 b = disk.mesh.points[t[(k + 1) % 3]] - tip;
             const Triangle& local = disk.problem.faces[f];
             dirichlet += 0.25 * a.dot(b) / a.cross(b).norm() *
-                         (uv[at(local[k])] - uv[at(local[(k + 1) % 3])]).squaredNorm();
+                         (uv[local[k]] - uv[local[(k + 1) % 3]]).squaredNorm();
         }
     return dirichlet - shoelace(disk.problem, uv);
 }
@@ -102,7 +102,7 @@ TEST(Lscm, EnergyIsZeroForSimilaritiesOnly) {
     const auto energy_of_map = [&](double a, double b, double c, double d) {
         std::vector<Vec2> uv;
         for (const Index v : disk.surface.vertex) {
-            const Vec3& p = disk.mesh.points[at(v)];
+            const Vec3& p = disk.mesh.points[v];
             uv.emplace_back(a * p.x() + b * p.y(), c * p.x() + d * p.y());
         }
         return conformal_energy(disk.problem, uv) / disk.problem.total_area;
@@ -119,13 +119,13 @@ TEST(Lscm, NoVertexButThePinsWouldRatherBeElsewhere) {
         for (Index v = 0; v < disk.problem.vertex_count; ++v) {
             Vec2 gradient;
             for (int c = 0; c < 2; ++c) { // exact for a quadratic energy
-                const double home = uv[at(v)][c];
+                const double home = uv[v][c];
                 constexpr double h = 1e-2;
-                uv[at(v)][c] = home + h;
+                uv[v][c] = home + h;
                 const double more = conformal_energy(disk.problem, uv);
-                uv[at(v)][c] = home - h;
+                uv[v][c] = home - h;
                 const double less = conformal_energy(disk.problem, uv);
-                uv[at(v)][c] = home;
+                uv[v][c] = home;
                 gradient[c] = (more - less) / (2.0 * h);
             }
             pulled += gradient.norm() > 1e-9 ? 1 : 0;

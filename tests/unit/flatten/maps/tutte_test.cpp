@@ -19,9 +19,9 @@ using shapes::pi;
 // The centre and the radius of the circle through the boundary.
 std::pair<Vec2, double> circle(const Disk& disk, const std::vector<Vec2>& uv) {
     const std::vector<Index>& b = disk.problem.boundary;
-    const Vec2& p = uv[at(b[0])];
-    const Vec2& q = uv[at(b[b.size() / 3])];
-    const Vec2& r = uv[at(b[2 * b.size() / 3])];
+    const Vec2& p = uv[b[0]];
+    const Vec2& q = uv[b[b.size() / 3]];
+    const Vec2& r = uv[b[2 * b.size() / 3]];
     Eigen::Matrix2d system;
     system << 2.0 * (q - p).transpose(), 2.0 * (r - p).transpose();
     const Vec2 centre = system.inverse() *
@@ -39,8 +39,8 @@ void expect_embedding(const Disk& disk, const std::vector<Vec2>& uv) {
     const std::vector<Index>& boundary = disk.problem.boundary;
     double turned = 0.0;
     for (std::size_t i = 0; i < boundary.size(); ++i) {
-        const Vec2 p = uv[at(boundary[i])] - centre;
-        const Vec2 q = uv[at(boundary[(i + 1) % boundary.size()])] - centre;
+        const Vec2 p = uv[boundary[i]] - centre;
+        const Vec2 q = uv[boundary[(i + 1) % boundary.size()]] - centre;
         EXPECT_NEAR(p.norm(), radius, 1e-9 * radius);
         const double turn = std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
         turned += turn > 0.0 ? turn : turn + 2.0 * pi;
@@ -68,9 +68,8 @@ TEST(Tutte, ArcsAreInProportionToTheEdges) {
     for (const double l : disk.problem.boundary_edge)
         length += l;
     for (std::size_t i = 0; i < disk.problem.boundary.size(); ++i) {
-        const Vec2 p = uv[at(disk.problem.boundary[i])] - centre;
-        const Vec2 q =
-            uv[at(disk.problem.boundary[(i + 1) % disk.problem.boundary.size()])] - centre;
+        const Vec2 p = uv[disk.problem.boundary[i]] - centre;
+        const Vec2 q = uv[disk.problem.boundary[(i + 1) % disk.problem.boundary.size()]] - centre;
         EXPECT_NEAR(std::acos(p.dot(q) / (radius * radius)),
                     2.0 * pi * disk.problem.boundary_edge[i] / length, 1e-9);
     }
@@ -83,9 +82,9 @@ TEST(Tutte, InnerVerticesAreInTheHullOfTheirNeighbours) {
     for (const Triangle& t : disk.problem.faces)
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t j = 1; j < 3; ++j)
-                neighbours[at(t[k])].push_back(uv[at(t[(k + j) % 3])]);
+                neighbours[t[k]].push_back(uv[t[(k + j) % 3]]);
     for (const Index v : disk.problem.boundary)
-        neighbours[at(v)].clear();
+        neighbours[v].clear();
     for (std::size_t v = 0; v < uv.size(); ++v)
         for (int i = 0; i < 16 && !neighbours[v].empty(); ++i) {
             const Vec2 direction(std::cos(i * pi / 8.0), std::sin(i * pi / 8.0));

@@ -39,7 +39,7 @@ ClipperLib::Path path_of(const std::vector<Vec2>& points) {
 }
 
 std::vector<Vec2> polygon(const pattern::Pattern& pattern, const GlueTab& tab) {
-    const std::vector<Vec2>& points = pattern.pieces[at(tab.piece)].path(tab.path).points;
+    const std::vector<Vec2>& points = pattern.pieces[tab.piece].path(tab.path).points;
     std::vector<Vec2> ring;
     for (Index i = tab.count; i >= 0; --i)
         ring.push_back(points[at(tab.first + i) % points.size()]);

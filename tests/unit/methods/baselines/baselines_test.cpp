@@ -43,8 +43,8 @@ TEST(Vsa, TheSidesOfACube) {
     const VsaResult r = vsa(mesh, 6);
     expect_charts(mesh, r.chart, 6);
     EXPECT_NEAR(r.total_error, 0.0, 1e-12);
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        EXPECT_NEAR(r.face_error[at(f)], 0.0, 1e-12);
+    for (const Face f : mesh.all_faces())
+        EXPECT_NEAR(r.face_error[f], 0.0, 1e-12);
     EXPECT_TRUE(r.converged);
 }
 
@@ -53,14 +53,14 @@ TEST(Vsa, TheErrorIsThatOfTheBestPlanes) {
     const VsaResult r = vsa(mesh, 10);
     expect_charts(mesh, r.chart, 10);
     std::vector<Vec3> sum(10, Vec3::Zero());
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        sum[at(r.chart[at(f)])] += mesh.face_areas[at(f)] * mesh.face_normals[at(f)];
+    for (const Face f : mesh.all_faces())
+        sum[r.chart[f]] += mesh.face_areas[f] * mesh.face_normals[f];
     double error = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const Vec3 proxy = sum[at(r.chart[at(f)])].normalized();
-        const double deviation = (mesh.face_normals[at(f)] - proxy).squaredNorm();
-        EXPECT_NEAR(r.face_error[at(f)], deviation, 1e-12);
-        error += mesh.face_areas[at(f)] * deviation;
+    for (const Face f : mesh.all_faces()) {
+        const Vec3 proxy = sum[r.chart[f]].normalized();
+        const double deviation = (mesh.face_normals[f] - proxy).squaredNorm();
+        EXPECT_NEAR(r.face_error[f], deviation, 1e-12);
+        error += mesh.face_areas[f] * deviation;
     }
     EXPECT_NEAR(r.total_error, error, 1e-9 * error);
 }
@@ -107,27 +107,27 @@ TEST(Mcgim, FacesBelongToTheChartOfTheCheapestPath) {
     const McgimResult r = mcgim(mesh, 4);
     expect_charts(mesh, r.chart, 4);
     std::vector<double> area(4, 0.0);
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        area[at(r.chart[at(f)])] += mesh.face_areas[at(f)] / mesh.total_area;
+    for (const Face f : mesh.all_faces())
+        area[r.chart[f]] += mesh.face_areas[f] / mesh.total_area;
     for (const double a : area) {
         EXPECT_GT(a, 0.1);
         EXPECT_LT(a, 0.45);
     }
     // Each face but the seeds has a neighbour of its chart on a cheaper path, one step away.
     int seeds = 0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         double best = std::numeric_limits<double>::infinity();
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-            const Index twin = mesh.twin[at(h)];
-            if (twin >= 0 && r.chart[at(twin / 3)] == r.chart[at(f)])
-                best = std::min(
-                    best, r.face_cost[at(twin / 3)] +
-                              (mesh.face_centers[at(twin / 3)] - mesh.face_centers[at(f)]).norm());
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Index twin = mesh.twin[h];
+            if (twin >= 0 && r.chart[twin / 3] == r.chart[f])
+                best =
+                    std::min(best, r.face_cost[twin / 3] +
+                                       (mesh.face_centers[twin / 3] - mesh.face_centers[f]).norm());
         }
-        if (r.face_cost[at(f)] == 0.0)
+        if (r.face_cost[f] == 0.0)
             ++seeds;
         else
-            EXPECT_NEAR(r.face_cost[at(f)], best, 1e-5);
+            EXPECT_NEAR(r.face_cost[f], best, 1e-5);
     }
     EXPECT_EQ(seeds, 4);
 }

@@ -56,11 +56,11 @@ void expect_promises(const Mesh& mesh, const DChartsOptions& options, const DCha
     EXPECT_TRUE(checks::is_valid(mesh, map));
     // The proxies are the best ones of the final charts, and the errors are theirs.
     std::vector<metrics::NormalMoments> moments(at(count));
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        moments[at(r.chart[at(f)])].add(mesh.face_areas[at(f)], mesh.face_normals[at(f)]);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const metrics::ConicProxy proxy = metrics::fit_conic(moments[at(r.chart[at(f)])]);
-        ASSERT_NEAR(r.fitting_error[at(f)], proxy.fitting_error(mesh.face_normals[at(f)]), 1e-12);
+    for (const Face f : mesh.all_faces())
+        moments[r.chart[f]].add(mesh.face_areas[f], mesh.face_normals[f]);
+    for (const Face f : mesh.all_faces()) {
+        const metrics::ConicProxy proxy = metrics::fit_conic(moments[r.chart[f]]);
+        ASSERT_NEAR(r.fitting_error[f], proxy.fitting_error(mesh.face_normals[f]), 1e-12);
     }
 }
 
@@ -106,9 +106,8 @@ TEST(DCharts, ACappedCylinderFallsIntoItsThreeParts) {
         EXPECT_EQ(r.hole_charts, 0);
         EXPECT_LT(largest_error(r), 1e-12);
         std::map<Index, std::set<int>> parts; // label → the parts of the shape that it covers
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            parts[r.chart[at(f)]].insert(
-                static_cast<int>(std::lround(mesh.face_normals[at(f)].z())));
+        for (const Face f : mesh.all_faces())
+            parts[r.chart[f]].insert(static_cast<int>(std::lround(mesh.face_normals[f].z())));
         ASSERT_EQ(parts.size(), 3U);
         std::set<int> covered;
         for (const auto& [label, part] : parts) {
@@ -146,8 +145,8 @@ TEST(DCharts, ASmallerBoundMakesChartsThatFitBetter) {
     const auto mean = [&](double bound) {
         const DChartsResult r = segment(mesh, charts(8, bound));
         double sum = 0.0;
-        for (Index f = 0; f < mesh.face_count(); ++f)
-            sum += mesh.face_areas[at(f)] * r.fitting_error[at(f)];
+        for (const Face f : mesh.all_faces())
+            sum += mesh.face_areas[f] * r.fitting_error[f];
         return sum / mesh.total_area;
     };
     EXPECT_LT(mean(0.005), 0.5 * mean(0.2));
@@ -220,7 +219,7 @@ void expect_same_charts_in_any_face_order(const DChartsOptions& options) {
         const DChartsResult r = segment(shuffled, options);
         std::map<Index, Index> renamed;
         for (std::size_t i = 0; i < order.size(); ++i) {
-            const Index label = expected.chart[at(order[i])];
+            const Index label = expected.chart[order[i]];
             ASSERT_EQ(renamed.try_emplace(r.chart[i], label).first->second, label);
         }
         EXPECT_EQ(renamed.size(), expected.proxies.size());
@@ -252,7 +251,7 @@ TEST(DCharts, WeightsOfZeroAndTenAreAccepted) {
 TEST(DCharts, FacesWithoutAreaAreLabelledAsWell) {
     mesh::RawMesh raw = shapes::grid(6, 6);
     for (Index i = 8; i < 13; ++i)
-        raw.points[at(i)] = raw.points[at(i - 7)]; // a whole row collapses
+        raw.points[i] = raw.points[i - 7]; // a whole row collapses
     const Mesh mesh = checks::gated(raw);
     expect_promises(mesh, charts(3), segment(mesh, charts(3)));
 }

@@ -75,10 +75,10 @@ TEST(DevelopableCharts, PartsOfACreasedSolidAreItsCharts) {
     const DevelopableCharts r = design(mesh, options);
     expect_partition(mesh, r);
     EXPECT_EQ(1 + *std::max_element(r.chart.begin(), r.chart.end()), 3);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
-        const bool crease = mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(twin / 3)]) < 0.5;
-        EXPECT_EQ(r.chart[at(h / 3)] != r.chart[at(twin / 3)], crease);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index twin = mesh.twin[h];
+        const bool crease = mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3]) < 0.5;
+        EXPECT_EQ(r.chart[h / 3] != r.chart[twin / 3], crease);
     }
     EXPECT_NEAR(stretch(mesh, flatten(mesh, r)), 1.0, 1e-6);
 }
@@ -278,7 +278,7 @@ TEST(DevelopableCharts, LargeSurfacesAreDecidedOnACoarseVersion) {
     for (std::size_t c = 0; c < flat.flat.size(); ++c) {
         EXPECT_TRUE(flat.flat[c].surface.is_disk());
         for (const Index f : flat.flat[c].surface.face)
-            area[c] += mesh.face_areas[at(f)];
+            area[c] += mesh.face_areas[f];
         EXPECT_GE(area[c], 0.002 * mesh.total_area);
     }
     EXPECT_LT(stretch(mesh, flat), 1.01);

@@ -32,7 +32,7 @@ mesh::RawMesh ruled(Index rulings, Index points, const std::function<Vec3(Index,
     mesh::RawMesh mesh = shapes::grid(rulings, points);
     for (Index i = 0; i <= rulings; ++i)
         for (Index j = 0; j <= points; ++j)
-            mesh.points[at(j * (rulings + 1) + i)] = place(i, j);
+            mesh.points[j * (rulings + 1) + i] = place(i, j);
     return mesh;
 }
 
@@ -90,13 +90,13 @@ double worst_defect(const Disk& disk) {
     std::vector<double> angle(at(disk.surface.vertex_count()), 0.0);
     for (std::size_t f = 0; f < disk.surface.corners.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
-            const Triangle& t = disk.mesh.faces[at(disk.surface.face[f])];
-            const Vec3 a = disk.mesh.points[at(t[(k + 1) % 3])] - disk.mesh.points[at(t[k])];
-            const Vec3 b = disk.mesh.points[at(t[(k + 2) % 3])] - disk.mesh.points[at(t[k])];
-            angle[at(disk.surface.corners[f][k])] += std::atan2(a.cross(b).norm(), a.dot(b));
+            const Triangle& t = disk.mesh.faces[disk.surface.face[f]];
+            const Vec3 a = disk.mesh.points[t[(k + 1) % 3]] - disk.mesh.points[t[k]];
+            const Vec3 b = disk.mesh.points[t[(k + 2) % 3]] - disk.mesh.points[t[k]];
+            angle[disk.surface.corners[f][k]] += std::atan2(a.cross(b).norm(), a.dot(b));
         }
     for (const Index v : disk.problem.boundary)
-        angle[at(v)] = 2.0 * pi;
+        angle[v] = 2.0 * pi;
     double worst = 0.0;
     for (const double sum : angle)
         worst = std::max(worst, std::abs(sum - 2.0 * pi));
@@ -143,7 +143,7 @@ TEST(DevelopableOracle, LpfbKeepsEveryBoundaryEdgeOfEveryChart) {
             for (const Index h : chart.surface.loops.front()) {
                 const double length = disk.mesh.edge_length(chart.surface.mesh_half_edge(h));
                 const Vec2 edge =
-                    chart.uv[at(chart.surface.target(h))] - chart.uv[at(chart.surface.origin(h))];
+                    chart.uv[chart.surface.target(h)] - chart.uv[chart.surface.origin(h)];
                 EXPECT_NEAR(edge.norm(), length, 1e-6 * length);
             }
         }

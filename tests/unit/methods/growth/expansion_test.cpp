@@ -16,14 +16,14 @@ namespace {
 double sum_of(const Mesh& mesh, const std::vector<metrics::ConicProxy>& proxies,
               const ExpansionOptions& options, const std::vector<Index>& chart) {
     double sum = 0.0;
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const double error = proxies[at(chart[at(f)])].fitting_error(mesh.face_normals[at(f)]);
-        sum += mesh.face_areas[at(f)] *
-               (error + 20.0 * std::max(0.0, error - options.max_fitting_error));
+    for (const Face f : mesh.all_faces()) {
+        const double error = proxies[chart[f]].fitting_error(mesh.face_normals[f]);
+        sum +=
+            mesh.face_areas[f] * (error + 20.0 * std::max(0.0, error - options.max_fitting_error));
     }
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
-        if (twin > h && chart[at(h / 3)] != chart[at(twin / 3)])
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index twin = mesh.twin[h];
+        if (twin > h && chart[h / 3] != chart[twin / 3])
             sum += options.length_weight * std::sqrt(mesh.total_area) *
                    atlas::crease_factor(mesh, h) * mesh.edge_length(h);
     }
@@ -62,12 +62,12 @@ TEST(Expansion, TwoLabelsEndAtTheLeastCut) {
     std::vector<Index> chart(mesh.faces.size());
     std::vector<metrics::ConicProxy> proxies(6);
     std::vector<Index> wanted(chart.size());
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         Index axis = 0;
-        mesh.face_normals[at(f)].cwiseAbs().maxCoeff(&axis);
-        wanted[at(f)] = 2 * axis + (mesh.face_normals[at(f)][axis] > 0.0 ? 1 : 0);
-        proxies[at(wanted[at(f)])].axis = mesh.face_normals[at(f)];
-        chart[at(f)] = f % 5 == 0 ? (wanted[at(f)] + 1) % 6 : wanted[at(f)];
+        mesh.face_normals[f].cwiseAbs().maxCoeff(&axis);
+        wanted[f] = 2 * axis + (mesh.face_normals[f][axis] > 0.0 ? 1 : 0);
+        proxies[wanted[f]].axis = mesh.face_normals[f];
+        chart[f] = f % 5 == 0 ? (wanted[f] + 1) % 6 : wanted[f];
     }
     Progress progress;
     relabel_by_expansion(mesh, proxies, ExpansionOptions{}, chart, progress);
@@ -76,9 +76,8 @@ TEST(Expansion, TwoLabelsEndAtTheLeastCut) {
 
 TEST(CreaseFactor, IsOneOnPlanesAndATenthOnRightAngles) {
     const Mesh mesh = checks::gated(shapes::cube(2));
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const bool crease =
-            mesh.face_normals[at(h / 3)].dot(mesh.face_normals[at(mesh.twin[at(h)] / 3)]) < 0.5;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const bool crease = mesh.face_normals[h / 3].dot(mesh.face_normals[mesh.twin[h] / 3]) < 0.5;
         EXPECT_NEAR(atlas::crease_factor(mesh, h), crease ? 0.1 : 1.0, 1e-12);
     }
 }
@@ -92,8 +91,8 @@ TEST(Fragments, SmallPiecesGoToTheNeighbourWithTheLongestBorder) {
     const std::vector<Index> result = atlas::absorb_fragments(mesh, label, 0.01);
     EXPECT_EQ(1 + *std::max_element(result.begin(), result.end()), 2);
     for (Index h = 15; h < 18; ++h)
-        if (mesh.twin[at(h)] >= 0) {
-            EXPECT_EQ(result[5], result[at(mesh.twin[at(h)] / 3)]);
+        if (mesh.twin[h] >= 0) {
+            EXPECT_EQ(result[5], result[mesh.twin[h] / 3]);
         }
 }
 

@@ -23,10 +23,10 @@ std::vector<Index> seeds_of(const Mesh& mesh, Index count, std::uint32_t random_
 std::vector<std::vector<double>> all_distances(const Mesh& mesh) {
     const std::size_t count = mesh.faces.size();
     std::vector<std::vector<double>> d(count, std::vector<double>(count, infinity));
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] >= 0) {
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0) {
             const std::size_t f = at(h / 3);
-            const std::size_t g = at(mesh.twin[at(h)] / 3);
+            const std::size_t g = at(mesh.twin[h] / 3);
             d[f][g] = (mesh.face_centers[f] - mesh.face_centers[g]).norm();
         }
     for (std::size_t f = 0; f < count; ++f)
@@ -49,7 +49,7 @@ TEST(Seeds, EachIsFarthestFromThoseBefore) {
             const auto nearest = [&](std::size_t f) {
                 double d = infinity;
                 for (std::size_t j = 0; j < i; ++j)
-                    d = std::min(d, distances[at(seeds[j])][f]);
+                    d = std::min(d, distances[seeds[j]][f]);
                 return d;
             };
             for (std::size_t f = 0; f < mesh.faces.size(); ++f)
@@ -94,7 +94,7 @@ TEST(Seeds, EveryComponentGetsOneBeforeAnyGetsTwo) {
     const atlas::ChartMap parts = checks::components(mesh);
     std::set<Index> reached;
     for (const Index seed : seeds_of(mesh, 5))
-        reached.insert(parts.chart[at(seed)]);
+        reached.insert(parts.chart[seed]);
     EXPECT_EQ(reached.size(), 5U);
 }
 
@@ -106,7 +106,7 @@ TEST(Seeds, TheStartDoesNotDependOnTheOrderOfFaces) {
         const std::vector<Index> order = shapes::random_order(raw.faces.size(), seed);
         std::vector<Index> found = seeds_of(checks::gated(shapes::with_face_order(raw, order)), 10);
         for (Index& f : found)
-            f = order[at(f)];
+            f = order[f];
         EXPECT_EQ(found, seeds);
     }
 }
@@ -115,7 +115,7 @@ TEST(Seeds, ZeroStartsAtTheFaceFarthestFromTheCentre) {
     mesh::RawMesh raw = shapes::sphere(2);
     raw.points[100] *= 3.0; // a spike
     const Mesh mesh = checks::gated(raw);
-    const Triangle& t = mesh.faces[at(seeds_of(mesh, 1).at(0))];
+    const Triangle& t = mesh.faces[seeds_of(mesh, 1).at(0)];
     EXPECT_TRUE(t[0] == 100 || t[1] == 100 || t[2] == 100);
 }
 
@@ -141,8 +141,7 @@ TEST(Seeds, OfSeveralComponentsDoNotDependOnTheOrderOfFaces) {
             shapes::with_face_order(raw, shapes::random_order(raw.faces.size(), order)));
         const std::vector<Index> found = seeds_of(other, 7);
         for (std::size_t i = 0; i < seeds.size(); ++i)
-            EXPECT_LE((other.face_centers[at(found[i])] - mesh.face_centers[at(seeds[i])]).norm(),
-                      1e-12)
+            EXPECT_LE((other.face_centers[found[i]] - mesh.face_centers[seeds[i]]).norm(), 1e-12)
                 << i;
     }
 }

@@ -77,7 +77,7 @@ TEST(Papercraft, CornersNeverComeInside) {
     for (const int number : {1, 3}) {
         const PapercraftResult r = segment(mesh, number, 1000.0);
         for (const Index v : develop::inner_vertices(mesh, r.charts.seam))
-            EXPECT_NEAR(defect[at(v)], 0.0, 1e-9);
+            EXPECT_NEAR(defect[v], 0.0, 1e-9);
     }
 }
 
@@ -122,7 +122,7 @@ TEST(VertexGrowth, AChartTakesTheCheapestVertexOfItsBorder) {
     Progress progress;
     const std::vector<Index> seeds = growth.find_seeds(1.0, progress);
     // The first chart is the cheap column, and no more.
-    EXPECT_EQ(cost[at(seeds.front())], 0.0);
+    EXPECT_EQ(cost[seeds.front()], 0.0);
     const growth::VertexCharts grown = growth.grow({seed}, progress);
     for (std::size_t v = 0; v < cost.size(); ++v)
         if (cost[v] == 0.0) {
@@ -135,17 +135,17 @@ struct Slit {
     explicit Slit(int end) : mesh(checks::gated(shapes::grid(8, 2, 8.0, 2.0))) {
         seam.assign(mesh.twin.size(), 0);
         cost.assign(mesh.points.size(), 0.0);
-        for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+        for (const HalfEdge h : mesh.all_half_edges()) {
             const Vec3 a = at_column(mesh.origin(h));
             const Vec3 b = at_column(mesh.target(h));
-            if (mesh.twin[at(h)] >= 0 && std::abs(a.y()) + std::abs(b.y()) < 1e-6 &&
+            if (mesh.twin[h] >= 0 && std::abs(a.y()) + std::abs(b.y()) < 1e-6 &&
                 std::max(a.x(), b.x()) < end + 0.5)
-                seam[at(h)] = 1;
+                seam[h] = 1;
         }
         for (std::size_t v = 0; v < cost.size(); ++v)
             cost[v] = 0.1 * (1.0 + std::round(at_column(static_cast<Index>(v)).x()));
     }
-    Vec3 at_column(Index v) const { return mesh.points[at(v)] * mesh.unit_length + Vec3(4, 0, 0); }
+    Vec3 at_column(Index v) const { return mesh.points[v] * mesh.unit_length + Vec3(4, 0, 0); }
     Index cut_edges() const {
         Index number = 0;
         for (const std::uint8_t s : seam)

@@ -61,8 +61,8 @@ void expect_promises(const Mesh& mesh, const PlushOptions& options, const PlushS
         std::vector<double> ratio;
         for (std::size_t f = 0; f < problem.faces.size(); ++f) {
             const Triangle& t = problem.faces[f];
-            const Vec2 p = chart.uv[at(t[1])] - chart.uv[at(t[0])];
-            const Vec2 q = chart.uv[at(t[2])] - chart.uv[at(t[0])];
+            const Vec2 p = chart.uv[t[1]] - chart.uv[t[0]];
+            const Vec2 q = chart.uv[t[2]] - chart.uv[t[0]];
             ratio.push_back(0.5 * (p.x() * q.y() - p.y() * q.x()) / problem.area[f]);
             plane += ratio.back() * problem.area[f];
         }
@@ -74,7 +74,7 @@ void expect_promises(const Mesh& mesh, const PlushOptions& options, const PlushS
         for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
             const std::size_t n = (i + 1) % problem.boundary.size();
             const double length =
-                (chart.uv[at(problem.boundary[n])] - chart.uv[at(problem.boundary[i])]).norm();
+                (chart.uv[problem.boundary[n]] - chart.uv[problem.boundary[i]]).norm();
             EXPECT_NEAR(length, problem.boundary_edge[i], 2e-3 * problem.boundary_edge[i] + 2e-4);
         }
     }
@@ -117,8 +117,8 @@ TEST(SeamGuides, TellWhatLooksNatural) {
     skeleton.bones = {{0, 1}};
     SeamMarks along(tube.twin.size(), 0);
     SeamMarks around(tube.twin.size(), 0);
-    for (Index h = 0; h < tube.half_edge_count(); ++h) {
-        const Vec3 edge = tube.points[at(tube.target(h))] - tube.points[at(tube.origin(h))];
+    for (const HalfEdge h : tube.all_half_edges()) {
+        const Vec3 edge = tube.points[tube.target(h)] - tube.points[tube.origin(h)];
         if (edge.head<2>().norm() < 1e-9)
             mark(tube, h, 1, along);
         if (std::abs(edge.z()) < 1e-9)
@@ -136,12 +136,12 @@ TEST(SeamGuides, TellWhatLooksNatural) {
     SeamMarks ring(tube.twin.size(), 0);
     SeamGuides border{skeleton, {}};
     const double end = tube.points[0].z();
-    for (Index h = 0; h < tube.half_edge_count(); ++h) {
-        const Vec3& a = tube.points[at(tube.origin(h))];
-        const Vec3& b = tube.points[at(tube.target(h))];
-        if (around[at(h)] != 0 && std::abs(a.z()) < 0.5 * std::abs(end) && a.z() == b.z())
+    for (const HalfEdge h : tube.all_half_edges()) {
+        const Vec3& a = tube.points[tube.origin(h)];
+        const Vec3& b = tube.points[tube.target(h)];
+        if (around[h] != 0 && std::abs(a.z()) < 0.5 * std::abs(end) && a.z() == b.z())
             mark(tube, h, 1, ring);
-        if (ring[at(h)] != 0)
+        if (ring[h] != 0)
             border.limb_borders.push_back({a, b});
     }
     EXPECT_DOUBLE_EQ(seam_shares(tube, ring, guides, {}, progress).guided, 0.0);
@@ -150,11 +150,10 @@ TEST(SeamGuides, TellWhatLooksNatural) {
     // The edges of a box are creases, from outside; from inside they are grooves.
     const Mesh box = checks::gated(shapes::cube(8));
     const std::vector<EdgeShape> shape = edge_shapes(box, progress);
-    for (Index h = 0; h < box.half_edge_count(); ++h) {
-        const bool is_crease =
-            box.face_normals[at(h / 3)].dot(box.face_normals[at(box.twin[at(h)] / 3)]) < 0.5;
-        EXPECT_NEAR(straying(1.0, shape[at(h)].bend), is_crease ? 0.0 : 1.0, 1e-12);
-        EXPECT_NEAR(straying(1.0, -shape[at(h)].bend), is_crease ? 0.0 : 1.0, 1e-12);
+    for (const HalfEdge h : box.all_half_edges()) {
+        const bool is_crease = box.face_normals[h / 3].dot(box.face_normals[box.twin[h] / 3]) < 0.5;
+        EXPECT_NEAR(straying(1.0, shape[h].bend), is_crease ? 0.0 : 1.0, 1e-12);
+        EXPECT_NEAR(straying(1.0, -shape[h].bend), is_crease ? 0.0 : 1.0, 1e-12);
     }
 }
 
@@ -165,8 +164,8 @@ TEST(SeamGuides, FollowBonesOverTips) {
     skeleton.joints = {Vec3(0.0, 0.0, -0.2), Vec3(0.0, 0.0, 0.2)};
     skeleton.bones = {{0, 1}};
     const BoneWeights weights = bone_weights(ball, skeleton, Progress());
-    for (Index v = 0; v < ball.vertex_count(); ++v) {
-        const Vec3 normal = ball.points[at(v)].normalized();
+    for (const Vertex v : ball.all_vertices()) {
+        const Vec3 normal = ball.points[v].normalized();
         const SkeletonDirection found = skeleton_direction(skeleton, weights, v, v, normal);
         const double away = normal.head<2>().norm(); // from the poles
         const Vec3 meridian = (Vec3::UnitZ() - normal.z() * normal).stableNormalized();
@@ -189,11 +188,10 @@ double mirrored_share(const Mesh& mesh, const std::vector<std::uint8_t>& seam) {
     for (const Vec3& p : mesh.points)
         box.extend(p);
     std::vector<std::pair<Vec3, double>> edges;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (seam[at(h)] != 0 && mesh.twin[at(h)] > h)
-            edges.emplace_back(
-                0.5 * (mesh.points[at(mesh.origin(h))] + mesh.points[at(mesh.target(h))]),
-                mesh.edge_length(h));
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (seam[h] != 0 && mesh.twin[h] > h)
+            edges.emplace_back(0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)]),
+                               mesh.edge_length(h));
     double total = 0.0;
     double mirrored = 0.0;
     for (const auto& [middle, length] : edges) {
@@ -226,12 +224,11 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
     const Mesh coarse = checks::gated(shapes::cylinder_tube(12, 6));
     const Mesh fine = checks::gated(shapes::cylinder_tube(48, 24));
     SeamMarks seam(coarse.twin.size(), 0);
-    for (Index h = 0; h < coarse.half_edge_count(); ++h) // a ring in the middle, and a cut along it
-        if ((std::abs(coarse.points[at(coarse.origin(h))].z()) < 1e-9 &&
-             std::abs(coarse.points[at(coarse.target(h))].z()) < 1e-9) ||
-            (coarse.points[at(coarse.origin(h))].head<2>() - coarse.points[at(0)].head<2>())
-                        .norm() +
-                    (coarse.points[at(coarse.target(h))].head<2>() - coarse.points[at(0)].head<2>())
+    for (const HalfEdge h : coarse.all_half_edges()) // a ring in the middle, and a cut along it
+        if ((std::abs(coarse.points[coarse.origin(h)].z()) < 1e-9 &&
+             std::abs(coarse.points[coarse.target(h)].z()) < 1e-9) ||
+            (coarse.points[coarse.origin(h)].head<2>() - coarse.points[0].head<2>()).norm() +
+                    (coarse.points[coarse.target(h)].head<2>() - coarse.points[0].head<2>())
                         .norm() <
                 1e-9)
             mark(coarse, h, 1, seam);
@@ -281,13 +278,13 @@ TEST(PlushSeams, MaterialBordersStay) {
     const Mesh mesh = checks::gated(shapes::cylinder_tube(24, 12));
     std::vector<std::uint8_t> hard(mesh.twin.size(), 0);
     Index count = 0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Index twin = mesh.twin[at(h)];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index twin = mesh.twin[h];
         if (twin < 0)
             continue;
-        const bool above = mesh.face_centers[at(h / 3)].z() > 0.0;
-        hard[at(h)] = above != (mesh.face_centers[at(twin / 3)].z() > 0.0) ? 1 : 0;
-        count += hard[at(h)];
+        const bool above = mesh.face_centers[h / 3].z() > 0.0;
+        hard[h] = above != (mesh.face_centers[twin / 3].z() > 0.0) ? 1 : 0;
+        count += hard[h];
     }
     ASSERT_EQ(count, 2 * 24);
     const PlushSeams seams = segment(mesh, PlushOptions{}, hard);
@@ -328,9 +325,9 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
     for (const Vec3& p : mesh.points)
         middle += p.x() / static_cast<double>(mesh.points.size());
     SeamMarks seam(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (std::abs(mesh.points[at(mesh.origin(h))].x() - middle) < 1e-9 &&
-            std::abs(mesh.points[at(mesh.target(h))].x() - middle) < 1e-9)
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (std::abs(mesh.points[mesh.origin(h)].x() - middle) < 1e-9 &&
+            std::abs(mesh.points[mesh.target(h)].x() - middle) < 1e-9)
             mark(mesh, h, 1, seam);
     ASSERT_EQ(find_patches(mesh, seam).count, 2);
     const SeamMarks hard;
@@ -362,15 +359,15 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
         EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));
         EXPECT_NEAR(half.total_area, mesh.total_area, 0.05 * mesh.total_area);
         Index on_plane = 0;
-        for (Index h = 0; h < half.half_edge_count(); ++h) {
-            const Index image = surface->image[at(h)];
-            EXPECT_EQ(surface->image[at(image)], h);
-            EXPECT_LT((plane->reflect(half.points[at(half.origin(h))]) -
-                       half.points[at(half.target(image))])
-                          .norm(),
-                      1e-9);
-            ASSERT_GE(half.twin[at(h)], 0); // the torus stays closed
-            EXPECT_EQ(surface->image[at(half.twin[at(h)])], half.twin[at(image)]);
+        for (const HalfEdge h : half.all_half_edges()) {
+            const Index image = surface->image[h];
+            EXPECT_EQ(surface->image[image], h);
+            EXPECT_LT(
+                (plane->reflect(half.points[half.origin(h)]) - half.points[half.target(image)])
+                    .norm(),
+                1e-9);
+            ASSERT_GE(half.twin[h], 0); // the torus stays closed
+            EXPECT_EQ(surface->image[half.twin[h]], half.twin[image]);
             on_plane += surface->is_on_plane(h) ? 1 : 0;
         }
         EXPECT_GT(on_plane, 0);
@@ -390,7 +387,7 @@ TEST(Skeleton, BonesOfCapsuleLieAlongItsAxis) {
     const Skeleton skeleton = extract_skeleton(mesh, Progress{});
     ASSERT_FALSE(skeleton.empty());
     for (const auto& [a, b] : skeleton.bones) {
-        const Vec3 bone = skeleton.joints[at(b)] - skeleton.joints[at(a)];
+        const Vec3 bone = skeleton.joints[b] - skeleton.joints[a];
         EXPECT_GT(std::abs(bone.normalized().z()), 0.95);
     }
     const BoneWeights weights = bone_weights(mesh, skeleton, Progress{});
@@ -437,8 +434,8 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
     const mesh::RawMesh raw = shapes::revolve(profile, 32);
     const Mesh mesh = checks::gated(raw);
     Index tip = 0;
-    for (Index v = 0; v < mesh.vertex_count(); ++v)
-        if (mesh.points[at(v)].z() > mesh.points[at(tip)].z())
+    for (const Vertex v : mesh.all_vertices())
+        if (mesh.points[v].z() > mesh.points[tip].z())
             tip = v;
     const auto limbs =
         find_limbs(mesh, build_vertex_graph(mesh), mean_curvature(mesh), {tip}, Progress{});
@@ -447,9 +444,9 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
     for (const Limb& limb : limbs)
         for (const Index h : limb_border(mesh, limb))
             mark(mesh, h, 1, seam);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (seam[at(h)] != 0) {
-            const double z = mesh.points[at(mesh.origin(h))].z() * mesh.unit_length + 1.0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (seam[h] != 0) {
+            const double z = mesh.points[mesh.origin(h)].z() * mesh.unit_length + 1.0;
             EXPECT_NEAR(z, 0.95, 0.25); // in the model, where the finger meets the ball
         }
 }
@@ -479,9 +476,9 @@ TEST(PatchTrial, NeedlesAreMapped) {
 TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     const Mesh mesh = checks::gated(shapes::grid(8, 8));
     SeamMarks seam(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Vec3& a = mesh.points[at(mesh.origin(h))];
-        const Vec3& b = mesh.points[at(mesh.target(h))];
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vec3& a = mesh.points[mesh.origin(h)];
+        const Vec3& b = mesh.points[mesh.target(h)];
         if ((std::abs(a.x()) < 1e-9 && std::abs(b.x()) < 1e-9) ||
             (std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9))
             mark(mesh, h, 1, seam);
@@ -508,17 +505,16 @@ TEST(SeamSmoothing, TeethGo) {
     for (std::size_t f = 0; f < label.size(); ++f)
         label[f] = mesh.face_centers[f].x() > 0.0 ? 1 : 0;
     std::vector<Index> toothed = label;
-    for (Index f = 0; f < mesh.face_count(); ++f)
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            if (mesh.twin[at(h)] >= 0 && label[at(f)] == 0 && f % 4 == 0 &&
-                label[at(mesh.twin[at(h)] / 3)] == 1)
-                toothed[at(f)] = 1;
+    for (const Face f : mesh.all_faces())
+        for (const HalfEdge h : half_edges_of(f))
+            if (mesh.twin[h] >= 0 && label[f] == 0 && f % 4 == 0 && label[mesh.twin[h] / 3] == 1)
+                toothed[f] = 1;
     EXPECT_NE(toothed, label);
     remove_teeth(mesh, toothed);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
+    for (const Face f : mesh.all_faces()) {
         int others = 0;
-        for (Index h = 3 * f; h < 3 * f + 3; ++h)
-            others += mesh.twin[at(h)] >= 0 && toothed[at(mesh.twin[at(h)] / 3)] != toothed[at(f)];
+        for (const HalfEdge h : half_edges_of(f))
+            others += mesh.twin[h] >= 0 && toothed[mesh.twin[h] / 3] != toothed[f];
         EXPECT_LT(others, 2);
     }
 }

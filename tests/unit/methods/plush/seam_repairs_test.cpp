@@ -20,23 +20,23 @@ namespace {
 template <class Inside>
 SeamMarks seam_around(const Mesh& mesh, Inside inside) {
     SeamMarks seam(mesh.twin.size(), 0);
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        if (mesh.twin[at(h)] >= 0 && inside(mesh.face_centers[at(h / 3)]) !=
-                                         inside(mesh.face_centers[at(mesh.twin[at(h)] / 3)]))
-            seam[at(h)] = 1;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 &&
+            inside(mesh.face_centers[h / 3]) != inside(mesh.face_centers[mesh.twin[h] / 3]))
+            seam[h] = 1;
     return seam;
 }
 
 double seam_length(const Mesh& mesh, const SeamMarks& seam) {
     double length = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
-        length += seam[at(h)] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        length += seam[h] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
     return length;
 }
 
 std::vector<double> lengths(const Mesh& mesh) {
     std::vector<double> result;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h)
+    for (const HalfEdge h : mesh.all_half_edges())
         result.push_back(mesh.edge_length(h));
     return result;
 }
@@ -102,15 +102,15 @@ TEST(SmoothSeams, TeethGoAndEndsStay) {
     const std::vector<Vec3> points = smooth_seams(mesh, seam);
     double before = 0.0;
     double after = 0.0;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
+    for (const HalfEdge h : mesh.all_half_edges()) {
         const Index a = mesh.origin(h);
         const Index b = mesh.target(h);
-        if (seam[at(h)] != 0) {
+        if (seam[h] != 0) {
             before += 0.5 * mesh.edge_length(h);
-            after += 0.5 * (points[at(a)] - points[at(b)]).norm();
+            after += 0.5 * (points[a] - points[b]).norm();
         }
-        if (mesh.twin[at(h)] < 0) {
-            EXPECT_EQ(points[at(a)], mesh.points[at(a)]);
+        if (mesh.twin[h] < 0) {
+            EXPECT_EQ(points[a], mesh.points[a]);
         }
     }
     EXPECT_LT(after, 0.8 * before);
@@ -119,7 +119,7 @@ TEST(SmoothSeams, TeethGoAndEndsStay) {
 TEST(MendPatch, PatchesThatFitStay) {
     const Mesh mesh = checks::gated(shapes::grid(10, 10));
     std::vector<Index> faces;
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (const Face f : mesh.all_faces())
         faces.push_back(f);
     const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), lengths(mesh), faces,
                                  SeamMarks(mesh.twin.size(), 0), {0.1, false}, Progress());
@@ -131,7 +131,7 @@ TEST(MendPatch, PatchesThatFitStay) {
 std::size_t mended_patches(const mesh::RawMesh& raw, double max_area_change) {
     const Mesh mesh = checks::gated(raw);
     std::vector<Index> faces;
-    for (Index f = 0; f < mesh.face_count(); ++f)
+    for (const Face f : mesh.all_faces())
         faces.push_back(f);
     SeamMarks seam(mesh.twin.size(), 0);
     const PatchLimits limits{max_area_change, false};
@@ -251,7 +251,7 @@ TEST(AcuteCorners, ShortDartsBesideASeamGo) {
     std::vector<std::uint8_t> may_enter;
     for (const Vec3& p : mesh.points)
         may_enter.push_back(p.y() > 1e-9 ? 1 : 0);
-    may_enter[at(root)] = 1;
+    may_enter[root] = 1;
     const PathTree tree = shortest_paths(graph, lengths(mesh), {root}, Progress(), may_enter);
     SeamMarks seam = halves;
     for (const Index h : trace_path(mesh, tree, vertex_at(0.08, 0.02)))
@@ -271,14 +271,14 @@ TEST(Remnants, GoToTheirNeighbourWithoutTheirDarts) {
     const double size = 0.2 * cone.unit();
     SeamMarks seam = seam_around(mesh, [&](const Vec3& c) { return (c - apex).norm() < size; });
     const SeamMarks island = seam;
-    for (Index h = 0; h < mesh.half_edge_count(); ++h) {
-        const Vec3 a = mesh.points[at(mesh.origin(h))] - apex;
-        const Vec3 b = mesh.points[at(mesh.target(h))] - apex;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vec3 a = mesh.points[mesh.origin(h)] - apex;
+        const Vec3 b = mesh.points[mesh.target(h)] - apex;
         const bool is_behind = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() < 0.0;
         const bool is_dart = std::abs(a.y()) + std::abs(b.y()) < 1e-9 && a.x() + b.x() > 0.0 &&
                              std::max(a.norm(), b.norm()) < 2.5 * size &&
                              std::min(a.norm(), b.norm()) > 0.3 * size;
-        if (mesh.twin[at(h)] >= 0 &&
+        if (mesh.twin[h] >= 0 &&
             (is_dart || (is_behind && std::min(a.norm(), b.norm()) > 0.9 * size)))
             mark(mesh, h, 1, seam);
     }

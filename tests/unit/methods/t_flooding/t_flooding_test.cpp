@@ -114,10 +114,10 @@ TEST(TFlooding, BordersFollowCreases) {
         const metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, shapes::pi / 4.0);
         double all = 0.0;
         double on_border = 0.0;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (areas.crease[at(h)] != 0) {
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (areas.crease[h] != 0) {
                 all += mesh.edge_length(h);
-                if (r.chart[at(h / 3)] != r.chart[at(mesh.twin[at(h)] / 3)])
+                if (r.chart[h / 3] != r.chart[mesh.twin[h] / 3])
                     on_border += mesh.edge_length(h);
             }
         EXPECT_GE(on_border, 0.95 * all);
@@ -129,8 +129,8 @@ TEST(TFlooding, BordersBecomeShortAndStayBalanced) {
     TFloodingOptions options = charts(10);
     const auto border = [&](const std::vector<Index>& chart) {
         double sum = 0.0;
-        for (Index h = 0; h < mesh.half_edge_count(); ++h)
-            if (mesh.twin[at(h)] > h && chart[at(h / 3)] != chart[at(mesh.twin[at(h)] / 3)])
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] > h && chart[h / 3] != chart[mesh.twin[h] / 3])
                 sum += mesh.edge_length(h);
         return sum;
     };
