@@ -17,8 +17,6 @@ constexpr double compactness = 1.0;
 
 class PathCost {
 public:
-    static constexpr bool keeps_first_offer = false; // Dijkstra: the cheapest path counts
-
     explicit PathCost(const Mesh& mesh) : mesh_(mesh), cost_(mesh.faces.size(), 0.0F) {
         distance_.resize(mesh.twin.size(), 0.0F);
         for (const HalfEdge h : mesh.all_half_edges())
@@ -36,9 +34,7 @@ public:
         const float cost = cost_[h / 3] + step(h, c);
         return {cost, cost, mesh_.twin[h] / 3};
     }
-    growth::GrowthKey key(Index, const growth::CandidateHeap::Entry& entry) const {
-        return {0, 0.0, entry.key};
-    }
+    float key(Index, const growth::CandidateHeap::Entry& entry) const { return entry.key; }
     void take(Face f, Index c, float cost) {
         cost_[f] = cost;
         last_ = f;
@@ -79,7 +75,7 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
         mesh, components, static_cast<std::uint32_t>(options.random_seed), progress);
     McgimResult result;
     PathCost cost(mesh);
-    growth::MultiHeap heaps(mesh);
+    growth::MultiHeap<growth::Offers::best> heaps(mesh);
     const auto grow = [&] {
         cost.start_over(seeds.size());
         heaps.grow(seeds, cost, result.chart, progress);

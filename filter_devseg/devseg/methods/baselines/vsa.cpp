@@ -28,8 +28,6 @@ struct FaceNormal {
 
 class ProxyCost {
 public:
-    static constexpr bool keeps_first_offer = true;
-
     explicit ProxyCost(const Mesh& mesh) : mesh_(mesh) {
         for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
             const Vec3& n = mesh.face_normals[f];
@@ -54,9 +52,7 @@ public:
         const float error = n.area * (dx * dx + dy * dy + dz * dz);
         return {error, error, f};
     }
-    growth::GrowthKey key(Index, const growth::CandidateHeap::Entry& entry) const {
-        return {0, 0.0, entry.key};
-    }
+    float key(Index, const growth::CandidateHeap::Entry& entry) const { return entry.key; }
     void take(Index, Index, float) const {}
 
 private:
@@ -219,7 +215,7 @@ private:
     const Mesh& mesh_;
     Progress& progress_;
     ProxyCost cost_;
-    growth::MultiHeap heaps_;
+    growth::MultiHeap<growth::Offers::first> heaps_;
     std::vector<Index> seeds_;
     std::vector<Vec3> proxies_;
     Partition now_;

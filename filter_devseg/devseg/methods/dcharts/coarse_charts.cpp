@@ -7,7 +7,7 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/atlas/fragments.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/methods/dcharts/splitting.h"
+#include "devseg/methods/dcharts/draft.h"
 #include "devseg/methods/growth/borders.h"
 
 namespace devseg::dcharts {

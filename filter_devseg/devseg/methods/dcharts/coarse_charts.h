@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "devseg/mesh/coarsen.h"
-#include "devseg/methods/dcharts/darts.h"
 #include "devseg/methods/dcharts/dcharts.h"
 #include "devseg/methods/dcharts/draft.h"
 

@@ -5,148 +5,81 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <functional>
+#include <numeric>
 
-#include "devseg/atlas/charts.h"
-#include "devseg/base/errors.h"
-#include "devseg/methods/growth/growth.h"
+#include "devseg/base/option_checks.h"
+#include "devseg/methods/dcharts/tuning.h"
+#include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/seeds.h"
 
 namespace devseg::dcharts {
 
 namespace {
 
-// [JKS05] stops when fewer faces than this change their chart between two rounds.
-constexpr double converged_share = 0.05;
-
-// [JKS05] looks at the k faces with the smallest fitting error for the next seed.
-constexpr std::size_t seed_candidates = 10;
-
-// On planes and cylinders F is 0 and the product cost would ignore compactness. The floor is the
-// error of a normal that leans 1 degree against a cylinder's: less is within the noise of meshes.
-constexpr double fitting_error_floor = 3e-4;
-
-// A hole below this share of the average chart's area is filled by its neighbours; a larger one
-// gets charts of its own [JKS05, section 3.2, which gives no number].
-constexpr double small_hole_share = 0.25;
-
-constexpr double unbounded = infinite;
-constexpr Index update_every = 4096; // faces between two looks at the progress object
-
-template <class T>
-[[noreturn]] void refuse(const char* name, const std::string& range, T found) {
-    std::ostringstream text;
-    text << name << ": expected " << range << ", found " << found;
-    throw InvalidParameter(text.str());
-}
-
-struct Seed {
-    Face face = -1;
+struct GrowingChart {
+    Index seed = -1; // face
     metrics::ConicProxy proxy;
+    double area = 0.0; // so far
 };
 
-// Grows charts from seeds over unassigned faces. Costs are compared as base-2 logarithms, so that
-// the product of [JKS05, equation 2] is a sum, and the area of a chart, which all its entries
-// share, is added once for the chart instead of once for each entry.
-class Growth {
+// What a face costs a chart. Costs are compared as base-2 logarithms, so that the product of
+// [JKS05, equation 2] is a sum, and the area of a chart, which all its entries share, is added once
+// for the chart instead of once for each entry.
+class ConeCost {
 public:
-    Growth(const Mesh& mesh, const DChartsOptions& options) : mesh_(mesh), options_(options) {
-        edge_length_.resize(mesh.twin.size());
-        center_step_.resize(mesh.twin.size());
+    ConeCost(const Mesh& mesh, const DChartsOptions& options, const std::vector<Index>& chart)
+        : max_fitting_error(options.max_fitting_error), mesh_(mesh), options_(options),
+          chart_(chart), edge_length_(mesh.twin.size()), center_step_(mesh.twin.size()),
+          distance_(mesh.faces.size()) {
         for (const HalfEdge h : mesh.all_half_edges()) {
             edge_length_[h] = static_cast<float>(mesh.edge_length(h));
-            const Index opposite = mesh.twin[h];
-            if (opposite >= 0)
+            const HalfEdge twin = mesh.twin[h];
+            if (twin >= 0)
                 center_step_[h] = static_cast<float>(
-                    (mesh.face_centers[h / 3] - mesh.face_centers[opposite / 3]).norm());
-        }
-        distance_.resize(mesh.faces.size());
-    }
-
-    void start_over() { area_.clear(); }
-
-    // Continues the charts in `chart` (−1 = unassigned) with the given proxies, from the assigned
-    // faces in `front`. Faces that were assigned by hand since the last call are in `planted`.
-    void run(const std::vector<Seed>& charts, double max_fitting_error,
-             const std::vector<Index>& front, const std::vector<Index>& planted,
-             std::vector<Index>& chart, Progress& progress) {
-        heaps_.resize(charts.size());
-        for (growth::CandidateHeap& heap : heaps_)
-            heap.clear();
-        area_.resize(charts.size(), 0.0);
-        growth::Tournament tournament(static_cast<Index>(charts.size()));
-        max_fitting_error_ = max_fitting_error;
-        for (const Face f : planted)
-            distance_[f] = 0.0F;
-        for (const Face f : planted)
-            area_[chart[f]] += mesh_.face_areas[f];
-        for (const Face f : front)
-            offer_neighbours(f, charts, chart);
-        for (Index c = 0; c < static_cast<Index>(charts.size()); ++c)
-            tournament.set(c, key_of(c, chart));
-
-        Index added = 0;
-        while (tournament.key(tournament.winner()) < std::numeric_limits<float>::infinity()) {
-            const Index c = tournament.winner();
-            const growth::CandidateHeap::Entry entry = heaps_[c].top();
-            heaps_[c].pop();
-            if (chart[entry.face] < 0) {
-                chart[entry.face] = c;
-                distance_[entry.face] = entry.distance;
-                area_[c] += mesh_.face_areas[entry.face];
-                offer_neighbours(entry.face, charts, chart);
-                if (++added % update_every == 0)
-                    progress.update(0.0);
-            }
-            tournament.set(c, key_of(c, chart));
+                    (mesh.face_centers[face_of(h)] - mesh.face_centers[face_of(twin)]).norm());
         }
     }
 
-private:
-    // Key of the chart's best candidate; candidates that other charts took meanwhile are dropped.
-    float key_of(Index c, const std::vector<Index>& chart) {
-        growth::CandidateHeap& heap = heaps_[c];
-        while (!heap.empty() && chart[heap.top().face] >= 0)
-            heap.pop();
-        if (heap.empty())
-            return std::numeric_limits<float>::infinity();
-        const double area = std::max(area_[c], std::numeric_limits<double>::min());
-        return heap.top().key - static_cast<float>(options_.beta * std::log2(area));
-    }
-
-    void offer_neighbours(Face f, const std::vector<Seed>& charts,
-                          const std::vector<Index>& chart) {
-        const Index c = chart[f];
-        for (const HalfEdge h : half_edges_of(f)) {
-            const Index opposite = mesh_.twin[h];
-            if (opposite >= 0 && chart[opposite / 3] < 0)
-                offer(opposite / 3, c, charts[c].proxy, chart);
-        }
-    }
-
-    void offer(Face f, Index c, const metrics::ConicProxy& proxy, const std::vector<Index>& chart) {
-        const double error = proxy.fitting_error(mesh_.face_normals[f]);
-        if (!(error < max_fitting_error_))
-            return;
+    growth::CandidateHeap::Entry candidate(HalfEdge across, Index c) const {
+        const Face f = face_of(mesh_.twin[across]);
+        const double error = charts[c].proxy.fitting_error(mesh_.face_normals[f]);
+        if (!(error < max_fitting_error))
+            return {0.0F, 0.0F, -1};
         float inner = 0.0F;
         float outer = 0.0F;
         float distance = std::numeric_limits<float>::max();
         for (const HalfEdge h : half_edges_of(f)) {
-            const Index opposite = mesh_.twin[h];
-            if (opposite >= 0 && chart[opposite / 3] == c) {
+            const HalfEdge twin = mesh_.twin[h];
+            if (twin >= 0 && chart_[face_of(twin)] == c) {
                 inner += edge_length_[h];
-                distance = std::min(distance, distance_[opposite / 3] + center_step_[h]);
+                distance = std::min(distance, distance_[face_of(twin)] + center_step_[h]);
             } else {
                 outer += edge_length_[h];
             }
         }
-        const float key = static_cast<float>(options_.alpha) *
-                              std::log2(static_cast<float>(std::max(error, fitting_error_floor))) +
-                          weighted_log(2.0 * options_.beta, distance) +
-                          weighted_log(options_.gamma, outer / std::max(inner, 1e-30F));
-        heaps_[c].push({key, distance, f});
+        const float key =
+            static_cast<float>(options_.alpha) *
+                std::log2(static_cast<float>(std::max(error, tuning.fitting_error_floor))) +
+            weighted_log(2.0 * options_.beta, distance) +
+            weighted_log(options_.gamma, outer / std::max(inner, 1e-30F));
+        return {key, distance, f};
     }
 
+    float key(Index c, const growth::CandidateHeap::Entry& entry) const {
+        const double area = std::max(charts[c].area, std::numeric_limits<double>::min());
+        return entry.key - static_cast<float>(options_.beta * std::log2(area));
+    }
+
+    void take(Face f, Index c, float distance) {
+        distance_[f] = distance;
+        charts[c].area += mesh_.face_areas[f];
+    }
+
+    std::vector<GrowingChart> charts;
+    double max_fitting_error;
+
+private:
     // A weight of 0 switches a term off. Degenerate faces have lengths of 0: the clamp keeps
     // every key finite, because infinity means that a chart has no candidate.
     static float weighted_log(double weight, float value) {
@@ -155,31 +88,30 @@ private:
 
     const Mesh& mesh_;
     const DChartsOptions& options_;
-    double max_fitting_error_ = 0.0;
-    std::vector<float> edge_length_; // 3 #F
-    std::vector<float> center_step_; // 3 #F: distance of the centroids on both sides
-    std::vector<float> distance_;    // #F: D(S_C, t) of [JKS05, section 2.1.2]
-    std::vector<growth::CandidateHeap> heaps_;
-    std::vector<double> area_;
+    const std::vector<Index>& chart_; // #F
+    std::vector<float> edge_length_;  // 3 #F
+    std::vector<float> center_step_;  // 3 #F: distance of the centroids on both sides
+    std::vector<float> distance_;     // #F: D(S_C, t) of [JKS05, section 2.1.2]
 };
 
-// The faces around a corner's vertex.
-metrics::NormalMoments vertex_star(const Mesh& mesh, Index corner) {
+using Growth = growth::MultiHeap<growth::Offers::best>;
+
+metrics::ConicProxy fit_faces(const Mesh& mesh, const std::vector<Index>& faces) {
     metrics::NormalMoments moments;
-    mesh::visit_star(mesh, corner, [&](HalfEdge h) {
-        moments.add(mesh.face_areas[h / 3], mesh.face_normals[h / 3]);
-    });
-    return moments;
+    for (const Face f : faces)
+        moments.add(mesh.face_areas[f], mesh.face_normals[f]);
+    return metrics::fit_conic(moments);
 }
 
 // The best of three proxies, from the faces around each vertex of the seed [JKS05, section 3.1].
-Seed initial_seed(const Mesh& mesh, Face face) {
-    Seed best;
-    best.face = face;
-    double best_error = unbounded;
-    for (const HalfEdge h : half_edges_of(face)) {
-        const metrics::ConicProxy proxy = metrics::fit_conic(vertex_star(mesh, h));
-        const double error = proxy.fitting_error(mesh.face_normals[face]);
+GrowingChart first_chart(const Mesh& mesh, Face seed) {
+    GrowingChart best{seed, {}};
+    double best_error = infinite;
+    for (const HalfEdge h : half_edges_of(seed)) {
+        std::vector<Index> star;
+        mesh::visit_star(mesh, h, [&](HalfEdge k) { star.push_back(face_of(k)); });
+        const metrics::ConicProxy proxy = fit_faces(mesh, star);
+        const double error = proxy.fitting_error(mesh.face_normals[seed]);
         if (error < best_error) {
             best_error = error;
             best.proxy = proxy;
@@ -190,23 +122,23 @@ Seed initial_seed(const Mesh& mesh, Face face) {
 
 // Of the faces that fit best, the one nearest to the chart's centre [JKS05, section 3.1]. Faces
 // below the error floor count as equally good: on a plane or a cylinder all faces compete.
-Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const metrics::ConicProxy& proxy,
-                std::vector<double>& errors) {
+Index best_seed(const Mesh& mesh, const std::vector<Index>& faces,
+                const metrics::ConicProxy& proxy) {
     Vec3 centre = Vec3::Zero();
     double area = 0.0;
-    errors.clear();
+    std::vector<double> errors;
     for (const Face f : faces) {
         centre += mesh.face_areas[f] * mesh.face_centers[f];
         area += mesh.face_areas[f];
         errors.push_back(proxy.fitting_error(mesh.face_normals[f]));
     }
     centre = area > 0.0 ? Vec3(centre / area) : mesh.face_centers[faces.front()];
-    const std::size_t rank = std::min(seed_candidates, faces.size()) - 1;
-    std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(rank),
-                     errors.end());
-    const double limit = std::max(errors[rank], fitting_error_floor);
+    const auto last =
+        errors.begin() + std::min(tuning.seed_candidates, static_cast<Index>(faces.size())) - 1;
+    std::nth_element(errors.begin(), last, errors.end());
+    const double limit = std::max(*last, tuning.fitting_error_floor);
     Index best = -1;
-    double best_distance = unbounded;
+    double best_distance = infinite;
     for (const Face f : faces) {
         if (proxy.fitting_error(mesh.face_normals[f]) > limit)
             continue;
@@ -219,50 +151,37 @@ Index next_seed(const Mesh& mesh, const std::vector<Index>& faces, const metrics
     return best;
 }
 
-void reseed(const Mesh& mesh, const std::vector<Index>& chart, std::vector<Seed>& seeds) {
-    const Index count = static_cast<Index>(seeds.size());
+std::vector<GrowingChart> reseed(const Mesh& mesh, const std::vector<Index>& chart, Index count) {
     const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, chart, count);
     std::vector<std::vector<Index>> faces(at(count));
     for (const Face f : mesh.all_faces())
         if (chart[f] >= 0)
             faces[chart[f]].push_back(f);
-    std::vector<double> errors;
-    for (Index c = 0; c < count; ++c) {
-        seeds[c].proxy = proxies[c];
-        seeds[c].face = next_seed(mesh, faces[c], proxies[c], errors);
-    }
-}
-
-std::vector<Index> plant(const std::vector<Seed>& seeds, std::vector<Index>& chart) {
-    std::vector<Index> front;
-    for (std::size_t c = 0; c < seeds.size(); ++c) {
-        chart[seeds[c].face] = static_cast<Index>(c);
-        front.push_back(seeds[c].face);
-    }
-    return front;
+    std::vector<GrowingChart> charts;
+    for (Index c = 0; c < count; ++c)
+        charts.push_back({best_seed(mesh, faces[c], proxies[c]), proxies[c]});
+    return charts;
 }
 
 // Lloyd iterations [JKS05, section 3.1]. Leaves −1 where no chart fits.
-void lloyd(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
-           std::vector<Seed>& seeds, DChartsResult& result, Progress& progress) {
+void lloyd(const Mesh& mesh, const DChartsOptions& options, Growth& growth, ConeCost& cost,
+           DChartsResult& result, Progress& progress) {
     std::vector<Index> before;
     while (true) {
-        result.chart.assign(mesh.faces.size(), -1);
-        const std::vector<Index> front = plant(seeds, result.chart);
-        growth.start_over();
-        growth.run(seeds, options.max_fitting_error, front, front, result.chart, progress);
+        std::vector<Index> seeds;
+        for (const GrowingChart& chart : cost.charts)
+            seeds.push_back(chart.seed);
+        growth.grow(seeds, cost, result.chart, progress);
         ++result.rounds;
         progress.update(static_cast<double>(result.rounds) / options.max_iterations);
-        Index changed = mesh.face_count();
-        if (!before.empty()) {
-            changed = 0;
-            for (std::size_t f = 0; f < before.size(); ++f)
-                changed += before[f] != result.chart[f] ? 1 : 0;
-        }
-        result.converged = changed < converged_share * mesh.face_count();
+        const Index changed =
+            before.empty() ? mesh.face_count()
+                           : std::inner_product(before.begin(), before.end(), result.chart.begin(),
+                                                Index{0}, std::plus<>(), std::not_equal_to<>());
+        result.converged = changed < tuning.converged_share * mesh.face_count();
         if (result.converged || result.rounds == options.max_iterations)
             return;
-        reseed(mesh, result.chart, seeds);
+        cost.charts = reseed(mesh, result.chart, static_cast<Index>(seeds.size()));
         before = result.chart;
     }
 }
@@ -276,7 +195,7 @@ struct Hole {
 std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) {
     const auto is_open = [&](Face f) { return chart[f] < 0; };
     const mesh::FaceComponents parts = mesh::face_components(
-        mesh, [&](HalfEdge h) { return is_open(h / 3) && is_open(mesh.twin[h] / 3); });
+        mesh, [&](HalfEdge h) { return is_open(face_of(h)) && is_open(face_of(mesh.twin[h])); });
     std::vector<Index> hole_of(at(parts.count), -1);
     std::vector<Hole> holes;
     for (const Face f : mesh.all_faces()) {
@@ -291,42 +210,37 @@ std::vector<Hole> find_holes(const Mesh& mesh, const std::vector<Index>& chart) 
         hole.faces.push_back(f);
         hole.area += mesh.face_areas[f];
         for (const HalfEdge h : half_edges_of(f)) {
-            const Index opposite = mesh.twin[h];
-            hole.touches_chart |= opposite >= 0 && !is_open(opposite / 3);
+            const HalfEdge twin = mesh.twin[h];
+            hole.touches_chart |= twin >= 0 && !is_open(face_of(twin));
         }
     }
     return holes;
 }
 
 // A chart of its own for a large hole: proxy and seed from all its faces, regrown within it.
-void add_hole_chart(const Mesh& mesh, const DChartsOptions& options, const Hole& hole,
-                    Growth& growth, std::vector<Seed>& seeds, DChartsResult& result,
-                    Progress& progress) {
-    metrics::NormalMoments moments;
-    for (const Face f : hole.faces)
-        moments.add(mesh.face_areas[f], mesh.face_normals[f]);
-    Seed seed;
-    seed.proxy = metrics::fit_conic(moments);
-    std::vector<double> errors;
-    seed.face = next_seed(mesh, hole.faces, seed.proxy, errors);
-    const Index label = static_cast<Index>(seeds.size());
-    seeds.push_back(seed);
-    result.chart[seed.face] = label;
+void add_hole_chart(const Mesh& mesh, const Hole& hole, Growth& growth, ConeCost& cost,
+                    DChartsResult& result, Progress& progress) {
+    const metrics::ConicProxy proxy = fit_faces(mesh, hole.faces);
+    const Face seed = best_seed(mesh, hole.faces, proxy);
+    const Index c = static_cast<Index>(cost.charts.size());
+    cost.charts.push_back({seed, proxy});
+    result.chart[seed] = c;
+    cost.take(seed, c, 0.0F);
     ++result.hole_charts;
-    growth.run(seeds, options.max_fitting_error, {seed.face}, {seed.face}, result.chart, progress);
+    growth.spread({seed}, c + 1, cost, result.chart, progress);
 }
 
 // [JKS05, section 3.2]: large holes get charts, which may leave holes again; then the small ones
 // are filled by the charts around them, whatever the fitting error.
-void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
-                std::vector<Seed>& seeds, DChartsResult& result, Progress& progress) {
+void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth, ConeCost& cost,
+                DChartsResult& result, Progress& progress) {
     const double small_area =
-        small_hole_share * mesh.total_area / static_cast<double>(options.charts_number);
+        tuning.small_hole_share * mesh.total_area / static_cast<double>(options.charts_number);
     for (bool added = true; added;) {
         added = false;
         for (const Hole& hole : find_holes(mesh, result.chart))
             if (hole.area >= small_area || !hole.touches_chart) {
-                add_hole_chart(mesh, options, hole, growth, seeds, result, progress);
+                add_hole_chart(mesh, hole, growth, cost, result, progress);
                 added = true;
             }
         progress.update(0.5);
@@ -336,38 +250,39 @@ void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
         if (result.chart[f] < 0)
             continue;
         for (const HalfEdge h : half_edges_of(f)) {
-            const Index opposite = mesh.twin[h];
-            if (opposite >= 0 && result.chart[opposite / 3] < 0) {
+            const HalfEdge twin = mesh.twin[h];
+            if (twin >= 0 && result.chart[face_of(twin)] < 0) {
                 front.push_back(f);
                 break;
             }
         }
     }
-    if (!front.empty())
-        growth.run(seeds, unbounded, front, {}, result.chart, progress);
+    cost.max_fitting_error = infinite;
+    growth.spread(front, static_cast<Index>(cost.charts.size()), cost, result.chart, progress);
 }
 
 } // namespace
 
 void check_options(const Mesh& mesh, const DChartsOptions& o) {
-    if (o.charts_number < 1 || o.charts_number > mesh.face_count())
-        refuse("charts_number",
-               "a number from 1 to " + std::to_string(mesh.face_count()) + " (the number of faces)",
-               o.charts_number);
-    if (!(o.max_fitting_error > 0.0) || !(o.max_fitting_error <= 4.0))
-        refuse("max_fitting_error", "a number above 0 and at most 4 (0.2 is usual)",
-               o.max_fitting_error);
+    check_charts_number(mesh.face_count(), o.charts_number);
+    check_range("max_fitting_error", o.max_fitting_error, 0.0, 4.0,
+                "a number above 0 and at most 4 (0.2 is usual)");
     const auto exponent = [](const char* name, double value) {
         if (!(value >= 0.0) || !(value <= 10.0))
-            refuse(name, "a number from 0 to 10", value);
+            refuse_option(name, "a number from 0 to 10", value);
     };
     exponent("alpha", o.alpha);
     exponent("beta", o.beta);
     exponent("gamma", o.gamma);
-    if (o.max_iterations < 1)
-        refuse("max_iterations", "a number of at least 1", o.max_iterations);
-    if (o.random_seed < 0)
-        refuse("random_seed", "a number of at least 0", o.random_seed);
+    check_rounds(o.max_iterations, o.random_seed);
+}
+
+std::vector<double> fitting_errors(const Mesh& mesh, const std::vector<Index>& chart,
+                                   const std::vector<metrics::ConicProxy>& proxies) {
+    std::vector<double> errors;
+    for (const Face f : mesh.all_faces())
+        errors.push_back(proxies[chart[f]].fitting_error(mesh.face_normals[f]));
+    return errors;
 }
 
 DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress) {
@@ -375,24 +290,22 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     DChartsResult result;
 
     progress.begin_phase("placing seeds", 0.1);
-    std::vector<Seed> seeds;
-    for (const Face face :
+    ConeCost cost(mesh, options, result.chart);
+    for (const Face seed :
          growth::farthest_point_seeds(mesh, options.charts_number,
                                       static_cast<std::uint32_t>(options.random_seed), progress))
-        seeds.push_back(initial_seed(mesh, face));
+        cost.charts.push_back(first_chart(mesh, seed));
 
     progress.begin_phase("growing charts", 0.6);
-    Growth growth(mesh, options);
-    lloyd(mesh, options, growth, seeds, result, progress);
+    Growth growth(mesh);
+    lloyd(mesh, options, growth, cost, result, progress);
 
     progress.begin_phase("filling holes", 0.1);
-    fill_holes(mesh, options, growth, seeds, result, progress);
+    fill_holes(mesh, options, growth, cost, result, progress);
 
-    result.proxies = metrics::fit_conics(mesh, result.chart, static_cast<Index>(seeds.size()));
-    result.fitting_error.resize(mesh.faces.size());
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        result.fitting_error[f] =
-            result.proxies[result.chart[f]].fitting_error(mesh.face_normals[f]);
+    result.proxies =
+        metrics::fit_conics(mesh, result.chart, static_cast<Index>(cost.charts.size()));
+    result.fitting_error = fitting_errors(mesh, result.chart, result.proxies);
     return result;
 }
 

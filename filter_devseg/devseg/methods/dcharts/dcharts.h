@@ -1,7 +1,7 @@
 // D-Charts: quasi-developable segmentation into unions of cones [JKS05].
 //
 // What is here: sections 2, 3.1 and 3.2 of the paper (Lloyd iterations, hole filling). The
-// post-processing of section 3.3 (straight boundaries, merging, darts) is in refine/.
+// post-processing of section 3.3 (straight boundaries, merging, darts) is in developable_charts.h.
 #pragma once
 
 #include <cstdint>
@@ -38,5 +38,9 @@ void check_options(const Mesh& mesh, const DChartsOptions& options);
 /// Throws InvalidParameter for options out of range (1 ≤ charts_number ≤ #F, F_max > 0,
 /// exponents ≥ 0, max_iterations ≥ 1) and Cancelled.
 DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress);
+
+/// F(C, t) of each face (#F) in the proxy of its chart.
+std::vector<double> fitting_errors(const Mesh& mesh, const std::vector<Index>& chart,
+                                   const std::vector<metrics::ConicProxy>& proxies);
 
 } // namespace devseg::dcharts

@@ -8,9 +8,7 @@
 #include "devseg/atlas/fragments.h"
 #include "devseg/base/errors.h"
 #include "devseg/methods/dcharts/coarse_charts.h"
-#include "devseg/methods/dcharts/darts.h"
-#include "devseg/methods/dcharts/merging.h"
-#include "devseg/methods/dcharts/splitting.h"
+#include "devseg/methods/dcharts/draft.h"
 #include "devseg/methods/growth/expansion.h"
 
 namespace devseg::dcharts {

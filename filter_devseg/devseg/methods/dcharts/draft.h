@@ -1,4 +1,9 @@
-// A segmentation while it is being improved: every chart with its trial map.
+// A segmentation while it is being improved, every chart with its trial map; and what improves it:
+// joins, splits and darts [JKS05, section 3.3].
+//
+// References
+//   [JKS05] D. Julius, V. Kraevoy, A. Sheffer: D-Charts: Quasi-Developable Mesh Segmentation.
+//           Computer Graphics Forum 24(3), 2005. doi:10.1111/j.1467-8659.2005.00883.x
 #pragma once
 
 #include <cstdint>
@@ -7,6 +12,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/judge/trial.h"
 #include "devseg/mesh/mesh.h"
+#include "devseg/methods/dcharts/dcharts.h"
 
 namespace devseg::dcharts {
 
@@ -20,7 +26,6 @@ struct Draft {
 
     Index charts_number() const;
     double excess() const; // Σ A (l2² − 1) over the charts, internal units squared
-    double linf() const;   // over the charts
 };
 
 /// Labels of edge-connected charts and cuts inside them (3 #F, empty for none) → a draft, all
@@ -40,5 +45,46 @@ struct StretchBounds {
         return map.l2_squared <= l2 * l2 && map.linf <= linf;
     }
 };
+
+struct MergeOptions {
+    StretchBounds chart;          // of each joined chart
+    double max_excess = infinite; // of the draft, see Draft::excess
+    // Least length of border that a join saves, over the root of the smaller chart's area: charts
+    // that touch along a short border would hang together by a narrow neck.
+    double least_neck = 0.5;
+    double small_share = 0.01; // of the surface: smaller charts are joined to a neighbour anyway
+};
+
+/// Joins two neighbouring charts at a time, those first whose common border is long and whose
+/// joined map costs little stretch; neighbours are tried again after each. Returns the number of
+/// joins.
+Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
+
+/// Grows two D-Charts within the chart, far from each other, and gives the second and what it left
+/// over labels of their own. Cuts inside the chart are healed. Returns whether the chart is in
+/// parts now; false for a single face.
+bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_l2, Index chart,
+                 Draft& draft, Progress& progress);
+
+/// The same with the two parts that two planes fit best, where one cone fits all of the chart but
+/// for a few faces.
+bool halve_chart(const Mesh& mesh, double wanted_l2, Index chart, Draft& draft, Progress& progress);
+
+struct DartOptions {
+    StretchBounds chart; // darts are cut while a chart is above them
+    double worth = 1e-3; // least drop of Σ A (l2² − 1), as a share of the surface's area, for
+                         // each √area of length, for a dart that does not lower the worst spot
+    int max_per_chart = 12; // darts
+};
+
+/// Cuts darts into the charts that exceed the bounds, each along a short path from the border, or
+/// from another dart, to the spot where that helps most; stops where no dart is worth its length.
+/// Returns the number of darts.
+Index cut_darts(const Mesh& mesh, const DartOptions& options, Draft& draft, Progress& progress);
+
+/// Cuts from each of the vertices, in order, to the border of its chart or to an earlier cut; a
+/// vertex on a border needs none. `seam` is 3 #F. Returns the number of cuts.
+Index cut_darts_to(const Mesh& mesh, const std::vector<Index>& chart,
+                   const std::vector<Index>& tips, std::vector<std::uint8_t>& seam);
 
 } // namespace devseg::dcharts

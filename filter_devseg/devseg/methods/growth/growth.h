@@ -2,8 +2,8 @@
 // in the cost of adding a face.
 #pragma once
 
-#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "devseg/mesh/mesh.h"
@@ -32,15 +32,23 @@ private:
     std::vector<Entry> entries_;
 };
 
+/// The key of a chart without candidates, above all others: infinity, or a default.
+template <class Key>
+constexpr Key no_key() {
+    if constexpr (std::is_floating_point_v<Key>)
+        return std::numeric_limits<Key>::infinity();
+    else
+        return {};
+}
+
 /// Finds the chart with the smallest key among all, after one chart's key changed: O(log n).
-/// `none` is the key of charts without candidates and larger than all others.
 template <class Key = float>
 class Tournament {
 public:
-    explicit Tournament(Index players, Key none = std::numeric_limits<Key>::infinity()) {
+    explicit Tournament(Index players) {
         while (leaves_ < players)
             leaves_ *= 2;
-        keys_.assign(at(leaves_), none);
+        keys_.assign(at(leaves_), no_key<Key>());
         winner_.assign(at(2 * leaves_), 0);
         for (Index i = 0; i < leaves_; ++i)
             winner_[leaves_ + i] = i;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "devseg/base/option_checks.h"
@@ -40,11 +41,20 @@ void check_options(const Mesh& mesh, const TFloodingOptions& o) {
     check_rounds(o.max_iterations, o.random_seed);
 }
 
+// Rank of a chart's best candidate, compared from first to last.
+struct FloodingKey {
+    int tier = 2; // 1 = behind a crease: waits for all others; 2 = none
+    double area = 0.0;
+    float time = 0.0F;
+
+    bool operator<(const FloodingKey& other) const {
+        return std::tie(tier, area, time) < std::tie(other.tier, other.area, other.time);
+    }
+};
+
 // What a face adds to a chart, and how fast charts flow over it.
 class FloodingCost {
 public:
-    static constexpr bool keeps_first_offer = true;
-
     FloodingCost(const Mesh& mesh, const metrics::GaussAreas& areas,
                  const TFloodingOptions& options)
         : mesh_(mesh), areas_(areas), power_(options.speed_power), epsilon_(options.speed_epsilon),
@@ -83,7 +93,7 @@ public:
     }
 
     // The look-ahead of [YGZS05, section 3.3]: the area that the chart would have.
-    growth::GrowthKey key(Index c, const growth::CandidateHeap::Entry& entry) const {
+    FloodingKey key(Index c, const growth::CandidateHeap::Entry& entry) const {
         const int tier = entry.key >= behind_crease ? 1 : 0;
         return {tier, area_[c] + offset_[c] + gain(entry.face, c), entry.distance};
     }
@@ -253,7 +263,7 @@ private:
     }
 
     FloodingCost cost_;
-    growth::MultiHeap heaps_;
+    growth::MultiHeap<growth::Offers::first> heaps_;
     growth::BorderDistance border_;
     const TFloodingOptions& options_;
     double scale_; // Gauss area of an average chart

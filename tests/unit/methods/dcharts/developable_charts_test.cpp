@@ -11,9 +11,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/methods/dcharts/coarse_charts.h"
-#include "devseg/methods/dcharts/darts.h"
-#include "devseg/methods/dcharts/merging.h"
-#include "devseg/methods/dcharts/splitting.h"
+#include "devseg/methods/dcharts/draft.h"
 #include "devseg/metrics/segmentation.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
@@ -145,11 +143,11 @@ TEST(DevelopableCharts, DartsLowerTheWorstSpot) {
     const Mesh mesh = checks::gated(shapes::finger(48, 40, 0.5, 3.0));
     Progress progress;
     Draft draft = make_draft(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, 1.005, progress);
-    const double before = draft.linf();
+    const double before = draft.map.front().linf;
     DartOptions options;
     options.chart = {1.005, 1.2};
     EXPECT_GT(cut_darts(mesh, options, draft, progress), 0);
-    EXPECT_LT(draft.linf(), before);
+    EXPECT_LT(draft.map.front().linf, before);
     EXPECT_EQ(draft.tips.empty(), false);
     // What the draft says of the chart with its darts is what a new trial finds.
     const judge::TrialMap again =
