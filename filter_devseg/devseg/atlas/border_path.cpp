@@ -1,12 +1,9 @@
 #include "devseg/atlas/border_path.h"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
-#include <queue>
-#include <utility>
 
 #include "devseg/atlas/join_loops.h"
+#include "devseg/graph/shortest_paths.h"
 
 namespace devseg::atlas {
 
@@ -34,37 +31,22 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
     const Index start = static_cast<Index>(found - s.vertex.begin());
 
     const VertexEdges edges(s);
-    std::vector<double> distance(s.vertex.size(), infinite);
-    std::vector<Index> arrival(s.vertex.size(), -1);
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    distance[start] = 0.0;
-    queue.emplace(0.0, start);
-    while (!queue.empty()) {
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > distance[v])
-            continue;
+    graph::ShortestPaths<> paths(s.vertex.size());
+    paths.add_source(start);
+    std::vector<Index> path;
+    paths.run([&](Vertex v, double distance) {
         if (goal[v] != 0) {
-            std::vector<Index> path;
-            for (Index u = v; u != start; u = s.origin(arrival[u]))
-                path.push_back(s.mesh_half_edge(arrival[u]));
-            return path;
+            for (Vertex u = v; u != start; u = s.origin(paths.step[u]))
+                path.push_back(s.mesh_half_edge(paths.step[u]));
+            return false;
         }
-        for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
-            if (s.twin[*e] < 0)
-                continue;
-            const HalfEdge h = s.mesh_half_edge(*e);
-            const Index w = s.target(*e);
-            const double through = d + crease_factor(mesh, h) * mesh.edge_length(h);
-            if (through < distance[w]) {
-                distance[w] = through;
-                arrival[w] = *e;
-                queue.emplace(through, w);
-            }
+        for (const HalfEdge e : edges.leaving(v)) {
+            const HalfEdge h = s.mesh_half_edge(e);
+            paths.reach(s.target(e), distance + crease_factor(mesh, h) * mesh.edge_length(h), e);
         }
-    }
-    return {};
+        return true;
+    });
+    return path;
 }
 
 void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,

@@ -1,72 +1,39 @@
 #include "devseg/atlas/disks.h"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "devseg/atlas/handle_cutter.h"
 #include "devseg/atlas/join_loops.h"
+#include "devseg/graph/shortest_paths.h"
 
 namespace devseg::atlas {
 
 namespace {
 
-// Shortest paths along edges to the only boundary loop, or to a root where there is none.
-struct PathForest {
-    std::vector<double> distance; // #v
-    std::vector<Index> toward;    // #v: half-edge from the vertex, one step nearer; −1 at the end
-};
+// Shortest paths along edges to the only boundary loop, or to a root where there is none. The last
+// step is the half-edge from the vertex that leads nearer.
+using PathForest = graph::ShortestPaths<>;
 
 double edge_length(const Mesh& mesh, const ChartSurface& s, HalfEdge h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
-// Lowers distances by paths that end at the sources.
-void relax_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges,
-                 const std::vector<Index>& sources, PathForest& forest, Heartbeat& beat) {
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (const Vertex v : sources) {
-        forest.distance[v] = 0.0;
-        forest.toward[v] = -1;
-        queue.emplace(0.0, v);
-    }
-    while (!queue.empty()) {
-        beat();
-        const auto [d, v] = queue.top();
-        queue.pop();
-        if (d > forest.distance[v])
-            continue;
-        for (const Index* e = edges.first(v); e != edges.last(v); ++e) {
-            if (s.twin[*e] < 0)
-                continue;
-            const Index w = s.target(*e);
-            const double through = d + edge_length(mesh, s, *e);
-            if (through < forest.distance[w]) {
-                forest.toward[w] = s.twin[*e];
-                forest.distance[w] = through;
-                queue.emplace(through, w);
-            }
-        }
-    }
-}
-
 PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges, Index root,
                       const Progress& progress) {
-    PathForest forest;
-    forest.distance.assign(s.vertex.size(), infinite);
-    forest.toward.assign(s.vertex.size(), -1);
-    std::vector<Index> sources;
+    PathForest forest(s.vertex.size());
     if (s.loops.empty())
-        sources.push_back(root);
+        forest.add_source(root);
     else
         for (const HalfEdge h : s.loops.front())
-            sources.push_back(s.origin(h));
-    Heartbeat beat(progress);
-    relax_paths(mesh, s, edges, sources, forest, beat);
+            forest.add_source(s.origin(h));
+    forest.run(
+        [&](Vertex v, double distance) {
+            for (const HalfEdge e : edges.leaving(v))
+                forest.reach(s.target(e), distance + edge_length(mesh, s, e), s.twin[e]);
+        },
+        progress);
     return forest;
 }
 
@@ -86,10 +53,8 @@ public:
     }
 
     void cut_path(const PathForest& forest, Vertex v) {
-        while (forest.toward[v] >= 0) {
-            cut_edge(forest.toward[v]);
-            v = s_.target(forest.toward[v]);
-        }
+        for (; forest.step[v] >= 0; v = s_.target(forest.step[v]))
+            cut_edge(forest.step[v]);
     }
     double length() const { return length_; }
 
@@ -147,9 +112,9 @@ private:
         while (true) {
             Index only = -1;
             int count = 0;
-            for (const Index* e = edges.first(v); e != edges.last(v); ++e)
-                if (seam_[s_.mesh_half_edge(*e)] != 0) {
-                    only = *e;
+            for (const HalfEdge e : edges.leaving(v))
+                if (seam_[s_.mesh_half_edge(e)] != 0) {
+                    only = e;
                     ++count;
                 }
             if (count != 1)
@@ -203,11 +168,8 @@ private:
         return rest;
     }
 
-    static bool in_forest(const PathForest& forest, HalfEdge h, Index origin) {
-        return forest.toward[origin] == h;
-    }
     bool in_forest(const PathForest& forest, HalfEdge h) const {
-        return in_forest(forest, h, s_.origin(h));
+        return forest.step[s_.origin(h)] == h;
     }
 
     // No boundary and no handle: a slit between two vertices that are far from each other.

@@ -5,6 +5,7 @@
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/base/span.h"
 
 namespace devseg::atlas {
 
@@ -14,17 +15,15 @@ namespace devseg::atlas {
 std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
                               const Progress& progress);
 
-/// Outgoing half-edges of each vertex and, at boundary vertices, the incoming boundary half-edge:
-/// what it takes to visit every edge at a vertex.
+/// The half-edges that leave each vertex through the inside of the chart: its ways for cuts.
 class VertexEdges {
 public:
     explicit VertexEdges(const ChartSurface& surface);
-    const Index* first(Vertex v) const { return edges_.data() + begin_[v]; }
-    const Index* last(Vertex v) const { return edges_.data() + begin_[at(v) + 1]; }
+    Span<HalfEdge> leaving(Vertex v) const { return {edges_, begin_[v], begin_[v + 1]}; }
 
 private:
-    std::vector<Index> begin_;
-    std::vector<Index> edges_;
+    std::vector<Index> begin_; // #v + 1
+    std::vector<HalfEdge> edges_;
 };
 
 double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vector<Index>& loop);

@@ -95,9 +95,11 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
         progress.update(static_cast<double>(result.rounds) / options.max_iterations);
         if (result.rounds == options.max_iterations)
             break;
-        seeds = border.farthest_faces(
-            result.chart, seeds, [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); },
-            progress);
+        seeds = border
+                    .farthest_faces(
+                        result.chart, seeds,
+                        [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); }, progress)
+                    .face;
         result.converged = !seen.insert(seeds).second;
         if (result.converged)
             break;

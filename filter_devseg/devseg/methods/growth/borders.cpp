@@ -1,13 +1,12 @@
 #include "devseg/methods/growth/borders.h"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
-#include <queue>
 #include <utility>
 
-#include "devseg/atlas/charts.h"
 #include "devseg/graph/min_cut.h"
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/mesh/angle_defects.h"
+#include "devseg/methods/growth/relabelling.h"
 
 namespace devseg::growth {
 
@@ -109,22 +108,9 @@ public:
                  std::vector<Index>& chart, const Progress& progress)
         : mesh_(mesh), normals_(smooth_normals(mesh, progress)), proxies_(proxies),
           max_fitting_error_(max_fitting_error), rings_(rings), chart_(chart),
-          fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0),
-          distance_(mesh.points.size(), infinite), arrival_(mesh.points.size(), -1),
-          new_border_(mesh.twin.size(), 0), outgoing_(mesh.points.size(), -1),
-          valence_(mesh.points.size(), 0), corners_(mesh.points.size(), 0),
-          in_flood_(mesh.faces.size(), 0) {
-        for (const HalfEdge h : mesh.all_half_edges()) {
-            // On a boundary, prefer the half-edge from which the whole fan is reached one way.
-            Index& first = outgoing_[mesh.origin(h)];
-            if (first < 0 || mesh.twin[h] < 0)
-                first = h;
-            ++valence_[mesh.origin(h)];
-        }
-        for (const HalfEdge h : mesh.all_half_edges())
-            if (mesh.twin[h] < 0)
-                valence_[mesh.origin(h)] = valence_[mesh.target(h)] = -1;
-    }
+          fuzzy_(mesh.faces.size(), 0), blocked_(mesh.points.size(), 0), paths_(mesh.points.size()),
+          new_border_(mesh.twin.size(), 0), leaving_(mesh::leaving_half_edges(mesh)),
+          relabelling_(mesh, chart) {}
 
     bool straighten(const BorderSegment& segment) {
         grow_fuzzy_area(segment);
@@ -180,7 +166,7 @@ private:
     // two charts comes there.
     bool is_free(Vertex v, const BorderSegment& segment) const {
         bool allowed = true;
-        const bool whole = mesh::visit_star(mesh_, outgoing_[v], [&](HalfEdge h) {
+        const bool whole = mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
             const Index c = chart_[h / 3];
             allowed = allowed && (c == segment.chart_a || c == segment.chart_b);
             if (is_border(mesh_, chart_, h) && blocked_[v] == 0)
@@ -217,45 +203,28 @@ private:
         return sum;
     }
 
-    // Dijkstra over the old border and the edges that touch the fuzzy area; half-edges from `from`
-    // to `to`, head to tail.
+    // Over the old border and the edges that touch the fuzzy area; half-edges from `from` to `to`,
+    // head to tail.
     std::vector<Index> shortest_path(const BorderSegment& segment, Index from, Index to) {
-        using Entry = std::pair<double, Index>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-        std::vector<Index> touched{from};
-        distance_[from] = 0.0;
-        queue.emplace(0.0, from);
-        while (!queue.empty()) {
-            const auto [d, v] = queue.top();
-            queue.pop();
-            if (v == to)
-                break;
-            if (d > distance_[v])
-                continue;
-            mesh::visit_star(mesh_, outgoing_[v], [&, d = d](HalfEdge h) {
+        paths_.add_source(from);
+        paths_.run([&](Vertex v, double distance) {
+            mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
                 const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 ||
-                    (fuzzy_[h / 3] == 0 && fuzzy_[twin / 3] == 0 && new_border_[h] != passable))
+                if (twin < 0 || (fuzzy_[face_of(h)] == 0 && fuzzy_[face_of(twin)] == 0 &&
+                                 new_border_[h] != passable))
                     return;
-                const Index w = mesh_.target(h);
-                const double through = d + mesh_.edge_length(h);
-                if (through >= distance_[w] || (w != to && !is_free(w, segment)))
-                    return;
-                if (arrival_[w] < 0)
-                    touched.push_back(w);
-                distance_[w] = through;
-                arrival_[w] = h;
-                queue.emplace(through, w);
+                const Vertex w = mesh_.target(h);
+                const double through = distance + mesh_.edge_length(h);
+                if (through < paths_.distance[w] && (w == to || is_free(w, segment)))
+                    paths_.reach(w, through, h);
             });
-        }
+            return v != to;
+        });
         std::vector<Index> path;
-        for (Vertex v = to; v != from && arrival_[v] >= 0; v = mesh_.origin(path.back()))
-            path.push_back(arrival_[v]);
+        for (Vertex v = to; v != from && paths_.step[v] >= 0; v = mesh_.origin(path.back()))
+            path.push_back(paths_.step[v]);
         std::reverse(path.begin(), path.end());
-        for (const Vertex v : touched) {
-            distance_[v] = infinite;
-            arrival_[v] = -1;
-        }
+        paths_.clear();
         return path;
     }
 
@@ -263,7 +232,7 @@ private:
     bool relabel(const BorderSegment& segment, const std::vector<Index>& path) {
         mark(segment.half_edges, passable);
         mark(path, closed);
-        std::vector<std::pair<Index, Index>> labels; // (face, new chart)
+        NewLabels labels;
         bool consistent = true;
         const auto flood = [&](Index start, Index c) {
             std::vector<Index> stack;
@@ -338,85 +307,24 @@ private:
         if (!has_core[0] || !has_core[1])
             return false;
         const std::vector<graph::CutSide> result = cut.solve();
-        std::vector<std::pair<Index, Index>> labels;
+        NewLabels labels;
         for (std::size_t i = 0; i < area_.size(); ++i)
             labels.emplace_back(area_[i], result[i] == graph::CutSide::source ? segment.chart_a
                                                                               : segment.chart_b);
         return apply(segment, labels);
     }
 
-    // Faces that hang together with `start` in its chart, and their Euler characteristic: with b
-    // boundary edges and i inner vertices, V = i + b and 2 E = 3 F + b.
-    struct Topology {
-        Index faces = 0;
-        Index doubled_euler = 0;
-    };
-    Topology topology(Index start) {
-        const Index c = chart_[start];
-        Topology result;
-        Index boundary = 0;
-        Index inner = 0;
-        std::vector<Index> reached{start};
-        in_flood_[start] = 1;
-        for (std::size_t i = 0; i < reached.size(); ++i)
-            for (const HalfEdge h : half_edges_of(reached[i])) {
-                const HalfEdge twin = mesh_.twin[h];
-                const Vertex v = mesh_.origin(h);
-                inner += ++corners_[v] == valence_[v] ? 1 : 0;
-                if (twin < 0 || chart_[twin / 3] != c) {
-                    ++boundary;
-                } else if (in_flood_[twin / 3] == 0) {
-                    in_flood_[twin / 3] = 1;
-                    reached.push_back(twin / 3);
-                }
-            }
-        result.faces = static_cast<Index>(reached.size());
-        result.doubled_euler = 2 * inner + boundary - result.faces;
-        for (const Face f : reached) {
-            in_flood_[f] = 0;
-            for (const HalfEdge h : half_edges_of(f))
-                corners_[mesh_.origin(h)] = 0;
-        }
-        return result;
-    }
-
-    // Takes the new labels unless a chart would fall apart, shrink by much or change its topology.
-    bool apply(const BorderSegment& segment, const std::vector<std::pair<Index, Index>>& labels) {
-        const Index first = segment.half_edges.front();
-        const Topology before_a = topology(first / 3);
-        const Topology before_b = topology(mesh_.twin[first] / 3);
-        std::vector<std::pair<Index, Index>> undo;
-        Index sum[2] = {before_a.faces, before_b.faces}; // faces that the charts should have
-        Index lost[2] = {0, 0};
-        for (const auto& [f, c] : labels) {
-            if (chart_[f] == c)
-                continue;
-            undo.emplace_back(f, chart_[f]);
-            sum[c == segment.chart_a ? 0 : 1] += 1;
-            sum[c == segment.chart_a ? 1 : 0] -= 1;
-            lost[c == segment.chart_a ? 1 : 0] += 1;
-            chart_[f] = c;
-        }
-        if (undo.empty())
-            return false;
-        bool good = sum[0] > 0 && sum[1] > 0 && lost[0] <= largest_loss * before_a.faces &&
-                    lost[1] <= largest_loss * before_b.faces;
-        for (int i = 0; i < 2 && good; ++i) {
-            const Index c = i == 0 ? segment.chart_a : segment.chart_b;
+    // A border may not take a chart apart or change its topology.
+    bool apply(const BorderSegment& segment, const NewLabels& labels) {
+        const auto side = [&](Index c, HalfEdge h) -> Relabelling::Side {
             const auto found = std::find_if(labels.begin(), labels.end(),
-                                            [&](const auto& l) { return l.second == c; });
-            if (found == labels.end())
-                good = false;
-            else {
-                const Topology after = topology(found->first);
-                good = after.faces == sum[i] &&
-                       after.doubled_euler == (i == 0 ? before_a : before_b).doubled_euler;
-            }
-        }
-        if (!good)
-            for (const auto& [f, c] : undo)
-                chart_[f] = c;
-        return good;
+                                            [&](const auto& label) { return label.second == c; });
+            return {c, face_of(h), found == labels.end() ? Face() : Face(found->first)};
+        };
+        const HalfEdge first = segment.half_edges.front();
+        return relabelling_.take(
+            {side(segment.chart_a, first), side(segment.chart_b, mesh_.twin[first])}, labels,
+            {largest_loss, false});
     }
 
     static constexpr double worthwhile = 1.0 - 1e-9; // shorter than rounding would explain
@@ -433,13 +341,10 @@ private:
     std::vector<std::uint8_t> fuzzy_;      // #F: 1 = in the area; 2, 3 = given to chart a, b
     std::vector<Index> area_;              // the faces in the fuzzy area
     std::vector<std::uint8_t> blocked_;    // #V: 1 on the border at hand
-    std::vector<double> distance_;         // #V
-    std::vector<Index> arrival_;           // #V: half-edge of the shortest path
+    graph::ShortestPaths<> paths_;         // #V: their steps are half-edges
     std::vector<std::uint8_t> new_border_; // 3 #F
-    std::vector<Index> outgoing_;          // #V: a half-edge that leaves the vertex
-    std::vector<Index> valence_;           // #V: faces of an inner vertex, −1 on the boundary
-    std::vector<Index> corners_;           // #V: scratch of topology()
-    std::vector<std::uint8_t> in_flood_;   // #F: scratch of topology()
+    std::vector<Index> leaving_;           // #V: a half-edge that leaves the vertex
+    Relabelling relabelling_;
 };
 
 } // namespace

@@ -6,31 +6,22 @@
 #include <type_traits>
 #include <vector>
 
+#include "devseg/graph/heap.h"
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::growth {
 
-/// A 4-ary min-heap of candidate faces; flatter than a binary one, so fewer cache misses.
-class CandidateHeap {
-public:
-    struct Entry {
-        float key;      // cost without the factor that all entries of this chart share
-        float distance; // length of the path from the chart's seed
-        Index face;
-    };
+/// A face that a chart may take next.
+struct Candidate {
+    float key;      // cost without the factor that all entries of this chart share
+    float distance; // length of the path from the chart's seed
+    Index face;
 
-    bool empty() const { return entries_.empty(); }
-    const Entry& top() const { return entries_.front(); }
-    void clear() { entries_.clear(); }
-    void push(const Entry& entry);
-    void pop();
-
-private:
-    static bool before(const Entry& a, const Entry& b) {
-        return a.key != b.key ? a.key < b.key : a.face < b.face; // ties by face: deterministic
+    bool operator<(const Candidate& other) const {
+        return key != other.key ? key < other.key : face < other.face; // ties: deterministic
     }
-    std::vector<Entry> entries_;
 };
+using CandidateHeap = graph::Heap<Candidate>;
 
 /// The key of a chart without candidates, above all others: infinity, or a default.
 template <class Key>

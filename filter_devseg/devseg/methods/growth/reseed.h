@@ -5,72 +5,53 @@
 #include <vector>
 
 #include "devseg/base/progress.h"
-#include "devseg/methods/growth/growth.h"
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/mesh/mesh.h"
 
 namespace devseg::growth {
 
+/// Of each chart: the face farthest from its border, and how far that is.
+struct FarthestFaces {
+    std::vector<Index> face;
+    std::vector<float> distance; // −1 for charts without a border
+};
+
 class BorderDistance {
 public:
-    explicit BorderDistance(const Mesh& mesh) : mesh_(mesh) {}
+    explicit BorderDistance(const Mesh& mesh) : mesh_(mesh), paths_(mesh.faces.size()) {}
 
     /// The face of each chart that is farthest from the chart's border, along paths inside the
     /// chart whose step across half-edge h costs step(h) ≥ 0. `chart` holds a label for each face,
     /// `seeds` a face for each chart, which stays where a chart has no border.
     template <class Step>
-    std::vector<Index> farthest_faces(const std::vector<Index>& chart,
-                                      const std::vector<Index>& seeds, Step step,
-                                      Progress& progress) {
-        start(chart);
-        std::vector<Index> farthest = seeds;
-        std::vector<float> largest(seeds.size(), -1.0F);
-        for (Index settled = 0; !heap_.empty();) {
-            const CandidateHeap::Entry entry = heap_.top();
-            heap_.pop();
-            const Face f = entry.face;
-            if (entry.key > distance_[f])
-                continue;
-            if (++settled % update_every == 0)
-                progress.update(0.0);
-            const Index c = chart[f];
-            // Faces come in the order of their distance; of equals the lowest number counts.
-            if (entry.key > largest[c]) {
-                largest[c] = entry.key;
-                farthest[c] = f;
-            }
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 || chart[twin / 3] != c)
-                    continue;
-                const float through = entry.key + step(h);
-                if (through < distance_[twin / 3]) {
-                    distance_[twin / 3] = through;
-                    heap_.push({through, through, twin / 3});
+    FarthestFaces farthest_faces(const std::vector<Index>& chart, const std::vector<Index>& seeds,
+                                 Step step, const Progress& progress) {
+        const auto inside = [&](HalfEdge h) {
+            return mesh_.twin[h] >= 0 && chart[face_of(mesh_.twin[h])] == chart[face_of(h)];
+        };
+        paths_.clear();
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (!inside(h) && paths_.distance[face_of(h)] > 0.0F)
+                paths_.add_source(face_of(h));
+        FarthestFaces farthest{seeds, std::vector<float>(seeds.size(), -1.0F)};
+        paths_.run(
+            [&](Face f, float distance) {
+                const Index c = chart[f];
+                if (distance > farthest.distance[c]) {
+                    farthest.distance[c] = distance;
+                    farthest.face[c] = f;
                 }
-            }
-        }
+                for (const HalfEdge h : half_edges_of(f))
+                    if (inside(h))
+                        paths_.reach(face_of(mesh_.twin[h]), distance + step(h));
+            },
+            progress);
         return farthest;
     }
 
 private:
-    void start(const std::vector<Index>& chart) {
-        distance_.assign(chart.size(), std::numeric_limits<float>::infinity());
-        heap_.clear();
-        for (const Face f : mesh_.all_faces())
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 || chart[twin / 3] != chart[f]) {
-                    distance_[f] = 0.0F;
-                    heap_.push({0.0F, 0.0F, f});
-                    break;
-                }
-            }
-    }
-
-    static constexpr Index update_every = 4096; // faces between two looks at the progress object
-
     const Mesh& mesh_;
-    std::vector<float> distance_; // #F
-    CandidateHeap heap_;
+    graph::ShortestPaths<float> paths_; // #F
 };
 
 } // namespace devseg::growth

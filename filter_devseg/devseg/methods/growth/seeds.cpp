@@ -1,39 +1,12 @@
 #include "devseg/methods/growth/seeds.h"
 
-#include <functional>
-#include <limits>
-#include <queue>
 #include <random>
+
+#include "devseg/graph/shortest_paths.h"
 
 namespace devseg::growth {
 
 namespace {
-
-using QueueEntry = std::pair<double, Index>;
-using MinQueue = std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>>;
-
-// Lowers `distance` to the distance from `source` where that is less (Dijkstra over centroids).
-void relax_from(const Mesh& mesh, Index source, std::vector<double>& distance, MinQueue& queue) {
-    distance[source] = 0.0;
-    queue.emplace(0.0, source);
-    while (!queue.empty()) {
-        const auto [d, f] = queue.top();
-        queue.pop();
-        if (d > distance[f])
-            continue;
-        for (const HalfEdge h : half_edges_of(f)) {
-            const Index opposite = mesh.twin[h];
-            if (opposite < 0)
-                continue;
-            const Index g = opposite / 3;
-            const double through = d + (mesh.face_centers[g] - mesh.face_centers[f]).norm();
-            if (through < distance[g]) {
-                distance[g] = through;
-                queue.emplace(through, g);
-            }
-        }
-    }
-}
 
 // How far faces are from the centre of the surface.
 class Remoteness {
@@ -67,8 +40,8 @@ Index first_seed(const Mesh& mesh, const Remoteness& remoteness, std::uint32_t r
 
 std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint32_t random_seed,
                                         Progress& progress) {
-    std::vector<double> distance(mesh.faces.size(), infinite);
-    MinQueue queue;
+    graph::ShortestPaths<> paths(mesh.faces.size()); // over centroids, from the seeds up to here
+    const std::vector<double>& distance = paths.distance;
     std::vector<Index> seeds;
     seeds.reserve(at(count));
     const Remoteness remoteness(mesh);
@@ -78,7 +51,14 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
         if (static_cast<Index>(seeds.size()) == count)
             return seeds;
         progress.update(static_cast<double>(seeds.size()) / count);
-        relax_from(mesh, next, distance, queue);
+        paths.add_source(next);
+        paths.run([&](Face f, double to_f) {
+            for (const HalfEdge h : half_edges_of(f))
+                if (mesh.twin[h] >= 0) {
+                    const Face g = face_of(mesh.twin[h]);
+                    paths.reach(g, to_f + (mesh.face_centers[g] - mesh.face_centers[f]).norm());
+                }
+        });
         for (const Face f : mesh.all_faces())
             if (distance[f] > distance[next] ||
                 // a component without seeds: not the first of its faces, but the most remote

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <queue>
+#include <utility>
 
+#include "devseg/graph/shortest_paths.h"
 #include "devseg/methods/plush/seam_guides.h"
 
 namespace devseg::plush {
@@ -50,34 +49,20 @@ PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& wei
                         const std::vector<Index>& sources, const Progress& progress,
                         const std::vector<std::uint8_t>& may_enter,
                         const std::vector<std::uint8_t>& is_goal) {
-    const std::size_t count = graph.begin.size() - 1;
-    PathTree tree;
-    tree.distance.assign(count, infinite);
-    tree.half_edge.assign(count, -1);
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-    for (const Vertex v : sources) {
-        tree.distance[v] = 0.0;
-        queue.emplace(0.0, v);
-    }
-    Heartbeat beat(progress);
-    while (!queue.empty()) {
-        beat();
-        const auto [distance, v] = queue.top();
-        queue.pop();
-        if (distance > tree.distance[v] || (distance > 0.0 && !is_goal.empty() && is_goal[v] != 0))
-            continue;
-        for (Index i = graph.begin[v]; i < graph.begin[at(v) + 1]; ++i) {
-            const Index u = graph.vertex[i];
-            const double next = distance + weight[graph.half_edge[i]];
-            if (!(next < tree.distance[u]) || (!may_enter.empty() && may_enter[u] == 0))
-                continue;
-            tree.distance[u] = next;
-            tree.half_edge[u] = graph.half_edge[i];
-            queue.emplace(next, u);
-        }
-    }
-    return tree;
+    graph::ShortestPaths<> paths(graph.begin.size() - 1);
+    for (const Vertex v : sources)
+        paths.add_source(v);
+    paths.run(
+        [&](Vertex v, double distance) {
+            if (distance > 0.0 && !is_goal.empty() && is_goal[v] != 0)
+                return;
+            for (Index i = graph.begin[v]; i < graph.begin[at(v) + 1]; ++i)
+                if (may_enter.empty() || may_enter[graph.vertex[i]] != 0)
+                    paths.reach(graph.vertex[i], distance + weight[graph.half_edge[i]],
+                                graph.half_edge[i]);
+        },
+        progress);
+    return {std::move(paths.distance), std::move(paths.step)};
 }
 
 std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Vertex vertex) {

@@ -1,11 +1,10 @@
 #include "devseg/methods/plush/tongues.h"
 
 #include <algorithm>
-#include <limits>
-#include <queue>
 #include <utility>
 
 #include "devseg/base/parallel.h"
+#include "devseg/graph/shortest_paths.h"
 
 namespace devseg::plush {
 
@@ -46,32 +45,24 @@ public:
     }
 
 private:
-    // Distances over faces from those where the distance is 0, inside patches.
-    void spread(std::vector<double>& distance) const {
-        using Entry = std::pair<double, Index>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    // Distances (#F) over faces from the sources, inside patches.
+    template <class IsSource>
+    std::vector<double> distances_from(IsSource is_source) const {
+        graph::ShortestPaths<> paths(mesh_.faces.size());
         for (const Face f : mesh_.all_faces())
-            if (distance[f] == 0.0)
-                queue.emplace(0.0, f);
-        Heartbeat beat(progress_);
-        while (!queue.empty()) {
-            beat();
-            const auto [d, f] = queue.top();
-            queue.pop();
-            if (d > distance[f])
-                continue;
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 || seam_[h] != 0)
-                    continue;
-                const Index g = twin / 3;
-                const double next = d + (mesh_.face_centers[f] - mesh_.face_centers[g]).norm();
-                if (next < distance[g]) {
-                    distance[g] = next;
-                    queue.emplace(next, g);
-                }
-            }
-        }
+            if (is_source(f))
+                paths.add_source(f);
+        paths.run(
+            [&](Face f, double distance) {
+                for (const HalfEdge h : half_edges_of(f))
+                    if (mesh_.twin[h] >= 0 && seam_[h] == 0) {
+                        const Face g = face_of(mesh_.twin[h]);
+                        paths.reach(g, distance +
+                                           (mesh_.face_centers[f] - mesh_.face_centers[g]).norm());
+                    }
+            },
+            progress_);
+        return std::move(paths.distance);
     }
 
     // What is left of the patches when disks of the radius have rolled over them, in components.
@@ -80,17 +71,12 @@ private:
         for (const HalfEdge h : mesh_.all_half_edges())
             if (seam_[h] != 0 || mesh_.twin[h] < 0)
                 on_seam[mesh_.origin(h)] = on_seam[mesh_.target(h)] = 1;
-        std::vector<double> to_seam(mesh_.faces.size(), infinite);
-        for (const Face f : mesh_.all_faces())
-            for (const Vertex v : mesh_.faces[f])
-                if (on_seam[v] != 0)
-                    to_seam[f] = 0.0;
-        spread(to_seam);
-        std::vector<double> to_body(mesh_.faces.size(), infinite);
-        for (std::size_t f = 0; f < to_body.size(); ++f)
-            if (to_seam[f] > radius_)
-                to_body[f] = 0.0;
-        spread(to_body);
+        const std::vector<double> to_seam = distances_from([&](Face f) {
+            const Triangle& t = mesh_.faces[f];
+            return std::any_of(t.begin(), t.end(), [&](Vertex v) { return on_seam[v] != 0; });
+        });
+        const std::vector<double> to_body =
+            distances_from([&](Face f) { return to_seam[f] > radius_; });
         const auto is_thin = [&](Face f) { return to_body[f] > slack * radius_; };
         const mesh::FaceComponents parts = mesh::face_components(mesh_, [&](HalfEdge h) {
             return seam_[h] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[h] / 3);

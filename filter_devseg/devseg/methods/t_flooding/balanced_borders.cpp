@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "devseg/atlas/charts.h"
 #include "devseg/graph/min_cut.h"
-#include "devseg/methods/growth/growth.h"
+#include "devseg/methods/growth/relabelling.h"
+#include "devseg/methods/growth/reseed.h"
 
 namespace devseg::t_flooding {
 
@@ -19,8 +19,6 @@ constexpr double first_price = 1.0 / 64.0;
 // Strips are at most this many faces wide on each side: the time for their cuts grows much faster
 // than their width.
 constexpr double strip_steps = 4.0;
-
-constexpr Index update_every = 4096; // faces between two looks at the progress object
 
 // The least share of a strip's width that is tried.
 constexpr double narrowest = 0.2;
@@ -35,8 +33,9 @@ public:
                    Index count, std::vector<Index>& chart)
         : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
           crease_(metrics::long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
-          depth_(mesh.faces.size()), node_(mesh.faces.size(), -1), reached_(mesh.faces.size(), 0),
-          corners_(mesh.points.size(), 0), valence_(mesh.points.size(), 0), changes_(at(count), 0) {
+          border_distance_(mesh), node_(mesh.faces.size(), -1), relabelling_(mesh, chart),
+          changes_(at(count), 0) {
+        std::vector<Index> valence(mesh.points.size(), 0); // faces of each vertex
         for (const HalfEdge h : mesh.all_half_edges()) {
             border_cost_.push_back(static_cast<float>(
                 mesh.edge_length(h) * (areas.crease[h] != 0 ? options.crease_cost : 1.0)));
@@ -45,15 +44,12 @@ public:
                 twin < 0 ? 0.0F
                          : static_cast<float>(
                                (mesh.face_centers[h / 3] - mesh.face_centers[twin / 3]).norm()));
-            ++valence_[mesh.origin(h)];
+            ++valence[mesh.origin(h)];
         }
         face_area_ = areas.face;
         for (const HalfEdge h : mesh.all_half_edges())
             face_area_[h / 3] +=
-                0.5 * areas.edge[h] + areas.vertex[mesh.origin(h)] / valence_[mesh.origin(h)];
-        for (const HalfEdge h : mesh.all_half_edges())
-            if (mesh.twin[h] < 0)
-                valence_[mesh.origin(h)] = valence_[mesh.target(h)] = -1;
+                0.5 * areas.edge[h] + areas.vertex[mesh.origin(h)] / valence[mesh.origin(h)];
         double steps = 0.0;
         for (const float step : step_)
             steps += step;
@@ -66,7 +62,9 @@ public:
 
     void sweep(Progress& progress) {
         fix_creases();
-        measure_depths(progress);
+        deepest_ = border_distance_.farthest_faces(
+            chart_, std::vector<Index>(at(count_), -1), [&](HalfEdge h) { return step_[h]; },
+            progress);
         gauss_area_ = metrics::chart_gauss_areas(mesh_, areas_, chart_, count_);
         std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
         for (const HalfEdge h : mesh_.all_half_edges()) {
@@ -104,41 +102,6 @@ private:
                 fixed_[h / 3] = 1;
     }
 
-    void measure_depths(Progress& progress) {
-        std::fill(depth_.begin(), depth_.end(), std::numeric_limits<float>::infinity());
-        heap_.clear();
-        for (const HalfEdge h : mesh_.all_half_edges()) {
-            const HalfEdge twin = mesh_.twin[h];
-            if ((twin < 0 || chart_[twin / 3] != chart_[h / 3]) && depth_[h / 3] > 0) {
-                depth_[h / 3] = 0.0F;
-                heap_.push({0.0F, 0.0F, h / 3});
-            }
-        }
-        deepest_.assign(at(count_), 0.0F);
-        anchor_.assign(at(count_), -1);
-        for (Index settled = 1; !heap_.empty(); ++settled) {
-            const growth::CandidateHeap::Entry entry = heap_.top();
-            heap_.pop();
-            if (entry.key > depth_[entry.face])
-                continue;
-            if (settled % update_every == 0)
-                progress.update(0.0);
-            const Index c = chart_[entry.face];
-            if (anchor_[c] < 0 || entry.key > deepest_[c]) {
-                deepest_[c] = entry.key;
-                anchor_[c] = entry.face;
-            }
-            for (const HalfEdge h : half_edges_of(entry.face)) {
-                const HalfEdge twin = mesh_.twin[h];
-                const float through = entry.key + step_[h];
-                if (twin < 0 || chart_[twin / 3] != c || through >= depth_[twin / 3])
-                    continue;
-                depth_[twin / 3] = through;
-                heap_.push({through, through, twin / 3});
-            }
-        }
-    }
-
     // Faces on both sides that are near this border; the deepest face of a chart stays.
     std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges, double share) {
         std::vector<Index> faces;
@@ -147,7 +110,8 @@ private:
         const float widest = static_cast<float>(share) * widest_;
         const auto offer = [&](Face f, float d) {
             const std::size_t c = at(chart_[f]);
-            if (fixed_[f] != 0 || f == anchor_[c] || d > std::min(reach * deepest_[c], widest))
+            if (fixed_[f] != 0 || f == deepest_.face[c] ||
+                d > std::min(reach * deepest_.distance[c], widest))
                 return;
             front.emplace_back(-d, f);
             std::push_heap(front.begin(), front.end());
@@ -333,77 +297,19 @@ private:
         return false;
     }
 
-    static constexpr Index disk = 2; // twice the Euler characteristic
-
-    struct Topology {
-        std::size_t faces = 0;
-        Index doubled_euler = 0;
-    };
-
-    // Faces that hang together with `start` in its chart, and twice their Euler characteristic:
-    // with b boundary edges and i inner vertices, V = i + b and 2 E = 3 F + b.
-    Topology topology(Index start) {
-        Topology result;
-        stack_.assign(1, start);
-        reached_[start] = 1;
-        for (std::size_t i = 0; i < stack_.size(); ++i)
-            for (const HalfEdge h : half_edges_of(stack_[i])) {
-                const HalfEdge twin = mesh_.twin[h];
-                const Vertex v = mesh_.origin(h);
-                result.doubled_euler += ++corners_[v] == valence_[v] ? 2 : 0;
-                if (twin < 0 || chart_[twin / 3] != chart_[start]) {
-                    ++result.doubled_euler;
-                } else if (reached_[twin / 3] == 0) {
-                    reached_[twin / 3] = 1;
-                    stack_.push_back(twin / 3);
-                }
-            }
-        result.faces = stack_.size();
-        result.doubled_euler -= static_cast<Index>(stack_.size());
-        for (const Face f : stack_) {
-            reached_[f] = 0;
-            for (const Vertex v : mesh_.faces[f])
-                corners_[v] = 0;
-        }
-        return result;
-    }
-
-    // Takes the new sides unless a chart would fall apart or change its topology.
+    // A border may make a chart simpler, but not take it apart. Anchors stay where they are.
     bool apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
-        const Topology before_a = topology(anchor_[pair.first]);
-        const Topology before_b = topology(anchor_[pair.second]);
-        std::vector<Pair> undo; // (face, chart)
-        std::size_t size_a = before_a.faces;
-        std::size_t size_b = before_b.faces;
-        for (std::size_t i = 0; i < faces.size(); ++i) {
-            const bool to_a = parting.side[i] == graph::CutSide::source;
-            Index& c = chart_[faces[i]];
-            if (c == (to_a ? pair.first : pair.second))
-                continue;
-            undo.emplace_back(faces[i], c);
-            c = to_a ? pair.first : pair.second;
-            size_a += to_a ? 1U : 0U;
-            size_a -= to_a ? 0U : 1U;
-            size_b += to_a ? 0U : 1U;
-            size_b -= to_a ? 1U : 0U;
-        }
-        if (undo.empty())
+        growth::NewLabels labels;
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            labels.emplace_back(faces[i], parting.side[i] == graph::CutSide::source ? pair.first
+                                                                                    : pair.second);
+        const Face a = deepest_.face[pair.first];
+        const Face b = deepest_.face[pair.second];
+        if (!relabelling_.take({{{pair.first, a, a}, {pair.second, b, b}}}, labels, {1.0, true}))
             return false;
-        const Topology a = topology(anchor_[pair.first]);
-        const Topology b = topology(anchor_[pair.second]);
-        const auto keeps = [](const Topology& after, std::size_t size, const Topology& before) {
-            return after.faces == size &&
-                   (after.doubled_euler == before.doubled_euler ||
-                    (after.doubled_euler > before.doubled_euler && after.doubled_euler <= disk));
-        };
-        if (keeps(a, size_a, before_a) && keeps(b, size_b, before_b)) {
-            gauss_area_[pair.first] -= parting.moved;
-            gauss_area_[pair.second] += parting.moved;
-            return true;
-        }
-        for (const auto& [f, c] : undo)
-            chart_[f] = c;
-        return false;
+        gauss_area_[pair.first] -= parting.moved;
+        gauss_area_[pair.second] += parting.moved;
+        return true;
     }
 
     const Mesh& mesh_;
@@ -411,26 +317,21 @@ private:
     const BorderBalance& options_;
     std::vector<Index>& chart_;
     Index count_;
-    float widest_ = 0.0F;               // bound of the strips' width: their cuts cost time
-    std::vector<double> face_area_;     // #F: Gauss area with its share of edges and corners
-    std::vector<double> gauss_area_;    // of each chart
-    double stiffness_ = 0.0;            // κ: length per Gauss area squared
-    std::vector<std::uint8_t> crease_;  // 3 #F: long creases
-    std::vector<std::uint8_t> fixed_;   // #F: keeps its chart in this sweep
-    std::vector<float> border_cost_;    // 3 #F
-    std::vector<float> step_;           // 3 #F: distance of the centroids on both sides
-    std::vector<float> depth_;          // #F: distance from the chart's border
-    std::vector<float> deepest_;        // of each chart: the largest depth
-    std::vector<Index> anchor_;         // of each chart: the deepest face
-    std::vector<Index> node_;           // #F: node in the strip at hand, −1 = none
-    std::vector<std::uint8_t> reached_; // #F: scratch of topology()
-    std::vector<Index> corners_;        // #V: scratch of topology()
-    std::vector<Index> valence_;        // #V: faces of an inner vertex, −1 on the boundary
-    std::vector<int> changes_;          // of each chart: borders moved so far
-    std::map<Pair, int> settled_;       // changes of both charts when nothing could be gained
+    float widest_ = 0.0F;              // bound of the strips' width: their cuts cost time
+    std::vector<double> face_area_;    // #F: Gauss area with its share of edges and corners
+    std::vector<double> gauss_area_;   // of each chart
+    double stiffness_ = 0.0;           // κ: length per Gauss area squared
+    std::vector<std::uint8_t> crease_; // 3 #F: long creases
+    std::vector<std::uint8_t> fixed_;  // #F: keeps its chart in this sweep
+    std::vector<float> border_cost_;   // 3 #F
+    std::vector<float> step_;          // 3 #F: distance of the centroids on both sides
+    growth::BorderDistance border_distance_;
+    growth::FarthestFaces deepest_; // of each chart: stays where it is
+    std::vector<Index> node_;       // #F: node in the strip at hand, −1 = none
+    growth::Relabelling relabelling_;
+    std::vector<int> changes_;    // of each chart: borders moved so far
+    std::map<Pair, int> settled_; // changes of both charts when nothing could be gained
     std::map<Pair, double> last_price_;
-    std::vector<Index> stack_;
-    growth::CandidateHeap heap_;
 };
 
 } // namespace

@@ -230,8 +230,10 @@ public:
                 raise_offsets(round.area, damping, offsets);
             if (seeds_rest)
                 continue;
-            seeds = border_.farthest_faces(
-                chart_, seeds, [&](HalfEdge h) { return cost_.step(h); }, progress_);
+            seeds = border_
+                        .farthest_faces(
+                            chart_, seeds, [&](HalfEdge h) { return cost_.step(h); }, progress_)
+                        .face;
             seeds_rest = !seen.insert(seeds).second;
         }
     }
