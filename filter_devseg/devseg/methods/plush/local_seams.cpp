@@ -2,81 +2,68 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "devseg/atlas/disks.h"
 #include "devseg/base/parallel.h"
-#include "devseg/methods/plush/patch_trial.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
 
-constexpr double least_part =
-    0.12;                          // of the patch's area: smaller parts are not cut off by isolines
-constexpr int patient_rounds = 15; // after them, what is left is cut in halves
-constexpr int most_rounds = 60;
-constexpr int smoothing_rounds = 4; // of isolines
+using Line = std::vector<Index>; // half-edges
 
 struct Split {
     bool is_needed = false;
-    std::vector<Index> cuts; // half-edges
+    Line cuts;
 };
 
+// How far the change of each face of a trial is from the usual one.
+std::vector<double> deviations(const PatchTrial& trial) {
+    std::vector<double> sorted = trial.change;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    std::vector<double> result;
+    for (const double change : trial.change)
+        result.push_back(change - *middle);
+    return result;
+}
+
+// One patch of a surface that is split.
 class Splitter {
 public:
-    Splitter(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& weight,
-             const PatchLimits& limits, const SeamMarks& seam)
-        : mesh_(mesh), graph_(graph), weight_(weight), limits_(limits), seam_(seam) {}
+    Splitter(const Mesh& mesh, const SeamMarks& seam, const std::vector<Index>& faces)
+        : mesh_(mesh), seam_(seam), faces_(faces) {}
 
-    Split split(const std::vector<Index>& faces, bool in_halves, const Progress& progress) const {
-        const PatchTrial trial = try_patch(mesh_, faces, seam_, limits_, true, progress);
-        Split split;
-        if (trial.accepted)
-            return split;
-        split.is_needed = true;
-        if (!trial.is_disk) {
-            SeamMarks marks = seam_;
-            atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces, marks), marks, progress);
-            for (const Face f : faces)
-                for (const HalfEdge h : half_edges_of(f))
-                    if (marks[h] != seam_[h])
-                        split.cuts.push_back(h);
-            return split;
-        }
-        const bool has_map = !trial.face.empty();
-        if (!in_halves && has_map)
-            split.cuts = isoline(trial);
-        if (!in_halves && has_map && split.cuts.empty())
-            split.cuts = path_through(trial, progress);
-        if (split.cuts.empty())
-            split.cuts = halves(faces);
-        return split;
-    }
-
-private:
-    double median(std::vector<double> values) const {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
+    // Edges that make it a disk.
+    Line disk_cuts(const Progress& progress) const {
+        SeamMarks marks = seam_;
+        atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces_, marks), marks, progress);
+        Line cuts;
+        for (const Face f : faces_)
+            for (const HalfEdge h : half_edges_of(f))
+                if (marks[h] != seam_[h])
+                    cuts.push_back(h);
+        return cuts;
     }
 
     // The half-edges around the faces that are nearer to the worst change than to the usual one and
     // hang together with the worst face.
-    std::vector<Index> isoline(const PatchTrial& trial) const {
+    Line isoline(const PatchTrial& trial) const {
         if (trial.face.size() < 8)
             return {};
-        const double usual = median(trial.change);
-        std::size_t worst = 0;
-        for (std::size_t i = 0; i < trial.change.size(); ++i)
-            if (std::abs(trial.change[i] - usual) > std::abs(trial.change[worst] - usual))
-                worst = i;
+        const std::vector<double> deviation = deviations(trial);
+        const auto worst = static_cast<std::size_t>(
+            std::max_element(deviation.begin(), deviation.end(),
+                             [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+            deviation.begin());
         std::vector<double> change(mesh_.faces.size(), 0.0);
         std::vector<std::uint8_t> state(mesh_.faces.size(), 0); // 1: of the patch, 2: cut off
         double area = 0.0;
         for (std::size_t i = 0; i < trial.face.size(); ++i) {
             state[trial.face[i]] = 1;
-            change[trial.face[i]] = (trial.change[i] - usual) / (trial.change[worst] - usual);
+            change[trial.face[i]] = deviation[i] / deviation[worst];
             area += mesh_.face_areas[trial.face[i]];
         }
         std::vector<Index> part{trial.face[worst]};
@@ -84,191 +71,194 @@ private:
         double part_area = 0.0;
         for (std::size_t k = 0; k < part.size(); ++k) {
             part_area += mesh_.face_areas[part[k]];
-            for (const HalfEdge h : half_edges_of(part[k])) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin >= 0 && seam_[h] == 0 && state[twin / 3] == 1 && change[twin / 3] > 0.5) {
-                    state[twin / 3] = 2;
-                    part.push_back(twin / 3);
+            for (const Face g : neighbours(part[k]))
+                if (state[g] == 1 && change[g] > 0.5) {
+                    state[g] = 2;
+                    part.push_back(g);
                 }
-            }
         }
-        if (part_area < least_part * area || part_area > (1.0 - least_part) * area)
+        if (part_area < tuning.least_part * area || part_area > (1.0 - tuning.least_part) * area)
             return {};
         smooth(trial.face, state);
-        std::vector<Index> cuts;
-        for (const Face f : trial.face)
-            for (HalfEdge h = 3 * f; h < 3 * f + 3 && state[f] == 2; ++h)
-                if (mesh_.twin[h] >= 0 && seam_[h] == 0 && state[mesh_.twin[h] / 3] == 1)
-                    cuts.push_back(h);
+        return border_of(trial.face, state);
+    }
+
+    // From the worst spot to the nearest place on the border, and to the nearest on its far side.
+    Line path_through(const PatchTrial& trial, const VertexGraph& graph,
+                      const std::vector<double>& weight, const Progress& progress) const {
+        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
+        const std::vector<Index>& loop = surface.loops.front();
+        const auto vertex = [&](std::size_t i) { return surface.vertex[surface.origin(loop[i])]; };
+        std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
+        for (const Vertex v : surface.vertex)
+            may_enter[v] = 1;
+        std::vector<std::uint8_t> on_border(mesh_.points.size(), 0);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            on_border[vertex(i)] = 1;
+        const Vertex tip = worst_inner_vertex(trial, on_border);
+        if (tip < 0)
+            return {};
+        const PathTree tree = shortest_paths(graph, weight, {tip}, progress, may_enter, on_border);
+        const auto usable = [&](Vertex v) {
+            return is_inside(tree.half_edge[v], trial) && std::isfinite(tree.distance[v]);
+        };
+        std::size_t near = loop.size();
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            if (usable(vertex(i)) &&
+                (near == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(near)]))
+                near = i;
+        if (near == loop.size())
+            return {};
+        Line cuts = trace_path(mesh_, tree, vertex(near));
+        Vertex far;
+        for (std::size_t k = loop.size() / 4; k <= loop.size() - loop.size() / 4; ++k) {
+            const Vertex v = vertex((near + k) % loop.size());
+            if (usable(v) && v != vertex(near) &&
+                (far < 0 || tree.distance[v] < tree.distance[far]))
+                far = v;
+        }
+        if (far >= 0)
+            for (const HalfEdge h : trace_path(mesh_, tree, far))
+                cuts.push_back(h);
+        const auto is_seam = [&](HalfEdge h) { return seam_[h] != 0; };
+        cuts.erase(std::remove_if(cuts.begin(), cuts.end(), is_seam), cuts.end());
         return cuts;
+    }
+
+    // The border of the half of the faces that is nearest to the first one, counted in faces.
+    Line halves() const {
+        std::vector<std::uint8_t> state(mesh_.faces.size(), 1);
+        std::vector<Index> reached{faces_.front()};
+        state[faces_.front()] = 2;
+        for (std::size_t k = 0; k < reached.size(); ++k)
+            for (const Face g : neighbours(reached[k]))
+                if (state[g] == 1 && 2 * reached.size() < faces_.size()) {
+                    state[g] = 2;
+                    reached.push_back(g);
+                }
+        return border_of(reached, state);
+    }
+
+private:
+    // Faces of the patch beside a face.
+    std::vector<Index> neighbours(Face f) const {
+        std::vector<Index> faces;
+        for (const HalfEdge h : half_edges_of(f))
+            if (!is_border(mesh_, seam_, h))
+                faces.push_back(face_of(mesh_.twin[h]));
+        return faces;
+    }
+
+    // Between faces with state 2, among the given ones, and those with state 1.
+    Line border_of(const std::vector<Index>& faces, const std::vector<std::uint8_t>& state) const {
+        Line border;
+        for (const Face f : faces)
+            for (const HalfEdge h : half_edges_of(f))
+                if (state[f] == 2 && !is_border(mesh_, seam_, h) &&
+                    state[face_of(mesh_.twin[h])] == 1)
+                    border.push_back(h);
+        return border;
     }
 
     // Faces take the side (1 or 2) of most of their neighbours, a few times.
     void smooth(const std::vector<Index>& faces, std::vector<std::uint8_t>& state) const {
-        for (int round = 0; round < smoothing_rounds; ++round)
+        for (int round = 0; round < tuning.isoline_rounds; ++round)
             for (const Face f : faces) {
                 int same = 0;
                 int other = 0;
-                for (const HalfEdge h : half_edges_of(f))
-                    if (mesh_.twin[h] >= 0 && seam_[h] == 0)
-                        ++(state[mesh_.twin[h] / 3] == state[f] ? same : other);
+                for (const Face g : neighbours(f))
+                    ++(state[g] == state[f] ? same : other);
                 if (other > same)
                     state[f] = state[f] == 1 ? 2 : 1;
             }
     }
 
-    // From the worst spot to the nearest place on the border, and to the nearest on its far side.
-    std::vector<Index> path_through(const PatchTrial& trial, const Progress& progress) const {
-        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
-        std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
-        for (const Vertex v : surface.vertex)
-            may_enter[v] = 1;
-        std::vector<std::uint8_t> on_border(mesh_.points.size(), 0);
-        for (const HalfEdge h : surface.loops.front())
-            on_border[surface.vertex[surface.origin(h)]] = 1;
-        const Index tip = worst_inner_vertex(trial, on_border);
-        if (tip < 0)
-            return {};
-        const PathTree tree =
-            shortest_paths(graph_, weight_, {tip}, progress, may_enter, on_border);
-        const std::vector<Index>& loop = surface.loops.front();
-        const auto vertex = [&](std::size_t i) { return surface.vertex[surface.origin(loop[i])]; };
-        const auto usable = [&](std::size_t i) {
-            return inside(tree.half_edge[vertex(i)], trial) &&
-                   std::isfinite(tree.distance[vertex(i)]);
+    bool is_inside(HalfEdge h, const PatchTrial& trial) const {
+        const auto has = [&](HalfEdge side) {
+            return side >= 0 &&
+                   std::binary_search(trial.face.begin(), trial.face.end(), face_of(side));
         };
-        std::size_t near = loop.size();
-        for (std::size_t i = 0; i < loop.size(); ++i)
-            if (usable(i) &&
-                (near == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(near)]))
-                near = i;
-        if (near == loop.size())
-            return {};
-        std::size_t far = loop.size();
-        for (std::size_t k = loop.size() / 4; k <= loop.size() - loop.size() / 4; ++k) {
-            const std::size_t i = (near + k) % loop.size();
-            if (usable(i) && vertex(i) != vertex(near) &&
-                (far == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(far)]))
-                far = i;
-        }
-        std::vector<Index> cuts = trace_path(mesh_, tree, vertex(near));
-        if (far < loop.size())
-            for (const HalfEdge h : trace_path(mesh_, tree, vertex(far)))
-                cuts.push_back(h);
-        cuts.erase(
-            std::remove_if(cuts.begin(), cuts.end(), [&](HalfEdge h) { return seam_[h] != 0; }),
-            cuts.end());
-        return cuts;
+        return h >= 0 && (has(h) || has(mesh_.twin[h]));
     }
 
-    bool inside(HalfEdge h, const PatchTrial& trial) const {
-        if (h < 0)
-            return false;
-        return std::binary_search(trial.face.begin(), trial.face.end(), h / 3) ||
-               (mesh_.twin[h] >= 0 &&
-                std::binary_search(trial.face.begin(), trial.face.end(), mesh_.twin[h] / 3));
-    }
-
-    Index worst_inner_vertex(const PatchTrial& trial,
-                             const std::vector<std::uint8_t>& on_border) const {
-        const double usual = median(trial.change);
+    Vertex worst_inner_vertex(const PatchTrial& trial,
+                              const std::vector<std::uint8_t>& on_border) const {
+        const std::vector<double> deviation = deviations(trial);
         std::vector<std::pair<double, std::size_t>> order;
-        for (std::size_t i = 0; i < trial.face.size(); ++i)
-            order.emplace_back(-std::abs(trial.change[i] - usual), i);
+        for (std::size_t i = 0; i < deviation.size(); ++i)
+            order.emplace_back(-std::abs(deviation[i]), i);
         std::sort(order.begin(), order.end());
         for (const auto& [change, i] : order)
             for (const Vertex v : mesh_.faces[trial.face[i]])
                 if (on_border[v] == 0)
                     return v;
-        return -1;
-    }
-
-    // The border of the half of the faces that is nearest to the first one, counted in faces.
-    std::vector<Index> halves(const std::vector<Index>& faces) const {
-        std::vector<std::uint8_t> state(mesh_.faces.size(), 0);
-        std::vector<Index> reached{faces.front()};
-        state[faces.front()] = 1;
-        for (std::size_t k = 0; k < reached.size() && 2 * reached.size() < faces.size(); ++k)
-            for (const HalfEdge h : half_edges_of(reached[k])) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin >= 0 && seam_[h] == 0 && state[twin / 3] == 0 &&
-                    2 * reached.size() < faces.size()) {
-                    state[twin / 3] = 1;
-                    reached.push_back(twin / 3);
-                }
-            }
-        std::vector<Index> cuts;
-        for (const Face f : reached)
-            for (const HalfEdge h : half_edges_of(f))
-                if (mesh_.twin[h] >= 0 && seam_[h] == 0 && state[mesh_.twin[h] / 3] == 0)
-                    cuts.push_back(h);
-        return cuts;
+        return {};
     }
 
     const Mesh& mesh_;
-    const VertexGraph& graph_;
-    const std::vector<double>& weight_;
-    const PatchLimits limits_;
     const SeamMarks& seam_;
+    const std::vector<Index>& faces_;
 };
 
-// The patches that are not settled yet, one of each two mirror images.
+// The open patches, one of each two mirror images.
 std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, const SeamMarks& seam,
-                                             const std::vector<std::uint8_t>& settled) {
-    const mesh::FaceComponents patches = find_patches(surface.mesh, seam);
-    std::vector<std::vector<Index>> faces(at(patches.count));
-    for (const Face f : surface.mesh.all_faces()) {
-        const Index own = patches.label[f];
-        if (settled[f] == 0 &&
-            (!surface.is_symmetric() || own <= patches.label[surface.face_image(f)]))
-            faces[own].push_back(f);
-    }
-    faces.erase(std::remove_if(faces.begin(), faces.end(),
-                               [](const std::vector<Index>& f) { return f.empty(); }),
-                faces.end());
-    return faces;
+                                             const std::vector<std::uint8_t>& open) {
+    const std::vector<Index> label = find_patches(surface.mesh, seam).label;
+    std::vector<std::vector<Index>> patches = patches_of(surface.mesh, seam);
+    const auto is_left_out = [&](Face f) {
+        return open[f] == 0 || (surface.is_symmetric() && label[f] > label[surface.face_image(f)]);
+    };
+    for (std::vector<Index>& patch : patches)
+        patch.erase(std::remove_if(patch.begin(), patch.end(), is_left_out), patch.end());
+    patches.erase(std::remove_if(patches.begin(), patches.end(),
+                                 [](const std::vector<Index>& patch) { return patch.empty(); }),
+                  patches.end());
+    return patches;
 }
 
 } // namespace
 
-LocalSeams add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
-                           const std::vector<double>& weight, const PatchLimits& limits,
-                           std::vector<std::uint8_t> settled, SeamMarks& seam, Progress& progress) {
+bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
+                     const std::vector<double>& weight, const PatchLimits& limits,
+                     std::vector<std::uint8_t> open, SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = surface.mesh;
-    LocalSeams result;
-    settled.resize(mesh.faces.size(), 0);
-    for (int round = 0; round < most_rounds; ++round) {
-        const std::vector<std::vector<Index>> faces = open_patches(surface, seam, settled);
+    open.resize(mesh.faces.size(), 1);
+    bool all_developable = true;
+    for (int round = 0;; ++round) {
+        const std::vector<std::vector<Index>> faces = open_patches(surface, seam, open);
         if (faces.empty())
-            return result;
-        const Splitter splitter(mesh, graph, weight, limits, seam);
+            return all_developable;
         std::vector<Split> splits(faces.size());
-        parallel_for(
-            static_cast<int>(faces.size()),
-            [&](int i) {
-                const auto k = static_cast<std::size_t>(i);
-                splits[k] = splitter.split(faces[k], round >= patient_rounds, progress);
-            },
-            progress);
-        for (std::size_t i = 0; i < splits.size(); ++i) {
-            result.splits += splits[i].is_needed ? 1 : 0;
-            if (!splits[i].is_needed || splits[i].cuts.empty())
-                for (const Face f : faces[i]) {
-                    settled[f] = 1;
-                    if (surface.is_symmetric())
-                        settled[surface.face_image(f)] = 1;
-                }
-            result.all_developable =
-                result.all_developable && !(splits[i].is_needed && splits[i].cuts.empty());
-            for (const HalfEdge h : splits[i].cuts) {
-                mark(mesh, h, 1, seam);
-                if (surface.is_symmetric())
-                    mark(mesh, surface.image[h], 1, seam);
+        const auto split = [&](int i) {
+            Split& result = splits[static_cast<std::size_t>(i)];
+            const std::vector<Index>& patch = faces[static_cast<std::size_t>(i)];
+            const PatchTrial trial = try_patch(mesh, patch, seam, limits, true, progress);
+            result.is_needed = !trial.accepted;
+            const Splitter splitter(mesh, seam, patch);
+            if (!trial.is_disk) {
+                result.cuts = splitter.disk_cuts(progress);
+                return;
             }
+            const bool has_map = !trial.face.empty() && round < tuning.patient_rounds;
+            if (result.is_needed && has_map)
+                result.cuts = splitter.isoline(trial);
+            if (result.is_needed && has_map && result.cuts.empty())
+                result.cuts = splitter.path_through(trial, graph, weight, progress);
+            if (result.is_needed && result.cuts.empty())
+                result.cuts = splitter.halves();
+        };
+        parallel_for(static_cast<int>(faces.size()), split, progress);
+        for (std::size_t i = 0; i < splits.size(); ++i) {
+            if (splits[i].cuts.empty())
+                for (const Face f : faces[i]) {
+                    open[f] = 0;
+                    if (surface.is_symmetric())
+                        open[surface.face_image(f)] = 0;
+                }
+            all_developable = all_developable && !(splits[i].is_needed && splits[i].cuts.empty());
+            mark_both(surface, splits[i].cuts, 1, seam);
         }
     }
-    result.all_developable = false;
-    return result;
 }
 
 } // namespace devseg::plush

@@ -1,11 +1,12 @@
-// Small repairs of patches that nearly keep their limits.
+// Small repairs of patches that nearly keep their limits, and of those that are too small to be
+// pieces of cloth.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "devseg/methods/plush/patch_trial.h"
-#include "devseg/methods/plush/seam_paths.h"
+#include "devseg/methods/plush/seam_removal.h"
 
 namespace devseg::plush {
 
@@ -18,5 +19,35 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
                                              const std::vector<double>& cost,
                                              const std::vector<Index>& faces, const SeamMarks& seam,
                                              const PatchLimits& limits, const Progress& progress);
+
+/// A part of a surface where seams are still to be decided.
+struct OpenPart {
+    std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
+    SeamMarks seam;                  // 3 #F: seams so far; or empty
+
+    bool is_open(Face f) const { return faces.empty() || faces[f] != 0; }
+    bool has_open_faces() const;
+    /// Whether both faces of the edge are open.
+    bool is_inside(const Mesh& mesh, HalfEdge h) const;
+};
+
+/// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the
+/// others theirs. `cost`: of paths, 3 #F.
+OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
+                      SeamMarks seam, const PatchLimits& limits, Progress& progress);
+
+/// Seams that are not inside the open part.
+SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
+
+/// The patches of the working surface most of which lie on an open part of the model, and their
+/// mirror images.
+OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
+                   const OpenPart& on_model);
+
+/// Joins patches up to a share of the surface to a neighbour along all of their common border,
+/// where darts up to half as long again as that border are enough to keep the limits. `cost`: of
+/// paths for darts, 3 #F. Returns how many joins were tried.
+Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cost, double most_area,
+                      SeamMarks& seam, Progress& progress);
 
 } // namespace devseg::plush

@@ -12,21 +12,12 @@
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/repair/slits.h"
+#include "devseg/methods/plush/tuning.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::plush {
 
 namespace {
-
-constexpr double kept = 0.98; // share of the bound that is used: maps are rounded to 32 bits later
-// L2: what even areas may cost in shear, 20 % in the mean, and 14 % in a search.
-constexpr double most_stretch = 1.04;
-constexpr double search_stretch = 1.02;
-// As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
-// length by 8 % in the mean.
-constexpr double hopeless_energy = 0.012;
-constexpr double hopeless_overlap = 0.03; // pairs of faces over faces, in such a map
-constexpr double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
 // Nothing where there is no map.
 void describe(const atlas::ChartSurface& surface, const flatten::FlatteningProblem& problem,
@@ -76,15 +67,15 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     if (!trial.is_disk)
         return trial;
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
-    const double bound = kept * limits.max_area_change;
-    const double strictness = std::min(1.0, limits.max_area_change / usual_change);
-    const double stretch = limits.is_search ? search_stretch : most_stretch;
+    const double bound = tuning.used_bound * limits.max_area_change;
+    const double strictness = std::min(1.0, limits.max_area_change / tuning.usual_change);
+    const double stretch = limits.is_search ? tuning.search_shear : tuning.most_shear;
     flatten::SewingMapOptions options;
     options.enough = bound;
     options.enough_stretch = stretch;
     if (limits.is_search) {
-        options.give_up_energy = hopeless_energy * strictness * strictness;
-        options.give_up_overlap = hopeless_overlap;
+        options.give_up_energy = tuning.hopeless_energy * strictness * strictness;
+        options.give_up_overlap = tuning.hopeless_overlap;
     }
     const auto map = flatten::sewing_map(
         problem, surface, plane::layout_tolerance(std::sqrt(mesh.total_area)), options, progress);

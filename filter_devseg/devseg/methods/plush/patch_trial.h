@@ -59,6 +59,7 @@ public:
                  const Progress& progress);
     bool accepts_all(const std::vector<std::vector<Index>>& patches,
                      const std::vector<std::uint8_t>& seam, const Progress& progress);
+    const PatchLimits& limits() const { return limits_; }
 
 private:
     const WorkingSurface& surface_;

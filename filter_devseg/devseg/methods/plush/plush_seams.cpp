@@ -10,52 +10,20 @@
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/canonical_frame.h"
 #include "devseg/methods/plush/acute_corners.h"
-#include "devseg/methods/plush/carry_seams.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/local_seams.h"
-#include "devseg/methods/plush/open_part.h"
+#include "devseg/methods/plush/mend_patches.h"
 #include "devseg/methods/plush/patch_trial.h"
-#include "devseg/methods/plush/remnants.h"
 #include "devseg/methods/plush/seam_removal.h"
 #include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/tongues.h"
+#include "devseg/methods/plush/transfer_seams.h"
+#include "devseg/methods/plush/tuning.h"
 #include "devseg/methods/plush/working_surface.h"
 
 namespace devseg::plush {
 
 namespace {
-
-constexpr double symmetric_enough = 0.03; // of the diagonal
-constexpr double fragment = 4e-4;         // of the surface: smaller parts go to a neighbour
-// Of the surface on which seams are decided: with its mirror image, and without.
-constexpr Index mirrored_faces = 6000;
-constexpr Index plain_faces = 9000;
-// Models without a mirror image up to this size are their own working surface: what is saved
-// would be less than what carrying seams costs.
-constexpr Index small_model = 15000;
-// Larger models get the seams of a surface with fewer faces: trials of large patches take long.
-constexpr Index large_model = 60000;
-constexpr Index fewer_faces = 30000;
-// Of the bound: what is used of it on another surface than the model, on the model before seams
-// are smoothed, and in each round of deciding again.
-constexpr double margin = 0.75;
-constexpr double own_margin = 0.95;
-constexpr double tighter = 0.88;
-// Where the model has two halves, they stay alike only as long as seams are decided on both.
-constexpr int second_thoughts = 1;
-constexpr int mirrored_second_thoughts = 2;
-constexpr double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
-// Once seams are straight, patches up to this share of the surface are joined along narrower necks.
-constexpr double small_patch = 0.1;
-constexpr double narrow_neck = 0.15;
-constexpr double stray_share = 0.8; // of an edge's cost for mending: goes where seams look natural
-// Of the root of the surface, and of the mean edge: tongues that are narrower go.
-constexpr double thin = 0.03;
-constexpr double least_thin = 2.4;
-// Of the surface: patches that are joined on the model, in the end, and those that get darts for
-// it.
-constexpr double small_remnant = 0.02;
-constexpr double remnant = 0.01;
 
 // Material borders are edges of the model: then seams are decided on the model itself.
 WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<MirrorPlane>& plane,
@@ -63,11 +31,11 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
     if (!hard.empty())
         return {mesh, {}};
     if (plane)
-        if (auto surface = mirrored_working_surface(mesh, *plane, mirrored_faces, progress))
+        if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
             return std::move(*surface);
-    if (mesh.face_count() <= small_model)
+    if (mesh.face_count() <= tuning.large_model / 4)
         return {mesh, {}};
-    return plain_working_surface(mesh, plain_faces, progress);
+    return plain_working_surface(mesh, tuning.mirrored_faces * 3 / 2, progress);
 }
 
 // The steps of the method on one surface, with what they share. `hard` has all seams that are not
@@ -102,22 +70,22 @@ public:
         PatchTester tester(surface_, {max_area_change, false});
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
-        removal.most_area = small_remnant;
-        removal.least_neck = narrow_neck;
-        const SeamSetting setting{surface_, hard_,  weights_.weight,
-                                  tester,   tester, options_.max_iterations};
+        removal.most_area = tuning.small_remnant;
+        removal.least_neck = tuning.narrow_neck;
+        const SeamSetting setting{
+            surface_, graph_, hard_, weights_.weight, tester, tester, options_.max_iterations};
         progress_.begin_phase("giving tongues away", 0.04);
-        const double width =
-            std::max(thin * std::sqrt(mesh_.total_area), least_thin * mean_edge_length(mesh_));
+        const double width = std::max(tuning.thin * std::sqrt(mesh_.total_area),
+                                      tuning.least_thin * mean_edge_length(mesh_));
         PatchTester search(surface_, {max_area_change, true});
-        const SeamSetting searching{surface_, hard_,  weights_.weight,
-                                    search,   search, options_.max_iterations};
+        const SeamSetting searching{
+            surface_, graph_, hard_, weights_.weight, search, search, options_.max_iterations};
         result_.trials += give_tongues_away(searching, width, seam_, progress_);
         progress_.begin_phase("joining patches", 0.04);
         result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("absorbing remnants", 0.01);
-        result_.trials += absorb_remnants(setting, graph_, natural_cost(), {max_area_change, false},
-                                          remnant, seam_, progress_);
+        result_.trials +=
+            absorb_remnants(setting, natural_cost(), tuning.small_remnant / 2.0, seam_, progress_);
         progress_.begin_phase("blunting corners", 0.02);
         result_.trials += blunt_acute_corners(setting, seam_, progress_);
         return seam_;
@@ -132,7 +100,7 @@ public:
         std::vector<double> cost;
         for (const HalfEdge h : mesh_.all_half_edges())
             cost.push_back(mesh_.edge_length(h) *
-                           (1.0 - stray_share + stray_share * weights_.stray[h]));
+                           natural_factor(tuning.natural_dart, weights_.stray[h]));
         return cost;
     }
 
@@ -208,11 +176,8 @@ private:
         add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, progress_);
         clean_patches();
         progress_.begin_phase("cutting patches", 0.15);
-        std::vector<std::uint8_t> settled(mesh_.faces.size(), 0);
-        for (const Face f : mesh_.all_faces())
-            settled[f] = open_.is_open(f) ? 0 : 1;
-        add_local_seams(surface_, graph_, weights_.weight, {max_area_change_, true}, settled, seam_,
-                        progress_);
+        add_local_seams(surface_, graph_, weights_.weight, {max_area_change_, true}, open_.faces,
+                        seam_, progress_);
         result_.candidates +=
             static_cast<Index>(find_segments(mesh_, seam_, hard_, weights_.weight).size());
     }
@@ -227,7 +192,7 @@ private:
     void clean_patches() {
         mirror_marks(surface_, seam_);
         std::vector<Index> label =
-            atlas::absorb_fragments(mesh_, find_patches(mesh_, seam_).label, fragment);
+            atlas::absorb_fragments(mesh_, find_patches(mesh_, seam_).label, tuning.fragment);
         remove_teeth(mesh_, label);
         seam_ = atlas::make_chart_map(mesh_, label, {}, false).seam;
         for (const HalfEdge h : mesh_.all_half_edges())
@@ -239,9 +204,9 @@ private:
 
     void remove() {
         PatchTester tester(surface_, {max_area_change_, true});
-        PatchTester strict(surface_, {nearly_flat * max_area_change_, true});
-        const SeamSetting setting{surface_, hard_,  weights_.weight,
-                                  tester,   strict, options_.max_iterations};
+        PatchTester strict(surface_, {tuning.nearly_flat * max_area_change_, true});
+        const SeamSetting setting{
+            surface_, graph_, hard_, weights_.weight, tester, strict, options_.max_iterations};
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
         progress_.begin_phase("removing seams", 0.25);
@@ -249,10 +214,10 @@ private:
         progress_.begin_phase("joining patches", 0.15);
         result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("straightening seams", 0.06);
-        straighten_seams(setting, graph_, seam_, progress_);
+        straighten_seams(setting, seam_, progress_);
         progress_.begin_phase("joining patches", 0.05);
-        removal.most_area = small_patch;
-        removal.least_neck = narrow_neck;
+        removal.most_area = tuning.small_patch;
+        removal.least_neck = tuning.narrow_neck;
         result_.trials += join_patches(setting, removal, seam_, progress_);
         progress_.begin_phase("shortening darts", 0.02);
         result_.trials += shorten_darts(setting, seam_, progress_);
@@ -309,15 +274,15 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     const std::vector<double> cost = on_model.natural_cost();
     const bool is_model =
         !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
-    double bound = (is_model ? own_margin : margin) * options.max_area_change;
+    double bound = (is_model ? tuning.own_margin : tuning.margin) * options.max_area_change;
     SeamMarks seam = working.decide({}, {}, bound);
     const int most_rounds =
-        working.surface().is_symmetric() ? mirrored_second_thoughts : second_thoughts;
+        working.surface().is_symmetric() ? tuning.second_thoughts + 1 : tuning.second_thoughts;
     OpenPart part;
     for (int round = 0;; ++round) {
-        progress.begin_phase("carrying seams", 0.02);
-        SeamMarks carried = carry_seams(working.mesh(), seam, model.mesh, on_model.graph(),
-                                        on_model.stray(), progress);
+        progress.begin_phase("transferring seams", 0.02);
+        SeamMarks carried = transfer_seams(working.mesh(), seam, model.mesh, on_model.graph(),
+                                           on_model.stray(), progress);
         cut_corners(model.mesh, carried);
         part = mend_patches(model.mesh, on_model.graph(), cost, std::move(carried),
                             {options.max_area_change, false}, progress);
@@ -326,7 +291,7 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
         if (!again.has_open_faces())
             break;
-        bound *= tighter;
+        bound *= tuning.tighter;
         seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
     }
     if (part.has_open_faces())
@@ -338,16 +303,16 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
 SeamMarks decide(PlushSegmentation& working, const Mesh& mesh, const PlushOptions& options,
                  PlushSeams& result, Progress& progress) {
     const WorkingSurface model{mesh, {}};
-    if (mesh.face_count() <= large_model)
+    if (mesh.face_count() <= tuning.large_model)
         return decide_for_model(working, model, options, result, progress);
-    const WorkingSurface smaller = plain_working_surface(mesh, fewer_faces, progress);
+    const WorkingSurface smaller = plain_working_surface(mesh, tuning.large_model / 2, progress);
     PlushOptions stricter = options;
-    stricter.max_area_change *= own_margin;
+    stricter.max_area_change *= tuning.own_margin;
     const SeamMarks seam = decide_for_model(working, smaller, stricter, result, progress);
     const PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
-    progress.begin_phase("carrying seams", 0.02);
+    progress.begin_phase("transferring seams", 0.02);
     SeamMarks carried =
-        carry_seams(smaller.mesh, seam, mesh, on_model.graph(), on_model.stray(), progress);
+        transfer_seams(smaller.mesh, seam, mesh, on_model.graph(), on_model.stray(), progress);
     cut_corners(mesh, carried);
     return carried;
 }
@@ -362,12 +327,8 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress);
     OpenPart part = mend_patches(mesh, graph, weights.weight, std::move(seam), limits, progress);
-    std::vector<std::uint8_t> is_settled;
-    for (const std::uint8_t is_open : part.faces)
-        is_settled.push_back(is_open == 0 ? 1 : 0);
     result.all_developable = add_local_seams({mesh, {}}, graph, weights.weight, limits,
-                                             std::move(is_settled), part.seam, progress)
-                                 .all_developable;
+                                             std::move(part.faces), part.seam, progress);
     return part.seam;
 }
 
@@ -380,7 +341,7 @@ PlushSeams segment_in_own_frame(const Mesh& framed, const Mesh& mesh, const Plus
     progress.begin_phase("finding symmetry", 0.06);
     std::optional<MirrorPlane> plane;
     if (options.symmetric)
-        plane = find_mirror_plane(framed, symmetric_enough, progress);
+        plane = find_mirror_plane(framed, tuning.symmetric_within, progress);
     const WorkingSurface surface = make_working_surface(framed, plane, hard, progress);
     result.is_symmetric = surface.is_symmetric();
     PlushSegmentation working(surface, options, std::move(skeleton), result, progress);

@@ -5,18 +5,11 @@
 
 #include <Eigen/Geometry>
 
+#include "devseg/methods/plush/tuning.h"
+
 namespace devseg::plush {
 
 namespace {
-
-constexpr double beside = 0.015;           // of the diagonal: how far beside an edge normals count
-constexpr double window = 0.04;            // of the diagonal: over which a seam has a direction
-constexpr double along = 30.0 * degrees;   // from the skeleton
-constexpr double crease = 30.0 * degrees;  // of bend
-constexpr double concave = 10.0 * degrees; // of bend the other way
-constexpr double near_border = 0.015;      // of the diagonal
-constexpr double near_image = 0.02;        // of the diagonal
-constexpr double sample_distance = 0.005;  // of the diagonal
 
 double diagonal_of(const Mesh& mesh) {
     Eigen::AlignedBox3d box;
@@ -34,7 +27,8 @@ double smooth_step(double from, double to, double x) {
 class EdgeShapes {
 public:
     explicit EdgeShapes(const Mesh& mesh)
-        : mesh_(mesh), reach_(beside * diagonal_of(mesh)), seen_(mesh.faces.size(), -1) {}
+        : mesh_(mesh), reach_(tuning.beside_edge * diagonal_of(mesh)),
+          seen_(mesh.faces.size(), -1) {}
 
     EdgeShape at_edge(HalfEdge h) {
         const HalfEdge twin = mesh_.twin[h];
@@ -154,9 +148,8 @@ bool is_along_border(const Vec3& middle, const Vec3& direction,
                      const std::vector<SeamGuides::Line>& borders, double reach) {
     return std::any_of(borders.begin(), borders.end(), [&](const SeamGuides::Line& line) {
         const Vec3 edge = line.to - line.from;
-        const double t = std::clamp((middle - line.from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-        return (line.from + t * edge - middle).squaredNorm() < reach * reach &&
-               std::abs(edge.dot(direction)) >= std::cos(along) * edge.norm();
+        return squared_distance(middle, line.from, line.to) < reach * reach &&
+               std::abs(edge.dot(direction)) >= std::cos(tuning.aligned) * edge.norm();
     });
 }
 
@@ -178,11 +171,41 @@ std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress) {
 }
 
 double straying(double across, double bend) {
-    const double bent = std::max(smooth_step(0.5 * crease, crease, bend),
-                                 smooth_step(0.25 * concave, concave, -bend));
+    const double bent = std::max(smooth_step(0.5 * tuning.aligned, tuning.aligned, bend),
+                                 smooth_step(0.25 * tuning.concave, tuning.concave, -bend));
     return std::min(
         smooth_step(1.0 - std::cos(20.0 * degrees), 1.0 - std::cos(50.0 * degrees), across),
         1.0 - bent);
+}
+
+SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
+                         const std::vector<double>& curvature, const Skeleton& skeleton,
+                         const BoneWeights& bones, const Progress& progress) {
+    const std::vector<EdgeShape> shapes = edge_shapes(mesh, progress);
+    double longest = 0.0;
+    for (const HalfEdge h : mesh.all_half_edges())
+        longest = std::max(longest, mesh.edge_length(h));
+    SeamWeights result;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index a = std::min(mesh.origin(h), mesh.target(h));
+        const Index b = std::max(mesh.origin(h), mesh.target(h));
+        double along = 1.0;
+        if (!skeleton.empty()) {
+            const Vec3& normal = shapes[h].normal;
+            const SkeletonDirection bone = skeleton_direction(skeleton, bones, a, b, normal);
+            const Vec3 edge = mesh.points[b] - mesh.points[a];
+            const Vec3 lying = (edge - edge.dot(normal) * normal).stableNormalized();
+            along = 1.0 - bone.agreement * std::abs(lying.dot(bone.direction));
+        }
+        const double curved = 1.0 / (1.0 + std::abs(curvature[a]) + std::abs(curvature[b]));
+        result.stray.push_back(straying(along, shapes[h].bend));
+        result.weight.push_back(natural_factor(tuning.natural_seam, result.stray.back()) *
+                                std::max(tuning.least_weight,
+                                         std::pow(mesh.edge_length(h) / longest, options.geodesic) *
+                                             std::pow(std::max(0.0, along), options.skeleton) *
+                                             std::pow(curved, options.curvature)));
+    }
+    return result;
 }
 
 SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
@@ -199,19 +222,19 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
         const Index a = mesh.origin(h);
         const Index b = mesh.target(h);
         const EdgeShape shape = shapes.at_edge(h);
-        if (shape.bend >= crease || shape.bend <= -concave)
+        if (shape.bend >= tuning.aligned || shape.bend <= -tuning.concave)
             return true;
         const Vec3 lying = direction - direction.dot(shape.normal) * shape.normal;
         if (!skeleton.empty() &&
             std::abs(skeleton_direction(skeleton, bones, a, b, shape.normal)
-                         .direction.dot(lying.stableNormalized())) >= std::cos(along))
+                         .direction.dot(lying.stableNormalized())) >= std::cos(tuning.aligned))
             return true;
         return is_along_border(0.5 * (mesh.points[a] + mesh.points[b]), direction,
-                               guides.limb_borders, near_border * diagonal);
+                               guides.limb_borders, tuning.beside_edge * diagonal);
     };
-    for (const SeamSegment& segment :
-         find_segments(mesh, seam, {}, std::vector<double>(seam.size(), 1.0))) {
-        const std::vector<Vec3> direction = smooth_directions(mesh, segment, window * diagonal);
+    for (const SeamSegment& segment : find_segments(mesh, seam)) {
+        const std::vector<Vec3> direction =
+            smooth_directions(mesh, segment, tuning.direction_window * diagonal);
         for (std::size_t i = 0; i < direction.size(); ++i) {
             progress.check();
             const HalfEdge h = segment.half_edges[i];
@@ -223,8 +246,9 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
     SeamShares result;
     result.guided = total > 0.0 ? guided / total : 1.0;
     if (plane)
-        result.mirrored = mirrored_share(sample_seams(mesh, seam, sample_distance * diagonal),
-                                         *plane, near_image * diagonal, progress);
+        result.mirrored =
+            mirrored_share(sample_seams(mesh, seam, tuning.near_image / 4.0 * diagonal), *plane,
+                           tuning.near_image * diagonal, progress);
     return result;
 }
 

@@ -1,11 +1,12 @@
-// Where seams look natural: along the body, on creases and where limbs begin.
+// Where seams look natural: along the body, on creases and where limbs begin. Edges have low
+// weights there.
 #pragma once
 
 #include <optional>
 
 #include "devseg/methods/plush/seam_network.h"
-#include "devseg/methods/plush/skeleton.h"
-#include "devseg/methods/plush/symmetry.h"
+#include "devseg/methods/plush/surface_fields.h"
+#include "devseg/methods/plush/working_surface.h"
 
 namespace devseg::plush {
 
@@ -22,6 +23,30 @@ std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress);
 /// direction, on creases and in concave places; 1 across smooth limbs. `across`: 1 − |cos| of the
 /// angle to the skeleton, times how much its bones agree.
 double straying(double across, double bend);
+
+/// Exponents of the three terms of an edge's weight, no unit.
+struct SeamWeightOptions {
+    double geodesic = 0.3;  // α
+    double skeleton = 0.3;  // β
+    double curvature = 0.8; // γ
+};
+
+/// w = w_g^α w_s^β w_c^γ for each half-edge (3 #F): w_g the length over the longest edge, w_s low
+/// along the skeleton, w_c low where the mean curvature (#V) is high. 0 < w ≤ 1. Without a skeleton
+/// w_s is 1. Beyond the paper, w is several times lower where seams look natural, which `straying`
+/// tells.
+struct SeamWeights {
+    std::vector<double> weight; // 3 #F
+    std::vector<double> stray;  // 3 #F, 0 … 1
+};
+SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
+                         const std::vector<double>& curvature, const Skeleton& skeleton,
+                         const BoneWeights& bones, const Progress& progress);
+
+/// Of a cost, of which a share goes where seams look natural.
+inline double natural_factor(double share, double stray) {
+    return 1.0 - share + share * stray;
+}
 
 /// What seams follow: bones, or none, and the borders of limbs.
 struct SeamGuides {

@@ -6,10 +6,6 @@ namespace devseg::plush {
 
 namespace {
 
-bool is_hard_edge(const SeamMarks& hard, HalfEdge h) {
-    return !hard.empty() && hard[h] != 0;
-}
-
 class SegmentWalker {
 public:
     SegmentWalker(const Mesh& mesh, const SeamMarks& seam, const SeamMarks& hard)
@@ -26,7 +22,7 @@ public:
         }
         for (std::size_t v = 0; v < degree.size(); ++v)
             if (degree[v] != 2 ||
-                is_hard_edge(hard, leaving_[v][0]) != is_hard_edge(hard, leaving_[v][1]))
+                is_marked(hard, leaving_[v][0]) != is_marked(hard, leaving_[v][1]))
                 is_end_[v] = 1;
     }
 
@@ -35,7 +31,7 @@ public:
 
     SeamSegment walk(HalfEdge h) {
         SeamSegment segment;
-        segment.is_hard = is_hard_edge(hard_, h);
+        segment.is_hard = is_marked(hard_, h);
         segment.is_loop = !starts_at_end(h);
         while (h >= 0 && done_[h] == 0) {
             done_[h] = done_[mesh_.twin[h]] = 1;
@@ -66,6 +62,26 @@ void mark(const Mesh& mesh, HalfEdge half_edge, std::uint8_t value, SeamMarks& s
     seam[half_edge] = seam[mesh.twin[half_edge]] = value;
 }
 
+void mark(const Mesh& mesh, const std::vector<Index>& line, std::uint8_t value, SeamMarks& seam) {
+    for (const HalfEdge h : line)
+        mark(mesh, h, value, seam);
+}
+
+std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam) {
+    std::vector<std::uint8_t> on_border(mesh.points.size(), 0);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (is_border(mesh, seam, h))
+            on_border[mesh.origin(h)] = on_border[mesh.target(h)] = 1;
+    return on_border;
+}
+
+double length_of(const Mesh& mesh, const std::vector<Index>& line) {
+    double length = 0.0;
+    for (const HalfEdge h : line)
+        length += mesh.edge_length(h);
+    return length;
+}
+
 std::vector<SeamSegment> find_segments(const Mesh& mesh, const SeamMarks& seam,
                                        const SeamMarks& hard, const std::vector<double>& weight) {
     SegmentWalker walker(mesh, seam, hard);
@@ -76,10 +92,9 @@ std::vector<SeamSegment> find_segments(const Mesh& mesh, const SeamMarks& seam,
                 (loops || walker.starts_at_end(h)))
                 segments.push_back(walker.walk(h));
     for (SeamSegment& segment : segments) {
-        for (const HalfEdge h : segment.half_edges) {
-            segment.length += mesh.edge_length(h);
-            segment.weight += weight[h];
-        }
+        segment.length = length_of(mesh, segment.half_edges);
+        for (const HalfEdge h : segment.half_edges)
+            segment.weight += weight.empty() ? 0.0 : weight[h];
         segment.weight /= static_cast<double>(segment.half_edges.size());
     }
     return segments;
@@ -108,15 +123,32 @@ std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& se
         for (std::size_t k = 0; k < patch.size(); ++k)
             for (const HalfEdge h : half_edges_of(patch[k])) {
                 const HalfEdge twin = mesh.twin[h];
-                if (twin >= 0 && seam[h] == 0 && seen[twin / 3] == 0) {
-                    seen[twin / 3] = 1;
-                    patch.push_back(twin / 3);
+                if (twin >= 0 && seam[h] == 0 && seen[face_of(twin)] == 0) {
+                    seen[face_of(twin)] = 1;
+                    patch.push_back(face_of(twin));
                 }
             }
         std::sort(patch.begin(), patch.end());
         patches.push_back(std::move(patch));
     }
     return patches;
+}
+
+std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& seam) {
+    const mesh::FaceComponents patches = find_patches(mesh, seam);
+    std::vector<std::vector<Index>> faces(at(patches.count));
+    for (const Face f : mesh.all_faces())
+        faces[patches.label[f]].push_back(f);
+    return faces;
+}
+
+std::vector<std::vector<Index>> patches_beside(const Mesh& mesh, const SeamMarks& seam,
+                                               const std::vector<std::vector<Index>>& lines) {
+    std::vector<Index> start;
+    for (const std::vector<Index>& line : lines)
+        for (const HalfEdge h : line)
+            start.insert(start.end(), {face_of(h), face_of(mesh.twin[h])});
+    return patches_of(mesh, seam, start);
 }
 
 mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam) {

@@ -12,6 +12,21 @@ namespace devseg::plush {
 using SeamMarks = std::vector<std::uint8_t>;
 
 void mark(const Mesh& mesh, HalfEdge half_edge, std::uint8_t value, SeamMarks& seam);
+void mark(const Mesh& mesh, const std::vector<Index>& line, std::uint8_t value, SeamMarks& seam);
+
+/// Of marks that may be empty.
+inline bool is_marked(const SeamMarks& marks, HalfEdge h) {
+    return !marks.empty() && marks[h] != 0;
+}
+/// Whether patches end at the edge: a seam, or the mesh's boundary.
+inline bool is_border(const Mesh& mesh, const SeamMarks& seam, HalfEdge h) {
+    return seam[h] != 0 || mesh.twin[h] < 0;
+}
+/// 1 for the vertices (#V) on the borders of patches.
+std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam);
+
+/// Of half-edges, internal units.
+double length_of(const Mesh& mesh, const std::vector<Index>& line);
 
 /// A line of seam edges from one end to the next. Ends are the vertices where not exactly two seam
 /// edges meet, those on the mesh's boundary, and where material borders begin.
@@ -24,9 +39,10 @@ struct SeamSegment {
 };
 
 /// All segments, in the order of their lowest half-edge. `hard` is 3 #F or empty; `weight` is the
-/// weight of each half-edge (3 #F, twins agree).
+/// weight of each half-edge (3 #F, twins agree), or empty: 0.
 std::vector<SeamSegment> find_segments(const Mesh& mesh, const SeamMarks& seam,
-                                       const SeamMarks& hard, const std::vector<double>& weight);
+                                       const SeamMarks& hard = {},
+                                       const std::vector<double>& weight = {});
 
 /// Seam edges at each vertex, #V; the mesh's own boundary edges count too.
 std::vector<Index> seam_degrees(const Mesh& mesh, const SeamMarks& seam);
@@ -34,6 +50,11 @@ std::vector<Index> seam_degrees(const Mesh& mesh, const SeamMarks& seam);
 /// The patches that hold the given faces, each with its faces in ascending order.
 std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& seam,
                                            const std::vector<Index>& faces);
+/// All patches, in the order of their labels.
+std::vector<std::vector<Index>> patches_of(const Mesh& mesh, const SeamMarks& seam);
+/// The patches on both sides of lines of half-edges.
+std::vector<std::vector<Index>> patches_beside(const Mesh& mesh, const SeamMarks& seam,
+                                               const std::vector<std::vector<Index>>& lines);
 
 /// The labels of the patches, #F: the components of the faces over edges that are no seam.
 mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam);

@@ -5,45 +5,9 @@
 #include <utility>
 
 #include "devseg/graph/shortest_paths.h"
-#include "devseg/methods/plush/seam_guides.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
-
-namespace {
-constexpr double least_weight = 1e-4; // so that paths stay short where a term vanishes
-constexpr double stray_share = 0.95;  // of a weight: what goes where seams look natural
-constexpr double shared = 0.25;       // factor of edges that are seams already
-} // namespace
-
-SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
-                         const std::vector<double>& curvature, const Skeleton& skeleton,
-                         const BoneWeights& bones, const Progress& progress) {
-    const std::vector<EdgeShape> shapes = edge_shapes(mesh, progress);
-    double longest = 0.0;
-    for (const HalfEdge h : mesh.all_half_edges())
-        longest = std::max(longest, mesh.edge_length(h));
-    SeamWeights result;
-    for (const HalfEdge h : mesh.all_half_edges()) {
-        const Index a = std::min(mesh.origin(h), mesh.target(h));
-        const Index b = std::max(mesh.origin(h), mesh.target(h));
-        double along = 1.0;
-        if (!skeleton.empty()) {
-            const Vec3& normal = shapes[h].normal;
-            const SkeletonDirection bone = skeleton_direction(skeleton, bones, a, b, normal);
-            const Vec3 edge = mesh.points[b] - mesh.points[a];
-            const Vec3 lying = (edge - edge.dot(normal) * normal).stableNormalized();
-            along = 1.0 - bone.agreement * std::abs(lying.dot(bone.direction));
-        }
-        const double curved = 1.0 / (1.0 + std::abs(curvature[a]) + std::abs(curvature[b]));
-        result.stray.push_back(straying(along, shapes[h].bend));
-        result.weight.push_back(
-            (1.0 - stray_share + stray_share * result.stray.back()) *
-            std::max(least_weight, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
-                                       std::pow(std::max(0.0, along), options.skeleton) *
-                                       std::pow(curved, options.curvature)));
-    }
-    return result;
-}
 
 PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
                         const std::vector<Index>& sources, const Progress& progress,
@@ -81,7 +45,7 @@ void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
     std::vector<double> cost = weight;
     for (const HalfEdge h : mesh.all_half_edges())
         if (seam[h] != 0)
-            cost[h] *= shared;
+            cost[h] *= tuning.shared_seam;
     for (std::size_t i = 0; i < ends.size(); ++i) {
         progress.update(static_cast<double>(i) / static_cast<double>(ends.size()));
         const PathTree tree = shortest_paths(graph, cost, {ends[i]}, progress);
@@ -90,7 +54,7 @@ void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
                 if (seam[h] == 0)
                     for (const HalfEdge side : {h, mesh.twin[h]})
                         if (side >= 0)
-                            cost[side] = shared * weight[side];
+                            cost[side] = tuning.shared_seam * weight[side];
                 mark(mesh, h, 1, seam);
             }
     }

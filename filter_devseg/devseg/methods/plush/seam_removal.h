@@ -2,13 +2,14 @@
 #pragma once
 
 #include "devseg/methods/plush/patch_trial.h"
-#include "devseg/methods/plush/seam_network.h"
+#include "devseg/methods/plush/seam_paths.h"
 
 namespace devseg::plush {
 
 /// What seams are judged by.
 struct SeamSetting {
     const WorkingSurface& surface;
+    const VertexGraph& graph;          // of the surface
     const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
     const std::vector<double>& weight; // 3 #F
     PatchTester& tester;

@@ -4,17 +4,12 @@
 #include <array>
 
 #include "devseg/base/parallel.h"
-#include "devseg/methods/plush/patch_trial.h"
+#include "devseg/methods/plush/seam_guides.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
-
-constexpr int most_rounds = 12;   // of taking teeth away
-constexpr int corridor_rings = 3; // of vertices beside a segment
-constexpr double worth = 0.97;    // of its cost: what a new path must save
-constexpr double natural_share =
-    0.5; // of the seam weight in the cost of an edge, beside its length
 
 // An open part of a segment, which is made straight between its ends.
 struct Line {
@@ -24,12 +19,11 @@ struct Line {
 
 class Straightener {
 public:
-    Straightener(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
-                 Progress& progress)
-        : s_(setting), mesh_(setting.mesh()), graph_(graph), seam_(seam), progress_(progress),
-          cost_(seam.size()), side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
+    Straightener(const SeamSetting& setting, SeamMarks& seam, Progress& progress)
+        : s_(setting), mesh_(setting.mesh()), seam_(seam), progress_(progress), cost_(seam.size()),
+          side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
         for (const HalfEdge h : mesh_.all_half_edges()) {
-            cost_[h] = mesh_.edge_length(h) * (1.0 - natural_share + natural_share * s_.weight[h]);
+            cost_[h] = mesh_.edge_length(h) * natural_factor(tuning.natural_straight, s_.weight[h]);
             side_[mesh_.origin(h)] = s_.surface.is_symmetric() && s_.surface.image[h] < h;
             on_plane_[mesh_.origin(h)] = s_.surface.starts_on_plane(h) ? 1 : 0;
         }
@@ -108,12 +102,13 @@ private:
                 }
         const std::uint8_t side =
             s_.surface.is_symmetric() && s_.surface.image[line.front()] < line.front();
-        for (int k = 0; k < corridor_rings; ++k) {
+        for (int k = 0; k < tuning.corridor_rings; ++k) {
             std::vector<Index> next;
             for (const Vertex v : ring)
-                for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
-                    const Index u = graph_.vertex[i];
-                    if (near[u] != 0 || is_on_seam(u) || (side_[u] != side && on_plane_[u] == 0))
+                for (Index i = s_.graph.begin[v]; i < s_.graph.begin[at(v) + 1]; ++i) {
+                    const Index u = s_.graph.vertex[i];
+                    if (near[u] != 0 || is_on_seam(u, seam_) ||
+                        (side_[u] != side && on_plane_[u] == 0))
                         continue;
                     near[u] = 1;
                     next.push_back(u);
@@ -138,30 +133,20 @@ private:
             return {};
         const std::vector<std::uint8_t> near = corridor(line);
         // Paths end where they reach the plane.
-        const PathTree tree = shortest_paths(graph_, cost_, {start}, progress_, near, on_plane_);
+        const PathTree tree = shortest_paths(s_.graph, cost_, {start}, progress_, near, on_plane_);
         for (std::size_t v = 0; v < near.size() && whole.may_slide; ++v)
             if (on_plane_[v] != 0 && near[v] != 0 && tree.distance[v] < tree.distance[end])
                 end = static_cast<Index>(v);
-        if (!(tree.distance[end] < worth * before))
+        if (!(tree.distance[end] < tuning.path_worth * before))
             return {};
         return trace_path(mesh_, tree, end);
     }
 
-    bool is_on_seam(Vertex v) const {
-        for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
-            const HalfEdge h = graph_.half_edge[i];
-            if (seam_[h] != 0 || mesh_.twin[h] < 0)
+    bool is_on_seam(Vertex v, const SeamMarks& seam) const {
+        for (Index i = s_.graph.begin[v]; i < s_.graph.begin[at(v) + 1]; ++i)
+            if (is_border(mesh_, seam, s_.graph.half_edge[i]))
                 return true;
-        }
         return false;
-    }
-
-    void mark_both(const std::vector<Index>& line, std::uint8_t value, SeamMarks& marks) const {
-        for (const HalfEdge h : line) {
-            mark(mesh_, h, value, marks);
-            if (s_.surface.is_symmetric())
-                mark(mesh_, s_.surface.image[h], value, marks);
-        }
     }
 
     // Whether the new path meets no seam but at its ends.
@@ -169,23 +154,20 @@ private:
                  const SeamMarks& without) const {
         for (const HalfEdge h : path)
             for (const Vertex v : {mesh_.origin(h), mesh_.target(h)}) {
-                if (v == mesh_.origin(line.front()) || v == mesh_.target(line.back()))
-                    continue;
-                for (Index i = graph_.begin[v]; i < graph_.begin[at(v) + 1]; ++i) {
-                    const Index e = graph_.half_edge[i];
-                    if (without[e] != 0 || mesh_.twin[e] < 0)
-                        return false;
-                }
+                const bool is_end =
+                    v == mesh_.origin(line.front()) || v == mesh_.target(line.back());
+                if (!is_end && is_on_seam(v, without))
+                    return false;
             }
         return true;
     }
 
     bool replace(const std::vector<Index>& line, const std::vector<Index>& path) {
         SeamMarks marks = seam_;
-        mark_both(line, 0, marks);
+        mark_both(s_.surface, line, 0, marks);
         if (!is_free(line, path, marks))
             return false;
-        mark_both(path, 1, marks);
+        mark_both(s_.surface, path, 1, marks);
         if (!keeps_patches(line, path, marks))
             return false;
         seam_ = std::move(marks);
@@ -194,13 +176,8 @@ private:
 
     bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
                        const SeamMarks& marks) const {
-        // The patches beside the old and the new line, as they would be.
-        std::vector<Index> start;
-        for (const std::vector<Index>* edges : {&line, &path})
-            for (const HalfEdge h : *edges)
-                for (const HalfEdge side : {h, mesh_.twin[h]})
-                    start.push_back(side / 3);
-        const std::vector<std::vector<Index>> parts = patches_of(mesh_, marks, start);
+        // As they would be.
+        const auto parts = patches_beside(mesh_, marks, {line, path});
         std::vector<std::uint8_t> fits(parts.size(), 0);
         parallel_for(
             static_cast<int>(parts.size()),
@@ -214,7 +191,6 @@ private:
 
     const SeamSetting& s_;
     const Mesh& mesh_;
-    const VertexGraph& graph_;
     SeamMarks& seam_;
     Progress& progress_;
     std::vector<double> cost_;           // 3 #F
@@ -225,7 +201,7 @@ private:
 } // namespace
 
 void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < tuning.tooth_rounds; ++round) {
         bool changed = false;
         for (const Face f : mesh.all_faces()) {
             std::array<Index, 3> other{-1, -1, -1};
@@ -248,9 +224,8 @@ void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
     }
 }
 
-Index straighten_seams(const SeamSetting& setting, const VertexGraph& graph, SeamMarks& seam,
-                       Progress& progress) {
-    return Straightener(setting, graph, seam, progress).run();
+Index straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+    return Straightener(setting, seam, progress).run();
 }
 
 } // namespace devseg::plush

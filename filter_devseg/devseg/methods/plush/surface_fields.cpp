@@ -8,23 +8,20 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
 
-constexpr double shift = 1e-8;      // of the mean diagonal: constants are in the Laplacian's kernel
-constexpr double least_size = 1e-9; // internal units: faces whose corners coincide need a shape
-constexpr double smoothing_edges = 2.0; // radius of the curvature's smoothing, in mean edges
-
 flatten::RestTriangle rest_of(const Mesh& mesh, Face f) {
     return flatten::make_rest_triangle(
         {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
-        least_size);
+        tuning.same_place);
 }
 
 Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::VectorXd& rhs) {
-    const double amount = shift * matrix.diagonal().sum() /
+    const double amount = tuning.kernel_shift * matrix.diagonal().sum() /
                           static_cast<double>(std::max<Eigen::Index>(1, rhs.size()));
     for (Eigen::Index v = 0; v < rhs.size(); ++v)
         matrix.coeffRef(v, v) += amount;
@@ -78,11 +75,17 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     return matrix;
 }
 
-double mean_edge_length(const Mesh& mesh) {
-    double sum = 0.0;
+std::vector<double> edge_lengths(const Mesh& mesh) {
+    std::vector<double> lengths;
     for (const HalfEdge h : mesh.all_half_edges())
-        sum += mesh.edge_length(h);
-    return sum / std::max<Index>(1, mesh.half_edge_count());
+        lengths.push_back(mesh.edge_length(h));
+    return lengths;
+}
+
+double mean_edge_length(const Mesh& mesh) {
+    const std::vector<double> lengths = edge_lengths(mesh);
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+           std::max<Index>(1, mesh.half_edge_count());
 }
 
 std::vector<double> vertex_areas(const Mesh& mesh) {
@@ -168,7 +171,7 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     }
     integral *= 0.5;
     Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
-    const double radius = smoothing_edges * mean_edge_length(mesh);
+    const double radius = tuning.curvature_radius * mean_edge_length(mesh);
     matrix *= radius * radius;
     for (const Vertex v : mesh.all_vertices())
         matrix.coeffRef(v, v) += areas[v];
@@ -178,6 +181,83 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     for (std::size_t v = 0; v < curvature.size(); ++v)
         curvature[v] = sphere * smooth[static_cast<Eigen::Index>(v)];
     return curvature;
+}
+
+BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progress& progress) {
+    const std::vector<double> areas = vertex_areas(mesh);
+    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
+    std::vector<Index> nearest(mesh.points.size(), 0);
+    std::vector<double> heat(mesh.points.size());
+    const double floor = 1e-6 * mesh.total_area;
+    for (const Vertex v : mesh.all_vertices()) {
+        double least = infinite;
+        for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+            const auto& [i, j] = skeleton.bones[b];
+            const double d =
+                squared_distance(mesh.points[v], skeleton.joints[i], skeleton.joints[j]);
+            if (d < least) {
+                least = d;
+                nearest[v] = static_cast<Index>(b);
+            }
+        }
+        heat[v] = tuning.conductance * std::max(areas[v], 1e-12 * mesh.total_area) /
+                  std::max(least, floor);
+        matrix.coeffRef(v, v) += heat[v];
+    }
+    progress.check();
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+    BoneWeights weights(mesh.points.size());
+    if (solver.info() != Eigen::Success)
+        throw NumericalFailure("expected a solvable heat equation on the surface, found a singular "
+                               "one; remesh or clean the mesh first");
+    for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+        progress.check();
+        Eigen::VectorXd source = Eigen::VectorXd::Zero(mesh.vertex_count());
+        for (const Vertex v : mesh.all_vertices())
+            if (nearest[v] == static_cast<Index>(b))
+                source[v] = heat[v];
+        const Eigen::VectorXd share = solver.solve(source);
+        for (const Vertex v : mesh.all_vertices())
+            if (share[v] > tuning.least_bone)
+                weights[v].emplace_back(static_cast<Index>(b), share[v]);
+    }
+    for (auto& row : weights) {
+        std::stable_sort(row.begin(), row.end(),
+                         [](const auto& a, const auto& b) { return a.second > b.second; });
+        row.resize(std::min(row.size(), tuning.bones_at_vertex));
+        double sum = 0.0;
+        for (const auto& entry : row)
+            sum += entry.second;
+        for (auto& entry : row)
+            entry.second /= sum;
+    }
+    return weights;
+}
+
+SkeletonDirection skeleton_direction(const Skeleton& skeleton, const BoneWeights& weights, Index a,
+                                     Index b, const Vec3& normal) {
+    const Vec3 u = normal.unitOrthogonal();
+    const Vec3 v = normal.cross(u);
+    double uu = 0.0;
+    double uv = 0.0;
+    double vv = 0.0;
+    for (const Vertex vertex : {a, b})
+        for (const auto& [bone, weight] : weights[vertex]) {
+            const auto& [i, j] = skeleton.bones[bone];
+            const Vec3 along = (skeleton.joints[j] - skeleton.joints[i]).normalized();
+            uu += 0.5 * weight * along.dot(u) * along.dot(u);
+            uv += 0.5 * weight * along.dot(u) * along.dot(v);
+            vv += 0.5 * weight * along.dot(v) * along.dot(v);
+        }
+    SkeletonDirection result;
+    const double difference = std::hypot(uu - vv, 2.0 * uv);
+    if (!(difference > 0.0))
+        return result;
+    const double angle = 0.5 * std::atan2(2.0 * uv, uu - vv);
+    result.direction = std::cos(angle) * u + std::sin(angle) * v;
+    const double lies = std::clamp((uu + vv) / tuning.lying, 0.0, 1.0);
+    result.agreement = lies * difference / (uu + vv);
+    return result;
 }
 
 } // namespace devseg::plush

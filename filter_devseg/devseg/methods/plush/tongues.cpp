@@ -5,13 +5,11 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/graph/shortest_paths.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
-
-constexpr double slack = 1.3;       // paths over faces are longer than straight lines
-constexpr double least_reach = 0.8; // of half the width: how far a tongue sticks out at least
 
 struct Tongue {
     std::vector<Index> faces;
@@ -67,17 +65,14 @@ private:
 
     // What is left of the patches when disks of the radius have rolled over them, in components.
     std::vector<Tongue> find_tongues() const {
-        std::vector<std::uint8_t> on_seam(mesh_.points.size(), 0);
-        for (const HalfEdge h : mesh_.all_half_edges())
-            if (seam_[h] != 0 || mesh_.twin[h] < 0)
-                on_seam[mesh_.origin(h)] = on_seam[mesh_.target(h)] = 1;
+        const std::vector<std::uint8_t> on_seam = border_vertices(mesh_, seam_);
         const std::vector<double> to_seam = distances_from([&](Face f) {
             const Triangle& t = mesh_.faces[f];
             return std::any_of(t.begin(), t.end(), [&](Vertex v) { return on_seam[v] != 0; });
         });
         const std::vector<double> to_body =
             distances_from([&](Face f) { return to_seam[f] > radius_; });
-        const auto is_thin = [&](Face f) { return to_body[f] > slack * radius_; };
+        const auto is_thin = [&](Face f) { return to_body[f] > tuning.tongue_slack * radius_; };
         const mesh::FaceComponents parts = mesh::face_components(mesh_, [&](HalfEdge h) {
             return seam_[h] == 0 && is_thin(h / 3) && is_thin(mesh_.twin[h] / 3);
         });
@@ -85,12 +80,12 @@ private:
         for (const Face f : mesh_.all_faces()) {
             Tongue& tongue = tongues[parts.label[f]];
             tongue.faces.push_back(f);
-            tongue.reach = std::max(tongue.reach, to_body[f] - slack * radius_);
+            tongue.reach = std::max(tongue.reach, to_body[f] - tuning.tongue_slack * radius_);
         }
         // Patches that are thin everywhere have no body.
         tongues.erase(std::remove_if(tongues.begin(), tongues.end(),
                                      [&](const Tongue& tongue) {
-                                         return tongue.reach < least_reach * radius_ ||
+                                         return tongue.reach < tuning.tongue_reach * radius_ ||
                                                 tongue.reach == infinite;
                                      }),
                       tongues.end());
@@ -115,7 +110,7 @@ private:
             return;
         // Who lies on the other side: −1 the tongue's own body, −2 nobody.
         const auto beyond = [&](HalfEdge h) -> Index {
-            if (mesh_.twin[h] < 0 || (!s_.hard.empty() && s_.hard[h] != 0))
+            if (mesh_.twin[h] < 0 || is_marked(s_.hard, h))
                 return -2;
             return seam_[h] == 0 ? -1 : patches.label[mesh_.twin[h] / 3];
         };
@@ -154,10 +149,8 @@ private:
     }
 
     void apply_to(const Change& change, SeamMarks& marks) const {
-        for (const HalfEdge h : change.closed)
-            mark(mesh_, h, 1, marks);
-        for (const HalfEdge h : change.opened)
-            mark(mesh_, h, 0, marks);
+        mark(mesh_, change.closed, 1, marks);
+        mark(mesh_, change.opened, 0, marks);
     }
 
     // The patches of both sides, with other marks.
@@ -181,8 +174,7 @@ private:
             if (!is_free)
                 continue;
             for (const auto* edges : {&change.opened, &change.closed})
-                for (const HalfEdge h : *edges)
-                    mark(mesh_, h, 1, is_used);
+                mark(mesh_, *edges, 1, is_used);
             group.push_back(&change);
         }
         while (!group.empty()) {

@@ -2,14 +2,29 @@
 // is one.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "devseg/base/progress.h"
-#include "devseg/mesh/mesh.h"
-#include "devseg/methods/plush/symmetry.h"
+#include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
+
+struct MirrorPlane {
+    Vec3 normal = Vec3::UnitX(); // unit
+    double offset = 0.0;         // of the plane's points along the normal, internal units
+    double deviation = 0.0;      // distance of the mirror image that 9 of 10 points keep / diagonal
+
+    double height(const Vec3& p) const { return normal.dot(p) - offset; }
+    Vec3 reflect(const Vec3& p) const { return p - 2.0 * height(p) * normal; }
+};
+
+/// The best plane that is found from the principal axes and halfway between them, by fitting to
+/// the mirror image; nothing where more than a tenth of the surface is farther from its mirror
+/// image than `tolerance` times the diagonal.
+std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
+                                             Progress& progress);
 
 /// With a mirror plane, faces n … 2n − 1 are the mirror images of faces 0 … n − 1, in their order,
 /// and edges along the plane divide the two.
@@ -18,7 +33,7 @@ struct WorkingSurface {
     std::vector<Index> image; // 3 #F: the half-edge on the mirrored edge, an involution; or empty
 
     bool is_symmetric() const { return !image.empty(); }
-    Index face_image(Face f) const { return image[3 * f] / 3; }
+    Face face_image(Face f) const { return face_of(image[half_edge_of(f, 0)]); }
     /// Whether the origin of the half-edge is its own mirror image.
     bool starts_on_plane(HalfEdge h) const {
         return is_symmetric() && mesh.target(image[h]) == mesh.origin(h);
@@ -37,6 +52,10 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
                                                        Index most_faces, const Progress& progress);
 
 /// Marks (3 #F) of the first half on both halves.
-void mirror_marks(const WorkingSurface& surface, std::vector<std::uint8_t>& marks);
+void mirror_marks(const WorkingSurface& surface, SeamMarks& marks);
+
+/// Marks a line of half-edges and its mirror image.
+void mark_both(const WorkingSurface& surface, const std::vector<Index>& line, std::uint8_t value,
+               SeamMarks& marks);
 
 } // namespace devseg::plush

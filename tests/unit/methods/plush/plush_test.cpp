@@ -10,10 +10,10 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/methods/plush/carry_seams.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/patch_trial.h"
 #include "devseg/methods/plush/seam_smoothing.h"
+#include "devseg/methods/plush/transfer_seams.h"
 #include "devseg/methods/plush/working_surface.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
@@ -235,8 +235,8 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
     const mesh::FaceComponents before = find_patches(coarse, seam);
     Progress progress;
     progress.begin_phase("carrying", 1.0);
-    SeamMarks carried = carry_seams(coarse, seam, fine, build_vertex_graph(fine),
-                                    std::vector<double>(fine.twin.size(), 0.0), progress);
+    SeamMarks carried = transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
+                                       std::vector<double>(fine.twin.size(), 0.0), progress);
     cut_corners(fine, carried);
     EXPECT_EQ(before.count, 2);
     EXPECT_EQ(find_patches(fine, carried).count, before.count);
@@ -330,6 +330,7 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
             std::abs(mesh.points[mesh.target(h)].x() - middle) < 1e-9)
             mark(mesh, h, 1, seam);
     ASSERT_EQ(find_patches(mesh, seam).count, 2);
+    const VertexGraph graph = build_vertex_graph(mesh);
     const SeamMarks hard;
     const std::vector<double> weight(mesh.twin.size(), 1.0);
     PatchTester tester(surface, {0.15, true});
@@ -337,7 +338,7 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
     RemovalOptions options;
     options.most_together = 1.1; // no patch is large
     const Index trials =
-        join_patches({surface, hard, weight, tester, tester}, options, seam, progress);
+        join_patches({surface, graph, hard, weight, tester, tester}, options, seam, progress);
     EXPECT_EQ(trials, 1); // those that were made besides do not count
     EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
 }
@@ -492,7 +493,8 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     // Flat patches need no seam at all.
     const WorkingSurface surface{mesh, {}};
     PatchTester tester(surface, {});
-    const SeamSetting setting{surface, {}, weight, tester, tester, 100};
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const SeamSetting setting{surface, graph, {}, weight, tester, tester, 100};
     Progress progress;
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);

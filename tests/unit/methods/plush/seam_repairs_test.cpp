@@ -7,9 +7,8 @@
 #include "devseg/methods/plush/acute_corners.h"
 #include "devseg/methods/plush/mend_patches.h"
 #include "devseg/methods/plush/plush_seams.h"
-#include "devseg/methods/plush/remnants.h"
-#include "devseg/methods/plush/seam_curves.h"
 #include "devseg/methods/plush/tongues.h"
+#include "devseg/methods/plush/transfer_seams.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -32,13 +31,6 @@ double seam_length(const Mesh& mesh, const SeamMarks& seam) {
     for (const HalfEdge h : mesh.all_half_edges())
         length += seam[h] != 0 ? 0.5 * mesh.edge_length(h) : 0.0;
     return length;
-}
-
-std::vector<double> lengths(const Mesh& mesh) {
-    std::vector<double> result;
-    for (const HalfEdge h : mesh.all_half_edges())
-        result.push_back(mesh.edge_length(h));
-    return result;
 }
 
 mesh::RawMesh moved(mesh::RawMesh raw, double scale) {
@@ -121,7 +113,7 @@ TEST(MendPatch, PatchesThatFitStay) {
     std::vector<Index> faces;
     for (const Face f : mesh.all_faces())
         faces.push_back(f);
-    const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), lengths(mesh), faces,
+    const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), edge_lengths(mesh), faces,
                                  SeamMarks(mesh.twin.size(), 0), {0.1, false}, Progress());
     ASSERT_TRUE(cuts.has_value());
     EXPECT_TRUE(cuts->empty());
@@ -137,8 +129,8 @@ std::size_t mended_patches(const mesh::RawMesh& raw, double max_area_change) {
     const PatchLimits limits{max_area_change, false};
     const Progress progress;
     EXPECT_FALSE(try_patch(mesh, faces, seam, limits, false, progress).accepted);
-    const auto cuts =
-        mend_patch(mesh, build_vertex_graph(mesh), lengths(mesh), faces, seam, limits, progress);
+    const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), edge_lengths(mesh), faces, seam,
+                                 limits, progress);
     if (!cuts)
         return 0;
     for (const Index h : *cuts)
@@ -168,9 +160,10 @@ struct Trials {
 
     const Mesh& mesh() const { return surface.mesh; }
     double unit() const { return 1.0 / mesh().unit_length; }
-    SeamSetting setting() { return {surface, hard, weight, tester, tester}; }
+    SeamSetting setting() { return {surface, graph, hard, weight, tester, tester}; }
 
     WorkingSurface surface;
+    VertexGraph graph = build_vertex_graph(surface.mesh);
     SeamMarks hard;
     std::vector<double> weight = std::vector<double>(surface.mesh.twin.size(), 1.0);
     PatchTester tester{surface, {0.15, false}};
@@ -252,7 +245,7 @@ TEST(AcuteCorners, ShortDartsBesideASeamGo) {
     for (const Vec3& p : mesh.points)
         may_enter.push_back(p.y() > 1e-9 ? 1 : 0);
     may_enter[root] = 1;
-    const PathTree tree = shortest_paths(graph, lengths(mesh), {root}, Progress(), may_enter);
+    const PathTree tree = shortest_paths(graph, edge_lengths(mesh), {root}, Progress(), may_enter);
     SeamMarks seam = halves;
     for (const Index h : trace_path(mesh, tree, vertex_at(0.08, 0.02)))
         mark(mesh, h, 1, seam);
@@ -287,15 +280,12 @@ TEST(Remnants, GoToTheirNeighbourWithoutTheirDarts) {
     ASSERT_EQ(std::count(degree.begin(), degree.end(), 1), 2);
     const double before = seam_length(mesh, seam);
     Progress progress;
-    EXPECT_GE(absorb_remnants(cone.setting(), build_vertex_graph(mesh), lengths(mesh),
-                              {0.15, false}, 0.02, seam, progress),
-              1);
+    EXPECT_GE(absorb_remnants(cone.setting(), edge_lengths(mesh), 0.02, seam, progress), 1);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);
     EXPECT_LT(seam_length(mesh, seam), before);
     // What is larger stays.
     SeamMarks large = island;
-    absorb_remnants(cone.setting(), build_vertex_graph(mesh), lengths(mesh), {0.15, false}, 1e-4,
-                    large, progress);
+    absorb_remnants(cone.setting(), edge_lengths(mesh), 1e-4, large, progress);
     EXPECT_EQ(large, island);
 }
 

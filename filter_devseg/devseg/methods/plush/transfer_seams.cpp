@@ -1,45 +1,49 @@
-#include "devseg/methods/plush/carry_seams.h"
+#include "devseg/methods/plush/transfer_seams.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "devseg/mesh/surface_search.h"
-#include "devseg/methods/plush/seam_curves.h"
+#include "devseg/methods/plush/seam_guides.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
 
-constexpr double reach = 2.5;   // mean edges of the first surface: how far paths may leave the line
-constexpr double leaning = 2.0; // mean edges of the second one: a path so far away costs double
-constexpr double stray_share = 0.4; // of an edge's cost: what goes where seams look natural
-constexpr double least_leaning =
-    0.1; // of that, where the second surface is no finer than the first
-constexpr std::size_t part_edges = 6; // of a segment: longer paths could take a short cut
+// The vertices that pull at each vertex of a seam; none at those that stay.
+std::vector<std::vector<Index>> find_threads(const Mesh& mesh, const SeamMarks& seam) {
+    const std::vector<Index> degree = seam_degrees(mesh, seam);
+    const std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh);
+    std::vector<std::vector<Index>> threads(mesh.points.size());
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vertex v = mesh.origin(h);
+        if (seam[h] == 0 || degree[v] < 2 || on_border[v] != 0)
+            continue;
+        threads[v].push_back(mesh.target(h));
+    }
+    return threads;
+}
 
 double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
     double least = infinite;
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-        const Vec3 edge = line[i + 1] - line[i];
-        const double t =
-            std::clamp((p - line[i]).dot(edge) / std::max(edge.squaredNorm(), 1e-300), 0.0, 1.0);
-        least = std::min(least, (line[i] + t * edge - p).squaredNorm());
-    }
+    for (std::size_t i = 0; i + 1 < line.size(); ++i)
+        least = std::min(least, squared_distance(p, line[i], line[i + 1]));
     return std::sqrt(least);
 }
 
-class Carrier {
+class SeamTransfer {
 public:
-    Carrier(const Mesh& from, const Mesh& to, const VertexGraph& graph,
-            const std::vector<double>& stray)
+    SeamTransfer(const Mesh& from, const Mesh& to, const VertexGraph& graph,
+                 const std::vector<double>& stray)
         : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
           normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
-          may_border_(mesh::boundary_vertices(to)), reach_(reach * mean_edge_length(from)),
-          leaning_(leaning * mean_edge_length(to) *
+          may_border_(mesh::boundary_vertices(to)),
+          reach_(tuning.strip_width * mean_edge_length(from)),
+          leaning_(tuning.leaning * mean_edge_length(to) *
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
-                              least_leaning, 1.0)),
+                              tuning.least_leaning, 1.0)),
           seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
         for (const HalfEdge h : to.all_half_edges())
             cost_.push_back(cost_of(h, reach_));
@@ -47,8 +51,7 @@ public:
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
         points_ = smooth_seams(from_, seam);
-        const std::vector<double> even(seam.size(), 1.0);
-        std::vector<SeamSegment> segments = find_segments(from_, seam, {}, even);
+        std::vector<SeamSegment> segments = find_segments(from_, seam);
         std::stable_sort(
             segments.begin(), segments.end(),
             [](const SeamSegment& a, const SeamSegment& b) { return a.length > b.length; });
@@ -61,7 +64,7 @@ public:
                     taken_[place(v)] = 1;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             progress.update(static_cast<double>(i) / static_cast<double>(lines.size()));
-            carry(lines[i], progress);
+            transfer(lines[i], progress);
         }
         return std::move(seam_);
     }
@@ -71,7 +74,7 @@ private:
     void add_lines(const SeamSegment& segment, std::vector<std::vector<Index>>& lines) const {
         const std::size_t count = segment.half_edges.size();
         const std::size_t least = segment.is_loop ? std::min<std::size_t>(3, count) : 1;
-        const std::size_t parts = std::max(least, count / part_edges);
+        const std::size_t parts = std::max(least, count / tuning.path_edges);
         for (std::size_t part = 0; part < parts; ++part) {
             std::vector<Index> line;
             for (std::size_t k = part * count / parts; k < (part + 1) * count / parts; ++k) {
@@ -92,7 +95,7 @@ private:
         return place_[v];
     }
 
-    void carry(const std::vector<Index>& line, const Progress& progress) {
+    void transfer(const std::vector<Index>& line, const Progress& progress) {
         const Index start = place(line.front());
         const Index end = place(line.back());
         if (start < 0 || end < 0 || start == end)
@@ -119,7 +122,8 @@ private:
 
     double cost_of(HalfEdge h, double away) const {
         const double d = away / leaning_;
-        return to_.edge_length(h) * (1.0 + d * d) * (1.0 - stray_share + stray_share * stray_[h]);
+        return to_.edge_length(h) * (1.0 + d * d) *
+               natural_factor(tuning.natural_transfer, stray_[h]);
     }
 
     // Sets the cost of the edges near the line; returns the vertices there.
@@ -180,10 +184,35 @@ private:
 
 } // namespace
 
-SeamMarks carry_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
-                      const VertexGraph& graph, const std::vector<double>& stray,
-                      Progress& progress) {
-    return Carrier(from, to, graph, stray).run(seam, progress);
+std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
+    const std::vector<std::vector<Index>> threads = find_threads(mesh, seam);
+    const mesh::SurfaceSearch search(mesh);
+    std::vector<Vec3> points = mesh.points;
+    for (int round = 1; round <= tuning.curve_rounds; ++round) {
+        std::vector<Vec3> next = points;
+        for (std::size_t v = 0; v < threads.size(); ++v) {
+            if (threads[v].empty())
+                continue;
+            Vec3 sum = Vec3::Zero();
+            for (const Index u : threads[v])
+                sum += points[u];
+            next[v] = 0.5 * points[v] + 0.5 / static_cast<double>(threads[v].size()) * sum;
+            if (round < tuning.curve_rounds)
+                continue;
+            const Index near = search.vertex(next[v], search.normal(static_cast<Index>(v)),
+                                             [](Index) { return true; });
+            if (near >= 0)
+                next[v] = search.on_faces(next[v], near, [](Index) { return true; }).second;
+        }
+        points = std::move(next);
+    }
+    return points;
+}
+
+SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
+                         const VertexGraph& graph, const std::vector<double>& stray,
+                         Progress& progress) {
+    return SeamTransfer(from, to, graph, stray).run(seam, progress);
 }
 
 void cut_corners(const Mesh& mesh, SeamMarks& seam) {
