@@ -9,6 +9,8 @@
 
 #include <polyclipping/clipper.hpp>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::sheet {
 
 namespace {
@@ -60,7 +62,7 @@ std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceW
 void add_convex_corner(const Vec2& p, const Vec2& n, double in, const Vec2& m, double out,
                        CornerStyle style, Ring& curve) {
     const double cosine = n.dot(m);
-    const double sine = n.x() * m.y() - n.y() * m.x();
+    const double sine = plane::cross(n, m);
     const bool smooth = cosine >= smooth_cosine;
     if (in == out && (smooth || style == CornerStyle::miter) &&
         2.0 / (1.0 + cosine) <= miter_limit * miter_limit) {
@@ -98,7 +100,7 @@ Ring raw_curve(const std::vector<WidePoint>& ring, CornerStyle style) {
         const auto& [p, width] = ring[i];
         const Vec2 n = outward(before.point, p);
         const Vec2 m = outward(p, ring[(i + 1) % ring.size()].point);
-        if (n.x() * m.y() - n.y() * m.x() >= 0.0) {
+        if (plane::cross(n, m) >= 0.0) {
             add_convex_corner(p, n, before.width, m, width, style, curve);
         } else {
             curve.push_back(p + before.width * n);

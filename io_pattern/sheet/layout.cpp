@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devseg/base/errors.h"
+#include "devseg/plane/plane.h"
 #include "sheet/nesting.h"
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
@@ -29,16 +30,6 @@ Eigen::AlignedBox2d box_of(const std::vector<SheetPiece>& pieces) {
     return box;
 }
 
-double area_of(const std::vector<Vec2>& ring) {
-    double twice = 0.0;
-    for (std::size_t i = 2; i < ring.size(); ++i) {
-        const Vec2 p = ring[i - 1] - ring.front();
-        const Vec2 q = ring[i] - ring.front();
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
-    return 0.5 * twice;
-}
-
 // Whether cut lines of different pieces have a point in common, or a piece lies in another.
 bool pieces_touch(const std::vector<SheetPiece>& pieces) {
     const Eigen::AlignedBox2d box = box_of(pieces);
@@ -52,7 +43,7 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
     for (const SheetPiece& outer : pieces)
         for (const SheetPiece& inner : pieces)
             if (&outer != &inner && outer.box().contains(inner.box()) &&
-                is_inside(outer.cut, inner.cut.front().front()))
+                plane::is_inside(outer.cut, inner.cut.front().front()))
                 return true;
     return false;
 }
@@ -84,7 +75,7 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
         all.push_back(i);
-        area += std::abs(area_of(layout.pieces[i].cut.front()));
+        area += std::abs(plane::signed_area(layout.pieces[i].cut.front()));
         widest = std::max(widest, layout.pieces[i].box().sizes().norm());
     }
     NestingOptions nesting;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::sheet {
 
 namespace {
@@ -20,11 +22,11 @@ double reach(const SheetPiece& piece, const Vec2& p, const Vec2& direction, doub
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Vec2 a = ring[i] - p;
             const Vec2 d = ring[(i + 1) % ring.size()] - ring[i];
-            const double across = direction.x() * d.y() - direction.y() * d.x();
+            const double across = plane::cross(direction, d);
             if (across == 0.0)
                 continue;
-            const double t = (a.x() * d.y() - a.y() * d.x()) / across;
-            const double s = (a.x() * direction.y() - a.y() * direction.x()) / across;
+            const double t = plane::cross(a, d) / across;
+            const double s = plane::cross(a, direction) / across;
             if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= most && (best < 0.0 || t < best))
                 best = t;
         }

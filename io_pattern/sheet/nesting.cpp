@@ -7,6 +7,7 @@
 
 #include "devseg/pack/outline_raster.h"
 #include "devseg/pack/place_search.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::sheet {
 
@@ -26,10 +27,8 @@ pack::Outline outline_of(const SheetPiece& piece) {
 }
 
 Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : points)
-        box.extend(Vec2(Eigen::Rotation2Dd(angle) * p));
-    return box.sizes();
+    return plane::box_of(points, [&](const Vec2& p) { return Eigen::Rotation2Dd(angle) * p; })
+        .sizes();
 }
 
 double least_box_angle(const std::vector<Vec2>& points) {

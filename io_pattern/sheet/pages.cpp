@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
 #include "sheet/segment_grid.h"
 #include "writers/text_metrics.h"
 
@@ -38,10 +39,10 @@ bool touches_window(const std::vector<Vec2>& ring, const writers::PageWindow& wi
         if (box.contains(a))
             return true;
         for (std::size_t k = 0; k < 4; ++k)
-            if (segments_touch(a, b, corners[k], corners[(k + 1) % 4]))
+            if (plane::segments_touch(a, b, corners[k], corners[(k + 1) % 4]))
                 return true;
     }
-    return is_inside(ring, box.center()); // a page within a piece
+    return plane::is_inside(ring, box.center()); // a page within a piece
 }
 
 // Crosses in the middle of the strips that a page shares with its neighbours, in the drawing.

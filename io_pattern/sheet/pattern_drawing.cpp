@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::sheet {
 
 namespace {
@@ -48,9 +50,7 @@ double area_of(const writers::DrawingPath& path, double grid) {
         };
         const Vec2 first = rounded(0);
         for (std::size_t i = 2; i < part.points.size(); ++i) {
-            const Vec2 p = rounded(i - 1) - first;
-            const Vec2 q = rounded(i) - first;
-            twice += p.x() * q.y() - p.y() * q.x();
+            twice += plane::cross(rounded(i - 1) - first, rounded(i) - first);
         }
     }
     return 0.5 * twice;

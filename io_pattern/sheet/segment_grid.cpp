@@ -3,55 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::sheet {
 
 namespace {
 
 constexpr double most_cells = 1 << 18; // what a grid may take in memory
 
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-    const Vec2 u = b - a;
-    const Vec2 v = c - a;
-    return u.x() * v.y() - u.y() * v.x();
-}
-
-// Whether c, known to lie on the line through a and b, is between them.
-bool is_between(const Vec2& a, const Vec2& b, const Vec2& c) {
-    return (c - a).dot(c - b) <= 0.0;
-}
-
 } // namespace
-
-bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-    const double c_side = turn(a, b, c);
-    const double d_side = turn(a, b, d);
-    const double a_side = turn(c, d, a);
-    const double b_side = turn(c, d, b);
-    if (((c_side > 0.0 && d_side < 0.0) || (c_side < 0.0 && d_side > 0.0)) &&
-        ((a_side > 0.0 && b_side < 0.0) || (a_side < 0.0 && b_side > 0.0)))
-        return true;
-    return (c_side == 0.0 && is_between(a, b, c)) || (d_side == 0.0 && is_between(a, b, d)) ||
-           (a_side == 0.0 && is_between(c, d, a)) || (b_side == 0.0 && is_between(c, d, b));
-}
-
-bool is_inside(const std::vector<Vec2>& ring, const Vec2& p) {
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Vec2& a = ring[i];
-        const Vec2& b = ring[j];
-        if ((a.y() > p.y()) != (b.y() > p.y()) &&
-            p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
-            inside = !inside;
-    }
-    return inside;
-}
-
-bool is_inside(const std::vector<std::vector<Vec2>>& rings, const Vec2& p) {
-    bool inside = false;
-    for (const std::vector<Vec2>& ring : rings)
-        inside = inside != is_inside(ring, p);
-    return inside;
-}
 
 SegmentGrid::SegmentGrid(const Eigen::AlignedBox2d& box, double cell) : low_(box.min()) {
     const Vec2 size = box.sizes();
@@ -90,7 +50,8 @@ bool SegmentGrid::touches(const Vec2& a, const Vec2& b, Index owner) const {
     visit_cells(a, b, [&](std::size_t cell) {
         for (const Index number : cells_[cell]) {
             const Segment& other = segments_[number];
-            found = found || (other.owner != owner && segments_touch(a, b, other.a, other.b));
+            found =
+                found || (other.owner != owner && plane::segments_touch(a, b, other.a, other.b));
         }
     });
     return found;

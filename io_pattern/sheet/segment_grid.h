@@ -10,13 +10,6 @@
 
 namespace devseg::sheet {
 
-/// Whether two segments have a common point; ends count.
-bool segments_touch(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
-
-/// Whether the point lies inside a closed outline, by the even-odd rule.
-bool is_inside(const std::vector<Vec2>& ring, const Vec2& p);
-bool is_inside(const std::vector<std::vector<Vec2>>& rings, const Vec2& p);
-
 class SegmentGrid {
 public:
     /// For segments that lie in the box for the most part; others are found as well.

@@ -4,6 +4,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pattern/curves.h"
+#include "devseg/plane/plane.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
 #include "writers/number_text.h"
@@ -132,7 +133,8 @@ void add_folds(const pattern::PatternPiece& piece, SheetPiece& result) {
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.push_back(piece.path(i).points);
     for (const pattern::PieceFold& fold : piece.folds)
-        if (is_inside(outlines, 0.5 * (fold.from + fold.to))) // others: where outlines are simpler
+        if (plane::is_inside(outlines,
+                             0.5 * (fold.from + fold.to))) // others: where outlines are simpler
             (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
 }
 
@@ -191,8 +193,7 @@ void change_points(SheetPiece& piece, Change change) {
 Eigen::AlignedBox2d SheetPiece::box() const {
     Eigen::AlignedBox2d box;
     for (const std::vector<Vec2>& ring : cut)
-        for (const Vec2& p : ring)
-            box.extend(p);
+        box.extend(plane::box_of(ring));
     return box;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
 #include "sheet/segment_grid.h"
 
 namespace devseg::sheet {
@@ -50,19 +51,9 @@ private:
     const pattern::SeamSide& side_;
 };
 
-double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 d = b - a;
-    const double length = d.norm();
-    if (length == 0.0)
-        return (p - a).norm();
-    const double along = (p - a).dot(d) / length;
-    const double beyond = std::max({0.0, -along, along - length});
-    return std::hypot(beyond, ((p - a).x() * d.y() - (p - a).y() * d.x()) / length);
-}
-
 bool is_straight(const Side& side, Index first, Index last) {
     for (Index i = first + 1; i < last; ++i)
-        if (distance_to_line(side.point(i), side.point(first), side.point(last)) > straightness)
+        if (plane::distance(side.point(i), side.point(first), side.point(last)) > straightness)
             return false;
     return true;
 }
@@ -83,7 +74,7 @@ std::vector<Stretch> divide(const std::vector<Side>& sides) {
 
 // Clockwise angle from u to v, 0 to 2 π: how far the outside of an outline is open at a corner.
 double clockwise(const Vec2& u, const Vec2& v) {
-    const double angle = std::atan2(v.x() * u.y() - v.y() * u.x(), u.dot(v));
+    const double angle = plane::signed_angle(v, u);
     return angle > 0.0 ? angle : angle + 2.0 * pi;
 }
 
@@ -137,8 +128,8 @@ private:
         const Vec2 start = a + start_share * (corner[0] - a);
         const Vec2 end = b + start_share * (corner[1] - b);
         return !grid_.touches(start, corner[0], 1) && !grid_.touches(corner[0], corner[1], 1) &&
-               !grid_.touches(corner[1], end, 1) && !is_inside(rings_, corner[0]) &&
-               !is_inside(rings_, start) && !is_inside(rings_, end);
+               !grid_.touches(corner[1], end, 1) && !plane::is_inside(rings_, corner[0]) &&
+               !plane::is_inside(rings_, start) && !plane::is_inside(rings_, end);
     }
     static Eigen::AlignedBox2d grown(const Eigen::AlignedBox2d& box, double depth) {
         return {box.min() - Vec2::Constant(depth), box.max() + Vec2::Constant(depth)};

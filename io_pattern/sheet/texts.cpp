@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/plane/plane.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
 #include "writers/text_metrics.h"
@@ -40,7 +41,7 @@ using Box = std::array<Vec2, 4>;
 // Around the text, with some room.
 Box text_box(const writers::DrawingText& text) {
     const Vec2 along(std::cos(text.angle), std::sin(text.angle));
-    const Vec2 up(-along.y(), along.x());
+    const Vec2 up = plane::left_of(along);
     const Vec2 half =
         (0.5 * writers::text_width(text.text, text.size) + clearance * text.size) * along;
     const Vec2 rise = (0.5 * capital_share + clearance) * text.size * up;
@@ -80,11 +81,11 @@ public:
 
     /// `over_lines`: lines inside the piece may be crossed.
     bool is_free(const writers::DrawingText& text, bool over_lines) const {
-        return is_inside(inside_, text.position) && touches_nothing(text, over_lines);
+        return plane::is_inside(inside_, text.position) && touches_nothing(text, over_lines);
     }
     /// On the allowance or a tab as well.
     bool is_free_outside(const writers::DrawingText& text, bool over_lines) const {
-        return is_inside(piece_.cut, text.position) && touches_nothing(text, over_lines);
+        return plane::is_inside(piece_.cut, text.position) && touches_nothing(text, over_lines);
     }
     /// For a line that leads to a text.
     bool is_free(const Vec2& from, const Vec2& to) const { return !solid_.touches(from, to, 1); }
@@ -193,7 +194,7 @@ private:
 
     Place place(double share) const {
         const OutlinePlace found = place_on(path_, side_, share * side_.length);
-        const Vec2 inward(-found.direction.y(), found.direction.x());
+        const Vec2 inward = plane::left_of(found.direction);
         return {piece_.frame(found.position), piece_.frame.direction(found.direction),
                 piece_.frame.direction(inward)};
     }

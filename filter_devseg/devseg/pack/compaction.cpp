@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "devseg/pack/proximity.h"
 #include "devseg/plane/plane.h"
@@ -44,8 +43,7 @@ struct Body {
     double sine = 0.0;
 
     Placement placement() const {
-        const Placement turn{cosine, sine, Vec2::Zero()};
-        return {cosine, sine, position - turn(centre)};
+        return {cosine, sine, position - plane::turned(centre, cosine, sine)};
     }
 };
 
@@ -95,7 +93,7 @@ public:
         measure();
     }
 
-    Vec2 size() const { return box_.size(); }
+    Vec2 size() const { return box_.sizes(); }
     std::int64_t work() const { return work_; }
     bool feasible() const { return least_ >= goal_ * (1.0 - 0.5 * distance_slack); }
 
@@ -142,15 +140,11 @@ private:
     // Lays out edges and hulls.
     void place() {
         edges_.clear();
-        box_.low = Vec2::Constant(std::numeric_limits<double>::max());
-        box_.high = -box_.low;
+        box_.setEmpty();
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             const Placement placement = bodies_[i].placement();
             const Outline& outline = outlines_[i];
-            for (const Vec2& p : outline.hull) {
-                box_.low = box_.low.cwiseMin(placement(p));
-                box_.high = box_.high.cwiseMax(placement(p));
-            }
+            box_.extend(plane::box_of(outline.hull, placement));
             for (const OutlineEdge& e : outline.edges)
                 edges_.push_back({placement(e.from), placement(e.to), i});
             if (outline.edges.empty()) {
@@ -179,7 +173,7 @@ private:
                 for (std::size_t wall = 0; wall < 4; ++wall) {
                     const Vec2 p = placement(point);
                     const Vec2 normal = wall_normal(wall);
-                    const double distance = normal.dot(p - (wall < 2 ? box_.low : box_.high));
+                    const double distance = normal.dot(p - (wall < 2 ? box_.min() : box_.max()));
                     if (distance < reach)
                         add({i, bodies_.size() + wall, p, p, normal, distance}, -distance);
                 }
@@ -237,7 +231,7 @@ private:
     std::vector<Body> bodies_;
     std::vector<Move> moves_; // of the charts and of the four walls
     std::vector<PlacedEdge> edges_;
-    Box box_;
+    Eigen::AlignedBox2d box_;
     Proximity proximity_;
     std::vector<Bound> bounds_;
     double goal_ = 0.0;  // the distance to keep

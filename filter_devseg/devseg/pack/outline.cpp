@@ -98,14 +98,9 @@ double best_box_angle(const Outline& outline) {
         if (!(length > 0.0))
             continue;
         const Vec2 along = edge / length;
-        Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
-        Vec2 high = -low;
-        for (const Vec2& p : hull) {
-            const Vec2 q(along.dot(p), plane::cross(along, p));
-            low = low.cwiseMin(q);
-            high = high.cwiseMax(q);
-        }
-        const double area = (high - low).prod();
+        const Eigen::AlignedBox2d box = plane::box_of(
+            hull, [&](const Vec2& p) { return Vec2(along.dot(p), plane::cross(along, p)); });
+        const double area = box.sizes().prod();
         if (area < best_area) {
             best_area = area;
             best = -std::atan2(along.y(), along.x());

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
@@ -163,21 +164,14 @@ std::vector<WeightedRun> depth_runs(const ChartCells& image) {
 ChartCells rasterize(const Outline& outline, double angle, double cell, double margin) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    const auto turned = [&](const Vec2& p) {
-        return Vec2(c * p.x() - s * p.y(), s * p.x() + c * p.y());
-    };
-    Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
-    Vec2 high = -low;
-    for (const Vec2& p : outline.hull) {
-        low = low.cwiseMin(turned(p));
-        high = high.cwiseMax(turned(p));
-    }
+    const auto turned = [&](const Vec2& p) { return plane::turned(p, c, s); };
+    const Eigen::AlignedBox2d box = plane::box_of(outline.hull, turned);
     const double m = margin / cell + rounding_slack;
-    const Vec2 offset = Vec2::Constant(m * cell) - low;
+    const Vec2 offset = Vec2::Constant(m * cell) - box.min();
     const auto cells = [&](double length) {
         return static_cast<Index>(std::floor(length / cell + 2.0 * m)) + 1;
     };
-    Canvas canvas(cells(high.x() - low.x()), cells(high.y() - low.y()));
+    Canvas canvas(cells(box.sizes().x()), cells(box.sizes().y()));
     std::vector<OutlineEdge> edges;
     edges.reserve(outline.edges.size());
     for (const OutlineEdge& e : outline.edges) {

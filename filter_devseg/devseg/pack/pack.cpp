@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "devseg/base/errors.h"
@@ -12,6 +11,7 @@
 #include "devseg/pack/nest.h"
 #include "devseg/pack/proximity.h"
 #include "devseg/pack/shelves.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
@@ -36,16 +36,11 @@ constexpr std::size_t finished_chains = 2;
 constexpr double few_aspects[] = {1.0,  0.92, 0.85, 0.78, 0.71, 0.65, 0.59,
                                   0.53, 0.47, 0.41, 0.35, 0.3,  0.25};
 
-const Box nothing = {Vec2::Constant(std::numeric_limits<double>::max()),
-                     Vec2::Constant(std::numeric_limits<double>::lowest())};
-
-Box box_of(const std::vector<Outline>& outlines, const std::vector<Placement>& placements) {
-    Box box = nothing;
+Eigen::AlignedBox2d box_of(const std::vector<Outline>& outlines,
+                           const std::vector<Placement>& placements) {
+    Eigen::AlignedBox2d box;
     for (std::size_t i = 0; i < outlines.size(); ++i)
-        for (const Vec2& p : outlines[i].hull) {
-            box.low = box.low.cwiseMin(placements[i](p));
-            box.high = box.high.cwiseMax(placements[i](p));
-        }
+        box.extend(plane::box_of(outlines[i].hull, placements[i]));
     return box;
 }
 
@@ -57,17 +52,11 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
     double longest = 0.0;
     for (const Outline& outline : outlines) {
         area += outline.area;
-        const std::vector<Vec2>& hull = outline.hull;
-        Box box = nothing;
-        for (std::size_t k = 0; k < hull.size(); ++k) {
-            perimeter += (hull[(k + 1) % hull.size()] - hull[k]).norm();
-            box.low = box.low.cwiseMin(hull[k]);
-            box.high = box.high.cwiseMax(hull[k]);
-        }
-        const double diagonal = box.size().norm() * std::sqrt(0.5);
-        longest =
-            std::max(longest, options.allow_rotation ? std::min(diagonal, box.size().maxCoeff())
-                                                     : box.size().maxCoeff());
+        perimeter += plane::perimeter(outline.hull);
+        const Vec2 size = plane::box_of(outline.hull).sizes();
+        const double diagonal = size.norm() * std::sqrt(0.5);
+        longest = std::max(longest, options.allow_rotation ? std::min(diagonal, size.maxCoeff())
+                                                           : size.maxCoeff());
     }
     const double p = options.padding;
     const double a = expected_use - 0.25 * pi * p * p * static_cast<double>(outlines.size());
@@ -86,12 +75,8 @@ double guess_side(const std::vector<Outline>& outlines, const PackOptions& optio
 double taken_area(const std::vector<Outline>& outlines, double padding, double side) {
     const double margin = 0.5 * padding * side;
     double area = 0.0;
-    for (const Outline& outline : outlines) {
-        double perimeter = 0.0;
-        for (std::size_t k = 0; k < outline.hull.size(); ++k)
-            perimeter += (outline.hull[(k + 1) % outline.hull.size()] - outline.hull[k]).norm();
-        area += outline.area + margin * (perimeter + pi * margin);
-    }
+    for (const Outline& outline : outlines)
+        area += outline.area + margin * (plane::perimeter(outline.hull) + pi * margin);
     return area;
 }
 
@@ -119,7 +104,7 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
         static_cast<int>(found.size()),
         [&](int k) { found[k] = finish_nesting(problem, begun[k], progress); }, progress);
     const auto bad = [&](const std::vector<Placement>& placements) {
-        return badness(box_of(problem.outlines, placements).size());
+        return badness(box_of(problem.outlines, placements).sizes());
     };
     return *std::min_element(found.begin(), found.end(),
                              [&](const auto& a, const auto& b) { return bad(a) < bad(b); });
@@ -137,7 +122,7 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, progress);
     parallel_for(
         1, [&](int) { fitted = compact(outlines, fitted, options, progress); }, progress);
-    const Vec2 fitted_box = box_of(outlines, fitted).size();
+    const Vec2 fitted_box = box_of(outlines, fitted).sizes();
     // Room that the padding takes is no reason to look for a better layout for seconds.
     const bool many = outlines.size() > many_charts;
     const double area = taken_area(outlines, many ? options.padding : 0.0, fitted_box.maxCoeff());
@@ -145,7 +130,7 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
         area >= (many ? enough_use_of_many : enough_use) * fitted_box.prod())
         return fitted;
     std::vector<Placement> nested = nest(problem, progress);
-    return badness(box_of(outlines, nested).size()) < badness(fitted_box) ? nested : fitted;
+    return badness(box_of(outlines, nested).sizes()) < badness(fitted_box) ? nested : fitted;
 }
 
 } // namespace
@@ -174,10 +159,10 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
         result.placements = fit_or_nest(problem, options, progress);
     else
         result.placements = nest(problem, progress);
-    const Box box = box_of(problem.outlines, result.placements);
+    const Eigen::AlignedBox2d box = box_of(problem.outlines, result.placements);
     // The border of the square keeps half of the padding as well.
-    result.side = box.size().maxCoeff() / (1.0 - options.padding);
-    const Vec2 shift = Vec2::Constant(0.5 * options.padding * result.side) - box.low;
+    result.side = box.sizes().maxCoeff() / (1.0 - options.padding);
+    const Vec2 shift = Vec2::Constant(0.5 * options.padding * result.side) - box.min();
     for (Placement& placement : result.placements)
         placement.offset += shift;
     return result;

@@ -5,6 +5,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
@@ -25,9 +26,7 @@ struct Placement {
     double sine = 0.0;
     Vec2 offset = Vec2::Zero();
 
-    Vec2 operator()(const Vec2& p) const {
-        return Vec2(cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y()) + offset;
-    }
+    Vec2 operator()(const Vec2& p) const { return plane::turned(p, cosine, sine) + offset; }
 };
 
 struct PackResult {

@@ -2,18 +2,13 @@
 
 #include <algorithm>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::pack {
 
 namespace {
 
 constexpr double most_cells = 128.0; // along the longer side of the box
-
-Vec2 nearest_on(const PlacedEdge& e, const Vec2& p) {
-    const Vec2 d = e.to - e.from;
-    const double length = d.squaredNorm();
-    return length > 0.0 ? Vec2(e.from + std::clamp((p - e.from).dot(d) / length, 0.0, 1.0) * d)
-                        : e.from;
-}
 
 } // namespace
 
@@ -40,11 +35,11 @@ void Proximity::visit_cells(const PlacedEdge& e, Visit visit) const {
             visit(y * columns_ + x);
 }
 
-void Proximity::fill(const std::vector<PlacedEdge>& edges, const Box& box) {
-    low_ = box.low;
-    cell_ = std::max(2.0 * reach_, box.size().maxCoeff() / most_cells);
-    columns_ = static_cast<std::size_t>(box.size().x() / cell_) + 1;
-    rows_ = static_cast<std::size_t>(box.size().y() / cell_) + 1;
+void Proximity::fill(const std::vector<PlacedEdge>& edges, const Eigen::AlignedBox2d& box) {
+    low_ = box.min();
+    cell_ = std::max(2.0 * reach_, box.sizes().maxCoeff() / most_cells);
+    columns_ = static_cast<std::size_t>(box.sizes().x() / cell_) + 1;
+    rows_ = static_cast<std::size_t>(box.sizes().y() / cell_) + 1;
     // Counting leaves room for one more start: filling moves them to the ends of their cells.
     starts_.assign(columns_ * rows_ + 2, 0);
     for (const PlacedEdge& e : edges)
@@ -66,7 +61,7 @@ void Proximity::find_near(const std::vector<PlacedEdge>& edges, std::size_t vert
         const PlacedEdge& other = edges[listed_[k]];
         if (other.chart == chart)
             continue;
-        const double distance = (p - nearest_on(other, p)).squaredNorm();
+        const double distance = (p - plane::nearest_point(p, other.from, other.to)).squaredNorm();
         if (!(distance < reach_ * reach_))
             continue;
         Nearest& nearest = nearest_[other.chart];
@@ -78,7 +73,7 @@ void Proximity::find_near(const std::vector<PlacedEdge>& edges, std::size_t vert
     }
     for (const std::size_t b : near_) {
         const PlacedEdge& other = edges[nearest_[b].edge];
-        const Vec2 q = nearest_on(other, p);
+        const Vec2 q = plane::nearest_point(p, other.from, other.to);
         const double distance = (p - q).norm();
         Vec2 normal(0.0, 0.0);
         if (distance > 0.0) {
@@ -92,8 +87,9 @@ void Proximity::find_near(const std::vector<PlacedEdge>& edges, std::size_t vert
     }
 }
 
-const std::vector<ClosePair>& Proximity::find(const std::vector<PlacedEdge>& edges, const Box& box,
-                                              std::size_t charts, double reach) {
+const std::vector<ClosePair>& Proximity::find(const std::vector<PlacedEdge>& edges,
+                                              const Eigen::AlignedBox2d& box, std::size_t charts,
+                                              double reach) {
     reach_ = reach;
     pairs_.clear();
     fill(edges, box);

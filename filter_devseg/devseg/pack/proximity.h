@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::pack {
@@ -11,12 +13,6 @@ struct PlacedEdge {
     Vec2 from;
     Vec2 to;
     std::size_t chart;
-};
-
-struct Box {
-    Vec2 low;
-    Vec2 high;
-    Vec2 size() const { return high - low; }
 };
 
 /// A vertex of chart a and the nearest point of chart b.
@@ -33,8 +29,9 @@ class Proximity {
 public:
     /// All pairs at distances below `reach`, at most one for each vertex and other chart. `box`
     /// holds the edges, whose charts are numbers below `charts`; each vertex begins one of them.
-    const std::vector<ClosePair>& find(const std::vector<PlacedEdge>& edges, const Box& box,
-                                       std::size_t charts, double reach);
+    const std::vector<ClosePair>& find(const std::vector<PlacedEdge>& edges,
+                                       const Eigen::AlignedBox2d& box, std::size_t charts,
+                                       double reach);
 
 private:
     struct Nearest {
@@ -43,7 +40,7 @@ private:
         std::size_t vertex = 0; // of which this is true; from 1 on
     };
 
-    void fill(const std::vector<PlacedEdge>& edges, const Box& box);
+    void fill(const std::vector<PlacedEdge>& edges, const Eigen::AlignedBox2d& box);
     void find_near(const std::vector<PlacedEdge>& edges, std::size_t vertex);
     std::size_t column(double x) const;
     std::size_t row(double y) const;

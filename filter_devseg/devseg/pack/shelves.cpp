@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
@@ -25,14 +26,9 @@ Boxed lay_down(const Outline& outline, bool allow_rotation) {
         boxed.placement.cosine = std::cos(angle);
         boxed.placement.sine = std::sin(angle);
         boxed.placement.offset = Vec2::Zero();
-        Vec2 low = Vec2::Constant(std::numeric_limits<double>::max());
-        Vec2 high = -low;
-        for (const Vec2& p : outline.hull) {
-            low = low.cwiseMin(boxed.placement(p));
-            high = high.cwiseMax(boxed.placement(p));
-        }
-        boxed.placement.offset = -low;
-        boxed.size = high - low;
+        const Eigen::AlignedBox2d box = plane::box_of(outline.hull, boxed.placement);
+        boxed.placement.offset = -box.min();
+        boxed.size = box.sizes();
         if (!allow_rotation || boxed.size.x() >= boxed.size.y())
             break;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devseg/pattern/simplify.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -85,7 +86,7 @@ public:
         const Eigen::Matrix2d spread = squares / weight - sum * sum.transpose() / (weight * weight);
         const double angle = 0.5 * std::atan2(2.0 * spread(0, 1), spread(0, 0) - spread(1, 1));
         const Vec2 axis(std::cos(angle), std::sin(angle));
-        const Vec2 across(-axis.y(), axis.x());
+        const Vec2 across = plane::left_of(axis);
         const double off = std::sqrt(std::max(0.0, across.dot(spread * across)));
         return {step * axis.dot(here) >= 0.0 ? axis : Vec2(-axis), std::sqrt(12.0) * off / weight};
     }
@@ -95,9 +96,7 @@ public:
     bool turns(Index i, double reach, double angle, double& turn) const {
         const FittedLine in = fit(i, reach, -1);
         const FittedLine out = fit(i, reach, 1);
-        const Vec2& p = in.direction;
-        const Vec2& q = out.direction;
-        turn = std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
+        turn = plane::angle_between(in.direction, out.direction);
         turn -= raggedness * (in.slope + out.slope);
         return turn > angle;
     }

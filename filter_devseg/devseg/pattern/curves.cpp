@@ -8,6 +8,8 @@
 
 #include <Eigen/LU>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::pattern {
 
 namespace {
@@ -181,7 +183,7 @@ bool is_straight(const std::vector<Vec2>& points, std::size_t first, std::size_t
         const Vec2 p = points[i] - points[first];
         const double forward = p.dot(along) / length;
         if (!(length > 0.0) || forward < 0.0 || forward > length ||
-            std::abs(along.x() * p.y() - along.y() * p.x()) / length > tolerance)
+            std::abs(plane::cross(along, p)) / length > tolerance)
             return false;
     }
     return true;
@@ -245,12 +247,6 @@ void fit_part(const std::vector<Vec2>& points, std::size_t first, std::size_t la
     fit_part(points, joint, last, tolerance, curves);
 }
 
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-    const Vec2 p = b - a;
-    const Vec2 q = c - b;
-    return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
-}
-
 } // namespace
 
 std::vector<OutlineCurve> fit_ring(const std::vector<Vec2>& ring, double corner_angle,
@@ -258,7 +254,7 @@ std::vector<OutlineCurve> fit_ring(const std::vector<Vec2>& ring, double corner_
     const std::size_t size = ring.size();
     std::vector<std::size_t> corners;
     for (std::size_t i = 0; i < size; ++i)
-        if (turn(ring[(i + size - 1) % size], ring[i], ring[(i + 1) % size]) > corner_angle)
+        if (plane::turn(ring[(i + size - 1) % size], ring[i], ring[(i + 1) % size]) > corner_angle)
             corners.push_back(i);
     if (corners.empty())
         corners.push_back(0);

@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/plane/plane.h"
+
 #include "devseg/pattern/optimize.h"
 
 namespace devseg::pattern {
@@ -8,9 +9,7 @@ namespace devseg::pattern {
 namespace {
 
 double angle_at(const CornerUv& uv, HalfEdge h) {
-    const Vec2 p = uv[Mesh::next(h)] - uv[h];
-    const Vec2 q = uv[Mesh::previous(h)] - uv[h];
-    return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
+    return plane::angle_between(uv[Mesh::next(h)] - uv[h], uv[Mesh::previous(h)] - uv[h]);
 }
 
 class Zipper {
@@ -91,7 +90,7 @@ private:
         }
         for (const Index corner : corners) {
             const Face f = corner / 3;
-            const double area = flatten::orientation(uv_[3 * f], uv_[3 * f + 1], uv_[3 * f + 2]);
+            const double area = plane::orientation(uv_[3 * f], uv_[3 * f + 1], uv_[3 * f + 2]);
             if (!(side > 0.0 ? area > 0.0 : area < 0.0)) {
                 for (std::size_t i = 0; i < corners.size(); ++i)
                     uv_[corners[i]] = old[i];

@@ -8,6 +8,8 @@
 #include <limits>
 #include <queue>
 
+#include "devseg/plane/plane.h"
+
 namespace devseg::pattern {
 
 namespace {
@@ -28,26 +30,14 @@ void for_each_segment(const Outlines& outlines, Visit visit) {
             visit((*points)[j], (*points)[i]);
 }
 
-// Half-open in y, so that a ray through a point of the outline crosses it once.
-bool crosses(const Vec2& a, const Vec2& b, double y) {
-    return (a.y() > y) != (b.y() > y);
-}
-
-double crossing_x(const Vec2& a, const Vec2& b, double y) {
-    return a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-}
-
 // Distance from the outlines, negative outside.
 double signed_distance(const Outlines& outlines, const Vec2& p) {
     double nearest = infinite;
     bool inside = false;
     for_each_segment(outlines, [&](const Vec2& a, const Vec2& b) {
-        if (crosses(a, b, p.y()) && p.x() < crossing_x(a, b, p.y()))
+        if (plane::meets_height(a, b, p.y()) && p.x() < plane::x_at_height(a, b, p.y()))
             inside = !inside;
-        const Vec2 along = b - a;
-        const double length = along.squaredNorm();
-        const double t = length > 0.0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
-        nearest = std::min(nearest, (p - a - t * along).squaredNorm());
+        nearest = std::min(nearest, plane::squared_distance(p, a, b));
     });
     return inside ? std::sqrt(nearest) : -std::sqrt(nearest);
 }
@@ -56,8 +46,8 @@ double signed_distance(const Outlines& outlines, const Vec2& p) {
 LabelPoint widest_on_line(const Outlines& outlines, double y) {
     std::vector<double> xs;
     for_each_segment(outlines, [&](const Vec2& a, const Vec2& b) {
-        if (crosses(a, b, y))
-            xs.push_back(crossing_x(a, b, y));
+        if (plane::meets_height(a, b, y))
+            xs.push_back(plane::x_at_height(a, b, y));
     });
     std::sort(xs.begin(), xs.end());
     LabelPoint best;
@@ -88,13 +78,9 @@ Cell make_cell(const Outlines& outlines, const Vec2& centre, double half) {
 } // namespace
 
 LabelPoint find_label_point(const Outlines& outlines) {
-    Vec2 low = outlines.front()->front();
-    Vec2 high = low;
-    for (const Vec2& p : *outlines.front()) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const Vec2 size = high - low;
+    const Eigen::AlignedBox2d box = plane::box_of(*outlines.front());
+    const Vec2 low = box.min();
+    const Vec2 size = box.sizes();
     LabelPoint best = widest_on_line(outlines, low.y() + 0.5 * size.y());
     if (!(size.minCoeff() > 0.0))
         return {best.position, 0.0};

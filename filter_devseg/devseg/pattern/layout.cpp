@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -14,16 +14,8 @@ constexpr double shelf_gap = 0.02;
 // Even-odd rule over all outlines.
 bool is_inside(const PatternPiece& piece, const Vec2& p) {
     bool inside = false;
-    for (Index l = 0; l < piece.path_count(); ++l) {
-        const std::vector<Vec2>& points = piece.path(l).points;
-        for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
-            const Vec2& a = points[j];
-            const Vec2& b = points[i];
-            if ((a.y() > p.y()) != (b.y() > p.y()) &&
-                p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-                inside = !inside;
-        }
-    }
+    for (Index l = 0; l < piece.path_count(); ++l)
+        inside = inside != plane::is_inside(piece.path(l).points, p);
     return inside;
 }
 
@@ -48,25 +40,12 @@ bool boundaries_cross(const PatternPiece& a, const PatternPiece& b) {
     const auto other_edges = edges_in(b, common);
     for (const auto& edge : edges_in(a, common))
         for (const auto& other : other_edges)
-            if (edges_cross(edge[0], edge[1], other[0], other[1]))
+            if (plane::segments_cross(edge[0], edge[1], other[0], other[1]))
                 return true;
     return false;
 }
 
 } // namespace
-
-bool edges_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-    if (std::max(a.y(), b.y()) < std::min(c.y(), d.y()) ||
-        std::max(c.y(), d.y()) < std::min(a.y(), b.y()) ||
-        std::max(a.x(), b.x()) < std::min(c.x(), d.x()) ||
-        std::max(c.x(), d.x()) < std::min(a.x(), b.x()))
-        return false;
-    const auto opposite = [](double p, double q) {
-        return (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
-    };
-    return opposite(flatten::orientation(a, b, c), flatten::orientation(a, b, d)) &&
-           opposite(flatten::orientation(c, d, a), flatten::orientation(c, d, b));
-}
 
 void move_piece(PatternPiece& piece, const Vec2& offset) {
     for (Index l = 0; l < piece.path_count(); ++l) {

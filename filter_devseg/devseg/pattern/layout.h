@@ -12,9 +12,6 @@ void move_piece(PatternPiece& piece, const Vec2& offset);
 
 Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces);
 
-/// Whether the insides of the segments a b and c d cross; exact.
-bool edges_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
-
 /// Whether a common point lies inside both pieces. Pieces may touch, and lie in each other's holes.
 bool overlap(const PatternPiece& a, const PatternPiece& b);
 

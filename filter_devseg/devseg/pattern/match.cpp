@@ -13,6 +13,7 @@
 #include "devseg/pattern/layout.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/simplify.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -127,7 +128,7 @@ std::vector<double> inner_angles(const std::vector<Vec2>& points) {
     for (std::size_t i = 0; i < size; ++i) {
         const Vec2 p = points[i] - points[(i + size - 1) % size];
         const Vec2 q = points[(i + 1) % size] - points[i];
-        angles.push_back(pi - std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
+        angles.push_back(pi - plane::signed_angle(p, q));
     }
     return angles;
 }
@@ -222,7 +223,7 @@ void push_apart(std::vector<Vec2>& points, std::size_t i, std::size_t j, double 
     std::array<std::size_t, 3> best{};
     for (const auto& end : ends) {
         const Vec2 along = (points[end[2]] - points[end[1]]).normalized();
-        const Vec2 across(-along.y(), along.x());
+        const Vec2 across = plane::left_of(along);
         const double distance = across.dot(points[end[0]] - points[end[1]]);
         if (std::abs(distance) >= least)
             continue;
@@ -247,7 +248,8 @@ bool close_without_crossing(std::vector<Vec2>& points, const std::vector<double>
         bool crosses = false;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 2; j < n; ++j)
-                if (edges_cross(points[i], points[i + 1], points[j], points[(j + 1) % n])) {
+                if (plane::segments_cross(points[i], points[i + 1], points[j],
+                                          points[(j + 1) % n])) {
                     push_apart(points, i, j, gap);
                     crosses = true;
                 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devseg/pattern/layout.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -23,7 +24,7 @@ PiecePath trace(const atlas::ChartSurface& surface, const std::vector<Index>& lo
         path.half_edge.push_back(surface.mesh_half_edge(h));
         path.points.push_back(place(uv[path.half_edge.back()]));
     }
-    path.area = signed_area(path.points);
+    path.area = plane::signed_area(path.points);
     return path;
 }
 
@@ -34,7 +35,7 @@ void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
     std::swap(*outer, paths.front());
     piece.outer = std::move(paths.front());
     for (std::size_t i = 1; i < paths.size(); ++i) {
-        const double length = perimeter(paths[i].points);
+        const double length = plane::perimeter(paths[i].points);
         if (std::abs(paths[i].area) > no_area * length * length)
             piece.holes.push_back(std::move(paths[i]));
     }
@@ -57,30 +58,12 @@ std::vector<std::size_t> not_clear(const std::vector<PatternPiece>& pieces,
 
 } // namespace
 
-double perimeter(const std::vector<Vec2>& points) {
-    double length = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        length += (points[(i + 1) % points.size()] - points[i]).norm();
-    return length;
-}
-
-// A fan of triangles from the first point: as exact for pieces that lie far from the origin.
-double signed_area(const std::vector<Vec2>& points) {
-    double twice = 0.0;
-    for (std::size_t i = 2; i < points.size(); ++i) {
-        const Vec2 p = points[i - 1] - points.front();
-        const Vec2 q = points[i] - points.front();
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
-    return 0.5 * twice;
-}
-
 void measure_outlines(PatternPiece& piece) {
     piece.area = 0.0;
     piece.box.setEmpty();
     for (Index l = 0; l < piece.path_count(); ++l) {
         PiecePath& path = piece.path(l);
-        path.area = signed_area(path.points);
+        path.area = plane::signed_area(path.points);
         piece.area += path.area;
         // Of all loops: in foreign coordinates that fold over, a hole may stick out of the outline.
         for (const Vec2& p : path.points)

@@ -18,10 +18,6 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
                                        const std::vector<double>& uv_areas, double mm_per_uv,
                                        Progress& progress);
 
-/// Of a closed polygon: the length around it, and its area, positive if counterclockwise.
-double perimeter(const std::vector<Vec2>& points);
-double signed_area(const std::vector<Vec2>& points);
-
 /// Sets the areas of the outlines and of the piece, and its box.
 void measure_outlines(PatternPiece& piece);
 

@@ -20,6 +20,7 @@
 #include "devseg/pattern/simplify.h"
 #include "devseg/pattern/split.h"
 #include "devseg/pattern/strain.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -303,7 +304,7 @@ void set_length_scales(const Mesh& mesh, const ChartAreas& areas, double mm, Pat
         double on_model = 0.0;
         double on_paper = 0.0;
         for (Index l = 0; l < piece.path_count(); ++l) {
-            on_paper += perimeter(piece.path(l).points);
+            on_paper += plane::perimeter(piece.path(l).points);
             for (const HalfEdge h : piece.path(l).half_edge)
                 on_model += mm * mesh.edge_length(h);
         }

@@ -7,6 +7,7 @@
 
 #include "devseg/pack/outline.h"
 #include "devseg/pattern/outlines.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -37,7 +38,7 @@ Vec2 point(const Complex& z) {
 }
 
 std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t count) {
-    const double step = perimeter(outline) / static_cast<double>(count);
+    const double step = plane::perimeter(outline) / static_cast<double>(count);
     std::vector<Vec2> result;
     double arc = 0.0;
     for (std::size_t i = 0; i < outline.size() && result.size() < count; ++i) {
@@ -56,11 +57,7 @@ Vec2 nearest_on(const std::vector<Vec2>& outline, const Vec2& p) {
     Vec2 best = outline.front();
     double least = infinite;
     for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-        const Vec2 along = outline[i] - outline[j];
-        const double length = along.squaredNorm();
-        const double t =
-            length > 0.0 ? std::clamp((p - outline[j]).dot(along) / length, 0.0, 1.0) : 0.0;
-        const Vec2 q = outline[j] + t * along;
+        const Vec2 q = plane::nearest_point(p, outline[j], outline[i]);
         if ((p - q).squaredNorm() < least) {
             least = (p - q).squaredNorm();
             best = q;
@@ -178,7 +175,7 @@ struct Signature {
 Signature signature_of(const PatternPiece& piece) {
     const std::vector<Vec2> points = even_points(piece.outer.points, places);
     Signature signature;
-    signature.around = perimeter(piece.outer.points);
+    signature.around = plane::perimeter(piece.outer.points);
     Vec2 centre = Vec2::Zero();
     for (const Vec2& p : points)
         centre += p / static_cast<double>(points.size());
@@ -208,9 +205,7 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
 std::array<Vec2, 2> chord_through(const PatternPiece& piece, const Vec2& p, const Vec2& along) {
     double back = -infinite;
     double ahead = infinite;
-    const auto side = [&](const Vec2& q) {
-        return along.x() * (q - p).y() - along.y() * (q - p).x();
-    };
+    const auto side = [&](const Vec2& q) { return plane::cross(along, q - p); };
     for (Index l = 0; l < piece.path_count(); ++l) {
         const std::vector<Vec2>& points = piece.path(l).points;
         for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
@@ -236,11 +231,10 @@ PieceBox least_box(const std::vector<Vec2>& points) {
         fan.push_back({0, static_cast<Index>(i) - 1, static_cast<Index>(i)});
     const double angle = pack::best_box_angle(pack::find_outline(fan, points));
     const Vec2 along(std::cos(angle), -std::sin(angle));
-    const Vec2 across(-along.y(), along.x());
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : points)
-        box.extend(Vec2(along.dot(p), across.dot(p)));
-    const Vec2 size = box.sizes();
+    const Vec2 across = plane::left_of(along);
+    const Vec2 size = plane::box_of(points, [&](const Vec2& p) {
+                          return Vec2(along.dot(p), across.dot(p));
+                      }).sizes();
     PieceBox result{size.maxCoeff(), size.minCoeff(), size.x() >= size.y() ? along : across};
     if (result.direction.y() < 0.0 || (result.direction.y() == 0.0 && result.direction.x() < 0.0))
         result.direction = -result.direction;

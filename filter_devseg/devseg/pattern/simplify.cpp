@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "devseg/pattern/layout.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
@@ -20,19 +21,6 @@ constexpr double full_size = 100.0;
 // Cuts that were made to split a piece are straightened: along them, what one part loses the other
 // gains, within this share of their size.
 constexpr double cut_share = 0.05;
-
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 along = b - a;
-    const double length = along.squaredNorm();
-    const double t = length > 0.0 ? std::clamp((p - a).dot(along) / length, 0.0, 1.0) : 0.0;
-    return (p - a - t * along).norm();
-}
-
-double triangle_area(const Vec2& a, const Vec2& b, const Vec2& c) {
-    const Vec2 p = b - a;
-    const Vec2 q = c - a;
-    return 0.5 * std::abs(p.x() * q.y() - p.y() * q.x());
-}
 
 // The polylines while their vertices collapse.
 class Collapse {
@@ -79,15 +67,14 @@ private:
     void push(std::size_t i) {
         double cost = inherited_[i];
         for (const std::vector<Vec2>& points : sides_)
-            cost += triangle_area(points[before_[i]], points[i], points[after_[i]]);
+            cost += plane::triangle_area(points[before_[i]], points[i], points[after_[i]]);
         queue_.emplace(cost, i, ++stamp_[i]);
     }
 
     bool may_go(std::size_t i) const {
         for (const std::vector<Vec2>& points : sides_)
             for (std::size_t k = before_[i] + 1; k < after_[i]; ++k)
-                if (distance_to_segment(points[k], points[before_[i]], points[after_[i]]) >
-                    tolerance_)
+                if (plane::distance(points[k], points[before_[i]], points[after_[i]]) > tolerance_)
                     return false;
         return true;
     }
@@ -106,12 +93,6 @@ private:
     std::vector<std::uint8_t> gone_;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
 };
-
-double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
-    const Vec2 p = b - a;
-    const Vec2 q = c - b;
-    return std::abs(std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q)));
-}
 
 // Edges of all outlines of a piece, from the left to the right.
 struct OutlineSegment {
@@ -139,8 +120,7 @@ std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
 
 double distance_to_line(const Vec2& p, const OutlineSegment& s) {
     const Vec2 along = s.to - s.from;
-    const Vec2 to_p = p - s.from;
-    return std::abs(along.x() * to_p.y() - along.y() * to_p.x()) / along.norm();
+    return std::abs(plane::cross(along, p - s.from)) / along.norm();
 }
 
 // Two edges that cross.
@@ -189,8 +169,8 @@ void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& c
             const std::size_t size = path.points.size();
             const std::size_t i = at(side.first);
             if (!chain.is_closed && side.count > 0 &&
-                turn(path.points[(i + size - 1) % size], path.points[i],
-                     path.points[(i + 1) % size]) > corner_angle)
+                plane::turn(path.points[(i + size - 1) % size], path.points[i],
+                            path.points[(i + 1) % size]) > corner_angle)
                 path.corner[i] = 1;
         }
 }
@@ -237,7 +217,8 @@ bool crosses_itself(const PatternPiece& piece, double depth) {
     for (std::size_t i = 0; i < segments.size(); ++i)
         for (std::size_t j = i + 1; j < segments.size() && segments[j].left <= segments[i].right;
              ++j)
-            if (edges_cross(segments[i].from, segments[i].to, segments[j].from, segments[j].to) &&
+            if (plane::segments_cross(segments[i].from, segments[i].to, segments[j].from,
+                                      segments[j].to) &&
                 is_deep(segments[i], segments[j], depth))
                 return true;
     return false;

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
+
+using plane::orientation;
 
 /// Jacobian of the map from the rest triangle of face f to the plane.
 inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
@@ -16,10 +19,6 @@ inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vec
     edges.col(1) = uv[t[2]] - uv[t[0]];
     return edges * problem.inverse[f];
 }
-
-/// Twice the signed area of a triangle in the plane. The sign is exact: when rounding could have
-/// changed it, the determinant is evaluated again without rounding.
-double orientation(const Vec2& a, const Vec2& b, const Vec2& c);
 
 /// Faces that are not positively oriented in the plane.
 Index count_flips(const FlatteningProblem& problem, const std::vector<Vec2>& uv);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sheet/segment_grid.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::sheet {
 namespace {
@@ -91,7 +91,7 @@ TEST(Allowance, NarrowDartsAreCovered) {
                        Vec2(20, 5), Vec2(18, 40), Vec2(0, 40)};
     const std::vector<Ring> cut = add_allowance(piece_of(dart), 5.0, CornerStyle::miter);
     ASSERT_EQ(cut.size(), 1u);
-    EXPECT_TRUE(is_inside(cut, Vec2(20, 20)));
+    EXPECT_TRUE(plane::is_inside(cut, Vec2(20, 20)));
     for (const Vec2& p : cut[0])
         EXPECT_FALSE(p.y() > 0.0 && p.y() < 38.0 && p.x() > 0.0 && p.x() < 40.0);
 }
