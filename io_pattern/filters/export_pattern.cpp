@@ -91,13 +91,15 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     const Format format = format_of(given.output_file);
     const sheet::ExportOptions options = sheet::resolved(given);
     sheet::page_format(options); // says what is wrong with it before the work begins
-    const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, progress);
-    sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, progress);
-    progress.begin_phase("writing", 0.1);
-    progress.update(0.0);
+    const bool has_pictures = format == Format::pdf && options.cover; // which take long
+    auto making = progress.part(has_pictures ? 0.2 : 0.5);
+    const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    auto laying = progress.part(has_pictures ? 0.2 : 0.4);
+    sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
+    auto writing = progress.part("writing", progress.left());
     PatternFile file;
     if (format == Format::pdf) {
-        const writers::Document document = make_document(mesh, pattern, layout, options, progress);
+        const writers::Document document = make_document(mesh, pattern, layout, options, writing);
         file.pages = static_cast<Index>(document.pages.size());
         file.bytes = writers::pdf_bytes(document);
     } else if (format == Format::dxf && is_apparel(options)) {
@@ -108,7 +110,7 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         file.bytes =
             format == Format::svg ? writers::svg_bytes(drawing) : writers::dxf_bytes(drawing);
     }
-    progress.update(0.5);
+    writing.update(0.5);
     file.pieces = static_cast<Index>(pattern.pieces.size());
     file.seams = static_cast<Index>(pattern.seams.size());
     file.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());

@@ -195,25 +195,25 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     layout.page = page_format(options);
     GlueTabs tabs;
     tabs.tabs.resize(pattern.pieces.size());
-    progress.begin_phase("glue tabs", 0.1);
+    auto tabbing = progress.part("glue tabs", 0.1);
     if (options.glue_tabs)
-        tabs = make_tabs(pattern, options.tab_depth_mm, progress);
+        tabs = make_tabs(pattern, options.tab_depth_mm, tabbing);
     note_tabs(tabs, layout);
-    progress.begin_phase("drawing pieces", 0.1);
+    auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
-        progress.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+        drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
         if (options.mirror)
             layout.pieces.back().mirror();
     }
-    progress.begin_phase("laying out sheets", 0.1);
+    auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
-        nest_on_pages(layout, options, progress);
+        nest_on_pages(layout, options, laying);
         return layout;
     }
     if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
-        nest_freely(layout, options.grain_line, progress);
+        nest_freely(layout, options.grain_line, laying);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
     const pack::Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
     for (SheetPiece& piece : layout.pieces)

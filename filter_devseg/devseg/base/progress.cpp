@@ -1,6 +1,7 @@
 #include "devseg/base/progress.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "devseg/base/errors.h"
 
@@ -12,44 +13,70 @@ namespace {
 constexpr std::chrono::milliseconds minimum_interval{20};
 } // namespace
 
-void Progress::begin_phase(const char* name, double share) {
-    phase_start_ = std::min(1.0, phase_start_ + phase_share_);
-    phase_share_ = std::clamp(share, 0.0, 1.0 - phase_start_);
-    phase_ = name;
-    owner_ = std::this_thread::get_id();
-    last_call_ = {};
+Progress::Progress(Callback callback) : own_(std::make_unique<Run>()), run_(own_.get()) {
+    run_->callback = std::move(callback);
+}
+
+Progress::Progress(Progress& whole, const char* name, double share)
+    : run_(whole.run_), name_before_(run_->name), begin_(whole.position(0.0)),
+      size_(whole.size_ * std::clamp(share, 0.0, whole.left())) {
+    whole.used_ += std::clamp(share, 0.0, whole.left());
+    if (name != run_->name)
+        run_->last_call = {}; // a new name is shown at once
+    run_->name = name;
+    run_->owner = std::this_thread::get_id();
     update(0.0);
 }
 
-// The fraction of the last report, at most once in the interval; false where the user said stop.
-bool Progress::ask_host() const {
+Progress::~Progress() {
+    if (own_)
+        return;
+    run_->fraction = std::max(run_->fraction, position(1.0));
+    run_->name = name_before_;
+}
+
+Progress Progress::part(const char* name, double share) {
+    return {*this, name, share};
+}
+
+Progress Progress::part(double share) {
+    return {*this, run_->name, share};
+}
+
+// In the whole, of a fraction of what parts have left.
+double Progress::position(double fraction) const {
+    return std::min(1.0, begin_ + size_ * (used_ + left() * std::clamp(fraction, 0.0, 1.0)));
+}
+
+// The fraction of the last report, at most once in the interval; false where the user cancelled.
+bool Progress::Run::ask_host() {
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_call_ < minimum_interval)
+    if (now - last_call < minimum_interval)
         return true;
-    last_call_ = now;
-    if (callback_(last_fraction_, phase_))
+    last_call = now;
+    if (callback(fraction, name))
         return true;
-    cancelled_.store(true, std::memory_order_relaxed);
+    cancelled.store(true, std::memory_order_relaxed);
     return false;
 }
 
-void Progress::update(double phase_fraction) {
-    const double fraction = phase_start_ + phase_share_ * std::clamp(phase_fraction, 0.0, 1.0);
-    last_fraction_ = std::max(last_fraction_, fraction);
-    if (cancelled() || (callback_ && !ask_host()))
+void Progress::update(double fraction) {
+    run_->fraction = std::max(run_->fraction, position(fraction));
+    if (cancelled() || (run_->callback && !run_->ask_host()))
         throw Cancelled();
 }
 
-void Progress::pass_on(double fraction, const char* phase) {
-    owner_ = std::this_thread::get_id();
-    phase_ = phase;
-    last_fraction_ = std::max(last_fraction_, fraction);
-    last_call_ = {};
+void Progress::pass_on(double fraction, const char* name) {
+    run_->owner = std::this_thread::get_id();
+    run_->name = name;
+    run_->last_call = {};
+    run_->fraction = std::max(run_->fraction, begin_ + size_ * fraction);
     check();
 }
 
 void Progress::check() const {
-    if (cancelled() || (callback_ && std::this_thread::get_id() == owner_ && !ask_host()))
+    if (cancelled() ||
+        (run_->callback && std::this_thread::get_id() == run_->owner && !run_->ask_host()))
         throw Cancelled();
 }
 

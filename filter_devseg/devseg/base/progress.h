@@ -1,52 +1,79 @@
-// Progress and cancellation of long work: one monotone fraction over named phases.
+// Progress and cancellation of long work: one monotone fraction over nested parts.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <thread>
 
 namespace devseg {
 
+/// The whole of a run, or a part of it that ends with its scope:
+///
+///     auto joining = progress.part("joining", 0.3);
+///     join_charts(mesh, options, joining); // reports 0 to 1 of these 0.3
+///
+/// The fraction of the whole never runs back, and parts never take more than there is.
 class Progress {
 public:
-    /// Called with the overall fraction in [0, 1] and the phase; returns false to cancel.
-    using Callback = std::function<bool(double fraction, const char* phase)>;
+    /// Called with the fraction of the whole in [0, 1] and the name of the innermost part; returns
+    /// false to cancel.
+    using Callback = std::function<bool(double fraction, const char* name)>;
 
-    Progress() = default;
-    explicit Progress(Callback callback) : callback_(std::move(callback)) {}
+    explicit Progress(Callback callback = {});
+    ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Starts a phase that takes the given share (0 to 1) of the whole run.
-    void begin_phase(const char* name, double share);
+    /// The next part: takes `share` (0 to 1) of this work, or what other parts have left of it. It
+    /// begins where the part before it ends, and ends with its scope. Throws Cancelled when the
+    /// user has cancelled. Only the thread that runs the filter may call it.
+    [[nodiscard]] Progress part(const char* name, double share);
 
-    /// Reports the fraction of the current phase; throws Cancelled when the user said stop.
+    /// The same under the name that there is, for rounds and charts.
+    [[nodiscard]] Progress part(double share);
+
+    /// What parts have left of this work, from 1 to 0.
+    double left() const noexcept { return 1.0 - used_; }
+
+    /// Reports the fraction of what parts have left; throws Cancelled when the user has cancelled.
     /// Only the thread that runs the filter may call it: hosts touch their windows here.
-    void update(double phase_fraction);
+    void update(double fraction);
 
     /// Reports what another progress object of the same run was told, as it was told; throws
-    /// Cancelled when the user said stop.
-    void pass_on(double fraction, const char* phase);
+    /// Cancelled when the user has cancelled.
+    void pass_on(double fraction, const char* name);
 
-    /// True once the user said stop. Any thread may ask.
-    bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+    /// True once the user has cancelled. Any thread may ask.
+    bool cancelled() const noexcept { return run_->cancelled.load(std::memory_order_relaxed); }
 
-    /// Throws Cancelled once the user said stop. Any thread may call it; the thread that began
-    /// the phase asks the host at the same time, so that long work need not know its fraction.
+    /// Throws Cancelled once the user has cancelled. Any thread may call it; the thread that began
+    /// the part asks the host at the same time, so that long work need not know its fraction.
     void check() const;
 
 private:
-    bool ask_host() const;
+    // What all parts of a run share.
+    struct Run {
+        Callback callback;
+        std::thread::id owner; // none before the first part
+        std::atomic<bool> cancelled{false};
+        const char* name = "";
+        double fraction = 0.0;
+        std::chrono::steady_clock::time_point last_call{};
 
-    Callback callback_;
-    std::thread::id owner_; // none before the first phase
-    mutable std::atomic<bool> cancelled_{false};
-    const char* phase_ = "";
-    double phase_start_ = 0.0;
-    double phase_share_ = 0.0;
-    double last_fraction_ = 0.0;
-    mutable std::chrono::steady_clock::time_point last_call_{};
+        bool ask_host();
+    };
+
+    Progress(Progress& whole, const char* name, double share);
+    double position(double fraction) const;
+
+    std::unique_ptr<Run> own_; // of the whole
+    Run* run_;
+    const char* name_before_ = "";
+    double begin_ = 0.0; // of the whole
+    double size_ = 1.0;  // of the whole
+    double used_ = 0.0;  // by parts, of this work
 };
 
 /// Checks for cancellation once in so many steps of a loop that is short of time.

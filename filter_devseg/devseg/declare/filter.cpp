@@ -157,10 +157,10 @@ struct FilterRun {
 };
 
 void FilterRun::operator()(Progress& progress) {
-    progress.begin_phase("reading the mesh", 0.0);
-    const mesh::GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, progress)
-                                                       : mesh::gate_mesh(host.geometry, progress);
-    progress.check();
+    auto reading = progress.part("reading the mesh", 0.02);
+    const mesh::GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, reading)
+                                                       : mesh::gate_mesh(host.geometry, reading);
+    reading.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),
                             read_uv(host, gated, filter.needs_uv),
@@ -169,8 +169,9 @@ void FilterRun::operator()(Progress& progress) {
                             of_faces(host.face_selected, gated),
                             of_faces(host.face_color, gated),
                             gated.center};
+    auto running = progress.part(0.98);
     try {
-        FilterOutput output = filter.run(input, values, progress);
+        FilterOutput output = filter.run(input, values, running);
         save = std::move(output.save);
         result = map_back(host, gated, std::move(output));
     } catch (InvalidMesh& error) {

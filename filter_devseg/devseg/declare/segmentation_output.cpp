@@ -10,9 +10,9 @@ namespace devseg::declare {
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
                                  std::vector<double> face_quality,
                                  const atlas::DiskOptions& options, Progress& progress) {
-    progress.begin_phase("cutting charts to disks", 0.1);
+    auto cutting = progress.part("cutting charts to disks", 1.0);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(
-        input.mesh, atlas::make_chart_map(input.mesh, labels, {}, false), options, progress);
+        input.mesh, atlas::make_chart_map(input.mesh, labels, {}, false), options, cutting);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},

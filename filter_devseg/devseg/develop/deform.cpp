@@ -341,15 +341,16 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
     std::vector<double> ease(before.size(), 1.0);
     DeformResult result;
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        progress.begin_phase("deforming to exact developability", attempt == 0 ? 0.7 : 0.05);
-        DeformResult next = Deformation(mesh, charts, point_of, options, ease).run(progress);
+        auto deforming = progress.part("deforming to exact developability",
+                                       attempt == 0 ? 0.7 : 0.5 * progress.left());
+        DeformResult next = Deformation(mesh, charts, point_of, options, ease).run(deforming);
         if (attempt > 0 && !next.converged)
             break;
         result = std::move(next);
         if (!result.converged)
             break;
-        progress.begin_phase("looking for intersections", 0.05);
-        const auto added = new_crossings(faces, before, by_point(result.points), progress);
+        auto looking = progress.part("looking for intersections", 0.3 * progress.left());
+        const auto added = new_crossings(faces, before, by_point(result.points), looking);
         result.new_intersections = static_cast<Index>(added.size());
         if (added.empty())
             break;

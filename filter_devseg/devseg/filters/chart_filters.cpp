@@ -32,9 +32,9 @@ constexpr const char* colorize_help =
 
 FilterOutput run_disks(const FilterInput& input, const atlas::DiskOptions& options,
                        Progress& progress) {
-    progress.begin_phase("cutting charts to disks", 1.0);
+    auto cutting = progress.part("cutting charts to disks", 1.0);
     atlas::DiskCuts cuts =
-        atlas::cut_charts_to_disks(input.mesh, find_charts(input), options, progress);
+        atlas::cut_charts_to_disks(input.mesh, find_charts(input), options, cutting);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},

@@ -28,10 +28,11 @@ constexpr const char* circle_help =
     "Computer Graphics Forum 21(3), 2002, doi:10.1111/1467-8659.00580";
 
 FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progress& progress) {
-    progress.begin_phase("mapping charts to discs", 1.0);
-    std::vector<double> stretch = metrics::circle_map_stretch(
-        input.mesh, atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress).charts,
-        progress);
+    auto cutting = progress.part("cutting charts to disks", 0.1);
+    const atlas::DiskCuts cuts =
+        atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
+    auto mapping = progress.part("mapping charts to discs", 0.9);
+    std::vector<double> stretch = metrics::circle_map_stretch(input.mesh, cuts.charts, mapping);
     double mean = 0.0;
     double largest = 0.0;
     for (const double s : stretch) {

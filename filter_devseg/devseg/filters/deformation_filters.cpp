@@ -41,11 +41,12 @@ std::vector<Index> shared_points(const std::vector<Index>& source_vertex) {
 
 FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& options,
                         Progress& progress) {
-    progress.begin_phase("cutting charts to disks", 0.02);
+    auto cutting = progress.part("cutting charts to disks", 0.02);
     const atlas::DiskCuts cuts =
-        atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
+        atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
+    auto deforming = progress.part(0.98);
     develop::DeformResult result = develop::deform_to_developable(
-        input.mesh, cuts.charts, shared_points(input.source_vertex), options, progress);
+        input.mesh, cuts.charts, shared_points(input.source_vertex), options, deforming);
     FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {

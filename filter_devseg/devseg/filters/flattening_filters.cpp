@@ -60,14 +60,14 @@ constexpr const char* pack_help =
 
 FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options,
                          Progress& progress) {
-    progress.begin_phase("cutting charts to disks", 0.05);
-    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, find_charts(input), progress);
-    progress.begin_phase("flattening charts", 0.75);
+    auto cutting = progress.part("cutting charts to disks", 0.02);
+    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
+    auto flattening = progress.part("flattening charts", 0.5);
     flatten::FlattenResult flattened =
-        flatten::flatten_charts(input.mesh, cuts.charts, options.method, progress);
-    progress.begin_phase("packing charts", 0.2);
-    const SheetLayout layout = lay_out(input.mesh, flattened.flat, pack::PackOptions{},
-                                       options.pack ? 1.0 : 0.0, progress);
+        flatten::flatten_charts(input.mesh, cuts.charts, options.method, flattening);
+    auto packing = progress.part("packing charts", 0.48);
+    const SheetLayout layout =
+        lay_out(input.mesh, flattened.flat, pack::PackOptions{}, options.pack ? 1.0 : 0.0, packing);
 
     FilterOutput output;
     int mended = 0;
@@ -135,12 +135,12 @@ flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
 
 FilterOutput run_pack(const FilterInput& input, const pack::PackOptions& options,
                       Progress& progress) {
-    progress.begin_phase("packing charts", 1.0);
+    auto packing = progress.part("packing charts", 1.0);
     const atlas::ChartMap charts = atlas::charts_from_uv(input.mesh, *input.uv);
     std::vector<flatten::FlatChart> flat;
     for (atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts))
         flat.push_back(read_flat_chart(input.mesh, *input.uv, std::move(surface)));
-    const SheetLayout layout = lay_out(input.mesh, flat, options, 1.0, progress);
+    const SheetLayout layout = lay_out(input.mesh, flat, options, 1.0, packing);
     FilterOutput output;
     output.values = {{"charts_number", charts.count}};
     note_unsettled(layout, output);

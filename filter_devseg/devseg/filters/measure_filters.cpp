@@ -35,7 +35,7 @@ std::vector<double> column(const std::vector<Record>& records, Number number) {
 }
 
 FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
-    progress.begin_phase("measuring charts", 1.0);
+    const auto measuring = progress.part("measuring charts", 1.0);
     const metrics::SegmentationMeasures m =
         metrics::measure_segmentation(input.mesh, find_charts(input));
     FilterOutput output;
@@ -53,7 +53,7 @@ FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progre
 }
 
 FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Progress& progress) {
-    progress.begin_phase("measuring texture coordinates", 1.0);
+    const auto measuring = progress.part("measuring texture coordinates", 1.0);
     const metrics::ParametrizationMeasures m =
         metrics::measure_parametrization(input.mesh, *input.uv);
     FilterOutput output;

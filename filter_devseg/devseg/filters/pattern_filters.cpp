@@ -253,22 +253,22 @@ FilterOutput run_optimize(const FilterInput& input, const pattern::OptimizeOptio
     const Mesh& mesh = input.mesh;
     FilterOutput output;
     CornerUv uv = *input.uv;
-    progress.begin_phase("removing overlaps", 0.2);
+    auto removing = progress.part("removing overlaps", 0.2);
     pattern::FlatLayout layout = pattern::read_layout(mesh, uv);
     const bool is_stacked = options.remove_overlaps && any_overlap(uv);
     if (is_stacked)
-        pattern::remove_overlaps(mesh, layout, progress);
-    progress.begin_phase("joining small charts", 0.4);
+        pattern::remove_overlaps(mesh, layout, removing);
+    auto joining = progress.part("joining small charts", 0.4);
     if (options.reattach_gussets)
-        pattern::reattach_gussets(mesh, options, layout, progress);
-    progress.begin_phase("packing charts", 0.3);
+        pattern::reattach_gussets(mesh, options, layout, joining);
+    auto packing = progress.part("packing charts", 0.3);
     if (is_stacked || layout.reattached > 0) {
         const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
-        SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, progress);
+        SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, packing);
         note_unsettled(sheet, output);
         uv = std::move(sheet.uv);
     }
-    progress.begin_phase("gluing darts", 0.1);
+    const auto gluing = progress.part("gluing darts", 0.1);
     pattern::GluedDarts glued =
         pattern::glue_darts(mesh, layout.charts, uv, options.max_dart_angle * degrees);
     output.values = {

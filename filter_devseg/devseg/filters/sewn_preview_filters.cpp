@@ -27,9 +27,8 @@ constexpr const char* preview_help =
 FilterOutput run_preview(const FilterInput& input, const pattern::SewnOptions& options,
                          Progress& progress) {
     const Mesh& mesh = input.mesh;
-    progress.begin_phase("sewing and stuffing", 1.0);
-    const pattern::SewnPreview preview =
-        pattern::sew_and_inflate(mesh, *input.uv, options, progress);
+    auto sewing = progress.part("sewing and stuffing", 1.0);
+    const pattern::SewnPreview preview = pattern::sew_and_inflate(mesh, *input.uv, options, sewing);
     Eigen::AlignedBox3d box;
     for (const Vec3& p : mesh.points)
         box.extend(p);

@@ -79,12 +79,17 @@ FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, Fl
     }
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
     const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
-    while (!open.empty())
-        open = cut_apart(mesh, flatten_some(mesh, method, tolerance, open, result.flat, progress),
-                         result, progress);
-    hand_over_slivers(mesh, method, tolerance, result, progress);
+    while (!open.empty()) {
+        auto flattening = progress.part(0.75 * progress.left());
+        const auto cuts = flatten_some(mesh, method, tolerance, open, result.flat, flattening);
+        auto cutting = progress.part(0.1 * progress.left());
+        open = cut_apart(mesh, cuts, result, cutting);
+    }
+    auto handing_over = progress.part(0.3 * progress.left());
+    hand_over_slivers(mesh, method, tolerance, result, handing_over);
+    auto reattaching = progress.part(progress.left());
     if (result.cuts > 0)
-        result.reattached = reattach_parts(mesh, tolerance, result, progress);
+        result.reattached = reattach_parts(mesh, tolerance, result, reattaching);
     return result;
 }
 

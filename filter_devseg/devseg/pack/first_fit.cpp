@@ -271,13 +271,16 @@ std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
     const double count = static_cast<double>(outlines.size());
     for (double assumed = padding_reserve * side;; assumed *= padding_step) {
         const double cell = assumed / std::min(most_cells, cells_of_chart * std::sqrt(count));
+        auto pass = progress.part(0.7 * progress.left());
+        auto drawing = pass.part(0.3);
         const Images images = make_images(outlines, cell, 0.5 * options.padding * assumed,
-                                          options.allow_rotation, progress);
+                                          options.allow_rotation, drawing);
         const auto fill_some = [&](const std::vector<double>& tried) {
             std::vector<Found> found(tried.size());
+            auto filling = pass.part(0.35);
             parallel_for(
                 static_cast<int>(tried.size()),
-                [&](int k) { found[k] = fill(images, tried[k], progress); }, progress);
+                [&](int k) { found[k] = fill(images, tried[k], filling); }, filling);
             return found;
         };
         Found best = fill_some({side}).front();

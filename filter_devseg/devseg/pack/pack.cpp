@@ -84,13 +84,14 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
     const bool few = problem.outlines.size() <= few_charts;
     const bool many = problem.outlines.size() > few_to_fit; // whose work is enough for two chains
     std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : many ? finished_chains : chains);
+    auto beginning = progress.part(0.5);
     parallel_for(
         static_cast<int>(begun.size()),
         [&](int k) {
             begun[k] = begin_nesting(problem, few ? few_aspects[k] : 1.0,
-                                     static_cast<std::uint64_t>(k) + 1, progress);
+                                     static_cast<std::uint64_t>(k) + 1, beginning);
         },
-        progress);
+        beginning);
     if (!few) {
         const auto bad = [](const CoarseLayout& c) {
             return badness(Vec2(c.frame.width, c.frame.height));
@@ -100,9 +101,10 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
         begun.resize(finished_chains);
     }
     std::vector<std::vector<Placement>> found(begun.size());
+    auto finishing = progress.part(0.5);
     parallel_for(
         static_cast<int>(found.size()),
-        [&](int k) { found[k] = finish_nesting(problem, begun[k], progress); }, progress);
+        [&](int k) { found[k] = finish_nesting(problem, begun[k], finishing); }, finishing);
     const auto bad = [&](const std::vector<Placement>& placements) {
         return badness(box_of(problem.outlines, placements).sizes());
     };
@@ -111,17 +113,21 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
 }
 
 std::vector<Placement> nest(NestProblem& problem, Progress& progress) {
-    prepare(problem, progress);
-    return find_placements(problem, progress);
+    auto preparing = progress.part(0.1);
+    prepare(problem, preparing);
+    auto placing = progress.part(0.9);
+    return find_placements(problem, placing);
 }
 
 // The better one of two ways, of which the second is slow.
 std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& options,
                                    Progress& progress) {
     const std::vector<Outline>& outlines = problem.outlines;
-    std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, progress);
+    auto fitting = progress.part(0.3);
+    std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, fitting);
+    auto compacting = progress.part(0.1);
     parallel_for(
-        1, [&](int) { fitted = compact(outlines, fitted, options, progress); }, progress);
+        1, [&](int) { fitted = compact(outlines, fitted, options, compacting); }, compacting);
     const Vec2 fitted_box = box_of(outlines, fitted).sizes();
     // Room that the padding takes is no reason to look for a better layout for seconds.
     const bool many = outlines.size() > many_charts;
@@ -129,7 +135,8 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     if (outlines.size() > most_nested ||
         area >= (many ? enough_use_of_many : enough_use) * fitted_box.prod())
         return fitted;
-    std::vector<Placement> nested = nest(problem, progress);
+    auto nesting = progress.part(0.6);
+    std::vector<Placement> nested = nest(problem, nesting);
     return badness(box_of(outlines, nested).sizes()) < badness(fitted_box) ? nested : fitted;
 }
 
@@ -148,17 +155,19 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     problem.padding = options.padding;
     problem.allow_rotation = options.allow_rotation;
     problem.outlines.resize(items.size());
+    auto outlining = progress.part(0.05);
     parallel_for(
         static_cast<int>(items.size()),
         [&](int i) { problem.outlines[i] = find_outline(*items[i].faces, *items[i].points); },
-        progress);
+        outlining);
+    auto placing = progress.part(0.95);
     problem.side = guess_side(problem.outlines, options);
     if (items.size() == 1 || items.size() > most_fitted)
-        result.placements = pack_on_shelves(problem.outlines, options, problem.side, progress);
+        result.placements = pack_on_shelves(problem.outlines, options, problem.side, placing);
     else if (items.size() > few_to_fit)
-        result.placements = fit_or_nest(problem, options, progress);
+        result.placements = fit_or_nest(problem, options, placing);
     else
-        result.placements = nest(problem, progress);
+        result.placements = nest(problem, placing);
     const Eigen::AlignedBox2d box = box_of(problem.outlines, result.placements);
     // The border of the square keeps half of the padding as well.
     result.side = box.sizes().maxCoeff() / (1.0 - options.padding);

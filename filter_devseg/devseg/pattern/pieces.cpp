@@ -405,36 +405,37 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     const double mm = paper_scale(mesh, options);
     check_coordinates(uv);
 
-    progress.begin_phase("reading charts", 0.2);
+    auto reading = progress.part("reading charts", 0.05);
     ChartAreas areas;
-    const SplitCharts split = limit_charts(mesh, uv, options, mm, areas, progress);
+    const SplitCharts split = limit_charts(mesh, uv, options, mm, areas, reading);
 
-    progress.begin_phase("tracing outlines", 0.3);
+    auto tracing = progress.part("tracing outlines", 0.12);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces =
-        trace_pieces(mesh, uv, split.charts, areas.worth_cutting(), areas.scale * mm, progress);
+        trace_pieces(mesh, uv, split.charts, areas.worth_cutting(), areas.scale * mm, tracing);
     set_length_scales(mesh, areas, mm, pattern);
+    auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
-        refine_outlines(mesh, split.cut, options, mm, pattern, progress);
+        refine_outlines(mesh, split.cut, options, mm, pattern, refining);
 
-    progress.begin_phase("placing pieces", 0.2);
+    const auto placing = progress.part("placing pieces", 0.13);
     for (PatternPiece& piece : pattern.pieces) {
         measure_outlines(piece);
         place_label(piece);
-        progress.check();
+        placing.check();
     }
     separate(split, find_parts(split), pattern);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
-    progress.begin_phase("describing pieces", 0.3);
+    auto describing = progress.part("describing pieces", 0.6);
     number_pieces(pattern.pieces);
     set_seams(pattern, chains);
     set_notches(pattern, options.notch_spacing_mm);
     mark_corners(pattern.pieces, chains, options.corner_angle * degrees);
     if (options.curve_mm > 0.0)
         fit_curves(pattern.pieces, chains, options.curve_mm);
-    describe_pieces(mesh, uv, split.charts, options, mm, pattern, progress);
+    describe_pieces(mesh, uv, split.charts, options, mm, pattern, describing);
     note_folds(pattern, areas);
     note_scale_errors(pattern);
     note_mismatches(pattern);

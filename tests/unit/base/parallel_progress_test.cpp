@@ -175,9 +175,9 @@ TEST_F(ParallelFor, ReportsProgressFromTheCallingThreadOnly) {
         fractions.push_back(fraction);
         return true;
     });
-    progress.begin_phase("work", 1.0);
+    auto working = progress.part("work", 1.0);
     parallel_for(
-        50, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(4)); }, progress);
+        50, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(4)); }, working);
     EXPECT_EQ(callers, std::set<std::thread::id>{std::this_thread::get_id()});
     EXPECT_GE(fractions.size(), 3U);
     EXPECT_GT(fractions.back(), 0.5);
@@ -194,34 +194,64 @@ TEST_F(ParallelFor, PassesOnWhatTheHostsCallbackThrows) {
     EXPECT_LE(done, 3);
 }
 
+void wait_for_the_next_call() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+}
+
 TEST(Progress, FractionsNeverGoBackAndPhasesAddUp) {
     std::vector<std::pair<double, std::string>> calls;
     Progress progress([&](double fraction, const char* phase) {
         calls.emplace_back(fraction, phase);
         return true;
     });
-    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(25)); };
-    progress.begin_phase("first", 0.25);
-    wait();
-    progress.update(0.5);
-    wait();
-    progress.update(0.2); // a worse guess than before
-    progress.begin_phase("second", 0.5);
-    wait();
-    progress.update(1.0);
-    progress.begin_phase("third", 5.0); // more than is left
-    wait();
-    progress.update(7.0);
+    auto first = progress.part("first", 0.25);
+    wait_for_the_next_call();
+    first.update(0.5);
+    wait_for_the_next_call();
+    first.update(0.2); // a worse guess than before
+    auto second = progress.part("second", 0.5);
+    wait_for_the_next_call();
+    second.update(1.0);
+    auto third = progress.part("third", 5.0); // more than is left
+    wait_for_the_next_call();
+    third.update(7.0);
     const std::vector<std::pair<double, std::string>> expected = {
         {0.0, "first"},   {0.125, "first"}, {0.125, "first"}, {0.25, "second"},
         {0.75, "second"}, {0.75, "third"},  {1.0, "third"}};
     EXPECT_EQ(calls, expected);
 }
 
+TEST(Progress, PartsShareWhatTheWholeHas) {
+    std::vector<std::pair<double, std::string>> calls;
+    Progress progress([&](double fraction, const char* name) {
+        calls.emplace_back(fraction, name);
+        return true;
+    });
+    {
+        auto cutting = progress.part("cutting", 0.5);
+        {
+            auto round = cutting.part(0.5); // says nothing new, so nothing sooner
+            wait_for_the_next_call();
+            round.update(0.5);
+            auto joining = round.part("joining", 0.5);
+        } // both are at their ends
+        wait_for_the_next_call();
+        EXPECT_DOUBLE_EQ(cutting.left(), 0.5);
+        cutting.update(0.5); // of what is left
+    }
+    auto packing = progress.part("packing", 0.25);
+    wait_for_the_next_call();
+    progress.update(0.0);
+    const std::vector<std::pair<double, std::string>> expected = {
+        {0.0, "cutting"},   {0.125, "cutting"}, {0.125, "joining"},
+        {0.375, "cutting"}, {0.5, "packing"},   {0.75, "packing"}};
+    EXPECT_EQ(calls, expected);
+    EXPECT_DOUBLE_EQ(progress.left(), 0.25);
+}
+
 TEST(Progress, CallsAreNotMoreFrequentThanAHostCanShow) {
     int calls = 0;
     Progress progress([&](double, const char*) { return ++calls > 0; });
-    progress.begin_phase("work", 1.0);
     const auto end = Clock::now() + std::chrono::milliseconds(110);
     while (Clock::now() < end)
         progress.update(0.5);
@@ -237,17 +267,16 @@ TEST(Progress, OnceCancelledItStaysCancelled) {
     });
     EXPECT_FALSE(progress.cancelled());
     EXPECT_NO_THROW(progress.check());
-    EXPECT_THROW(progress.begin_phase("work", 1.0), Cancelled);
+    EXPECT_THROW(static_cast<void>(progress.part("work", 1.0)), Cancelled);
     EXPECT_TRUE(progress.cancelled());
     EXPECT_THROW(progress.check(), Cancelled);
     EXPECT_THROW(progress.update(0.5), Cancelled);
-    EXPECT_THROW(progress.begin_phase("more", 1.0), Cancelled);
+    EXPECT_THROW(static_cast<void>(progress.part("more", 1.0)), Cancelled);
     EXPECT_EQ(calls, 1); // the host is not asked again
 }
 
 TEST(Progress, WithoutAHostThereIsNothingToCancel) {
     Progress progress;
-    progress.begin_phase("work", 1.0);
     progress.update(1.0);
     progress.check();
     EXPECT_FALSE(progress.cancelled());
@@ -262,8 +291,8 @@ TEST(RunApart, ReportsAndErrorsComeThrough) {
     bool done = false;
     run_on_worker(
         [&](Progress& own) {
-            own.begin_phase("first", 0.5);
-            own.begin_phase("second", 0.5);
+            const auto first = own.part("first", 0.5);
+            const auto second = own.part("second", 0.5);
             done = true;
         },
         progress);
@@ -287,7 +316,7 @@ TEST(RunApart, CancellingDoesNotWaitForTheWork) {
     Progress progress([&](double, const char*) { return ++calls < 3; });
     const auto start = Clock::now();
     const auto work = [owned](Progress& own) {
-        own.begin_phase("deaf", 1.0);
+        const auto part = own.part("deaf", 1.0);
         while (!owned->may_end)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         try {
@@ -310,7 +339,7 @@ TEST(RunApart, CancellingDoesNotWaitForTheWork) {
 TEST(RunApart, WaitsWhileMuchIsLeftBehind) {
     const auto may_end = std::make_shared<std::atomic<bool>>(false);
     const auto deaf = [may_end](Progress& own) {
-        own.begin_phase("deaf", 1.0);
+        const auto part = own.part("deaf", 1.0);
         while (!*may_end)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     };

@@ -84,7 +84,6 @@ TEST(SewnPreview, LongFacesTakeLessStuffing) {
     // more than its edges hold.
     const Mesh tube = checks::gated(shapes::cylinder_tube(12, 1, 1.0, 1e5));
     Progress progress;
-    progress.begin_phase("sewing", 1.0);
     const CornerUv uv = loose_faces(tube, 1.0);
     const SewnPreview preview = sew_and_inflate(tube, uv, {}, progress);
     EXPECT_LT(preview.stuffing, SewnOptions{}.stuffing);

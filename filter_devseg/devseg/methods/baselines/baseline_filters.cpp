@@ -56,7 +56,8 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
 }
 
 FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progress& progress) {
-    VsaResult result = segment_vsa(input.mesh, options, progress);
+    auto segmenting = progress.part(0.95);
+    VsaResult result = segment_vsa(input.mesh, options, segmenting);
     FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_error),
                                               {false, {}}, progress);
     output.values.insert(
@@ -69,7 +70,8 @@ FilterOutput run_vsa(const FilterInput& input, const VsaOptions& options, Progre
 }
 
 FilterOutput run_mcgim(const FilterInput& input, const McgimOptions& options, Progress& progress) {
-    McgimResult result = segment_mcgim(input.mesh, options, progress);
+    auto segmenting = progress.part(0.95);
+    McgimResult result = segment_mcgim(input.mesh, options, segmenting);
     for (double& cost : result.face_cost)
         cost *= input.mesh.unit_length;
     FilterOutput output = segmentation_output(input, result.chart, std::move(result.face_cost),

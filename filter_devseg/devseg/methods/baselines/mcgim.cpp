@@ -70,35 +70,35 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
     const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
 
     // One chart more at a time, from the face that was reached last [SWGSH03, section 4.1].
-    progress.begin_phase("placing seeds", 0.3);
+    auto placing = progress.part("placing seeds", 0.3);
     std::vector<Index> seeds = growth::farthest_point_seeds(
-        mesh, components, static_cast<std::uint32_t>(options.random_seed), progress);
+        mesh, components, static_cast<std::uint32_t>(options.random_seed), placing);
     McgimResult result;
     PathCost cost(mesh);
     growth::MultiHeap<growth::Offers::best> heaps(mesh);
-    const auto grow = [&] {
+    const auto grow = [&](Progress& part) {
         cost.start_over(seeds.size());
-        heaps.grow(seeds, cost, result.chart, progress);
+        heaps.grow(seeds, cost, result.chart, part);
     };
     while (static_cast<Index>(seeds.size()) < count) {
-        grow();
+        grow(placing);
         seeds.push_back(cost.last());
-        progress.update(static_cast<double>(seeds.size()) / count);
+        placing.update(static_cast<double>(seeds.size()) / count);
     }
 
-    progress.begin_phase("growing charts", 0.6);
+    auto growing = progress.part("growing charts", 0.7);
     growth::BorderDistance border(mesh);
     std::set<std::vector<Index>> seen{seeds};
     while (true) {
-        grow();
+        grow(growing);
         ++result.rounds;
-        progress.update(static_cast<double>(result.rounds) / options.max_iterations);
+        growing.update(static_cast<double>(result.rounds) / options.max_iterations);
         if (result.rounds == options.max_iterations)
             break;
         seeds = border
                     .farthest_faces(
                         result.chart, seeds,
-                        [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); }, progress)
+                        [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); }, growing)
                     .face;
         result.converged = !seen.insert(seeds).second;
         if (result.converged)

@@ -280,13 +280,13 @@ VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& pro
     check_charts_number(mesh.face_count(), options.charts_number);
     check_rounds(options.max_iterations, options.random_seed);
     Approximation approximation(mesh, progress);
-    progress.begin_phase("placing seeds", 0.3);
+    auto placing = progress.part("placing seeds", 0.3);
     const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
-    start(mesh, count, options.random_seed, approximation, progress);
+    start(mesh, count, options.random_seed, approximation, placing);
 
-    progress.begin_phase("fitting planes", 0.6);
+    auto fitting = progress.part("fitting planes", 0.7);
     VsaResult result;
-    approximate(options, approximation, result, progress);
+    approximate(options, approximation, result, fitting);
     result.proxies.assign(at(count), Vec3::Zero());
     for (const Face f : mesh.all_faces())
         result.proxies[result.chart[f]] += mesh.face_areas[f] * mesh.face_normals[f];

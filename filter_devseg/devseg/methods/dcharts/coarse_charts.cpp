@@ -115,18 +115,18 @@ Index WorkingSurface::cut_more_darts(const DartOptions& options, const std::vect
 FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
                                      const std::vector<std::uint8_t>& seam,
                                      Progress& progress) const {
-    progress.begin_phase("measuring the final map", 0.2);
+    auto cutting = progress.part("measuring the final map", 0.1);
     const atlas::ChartMap charts =
-        atlas::cut_charts_to_disks(full_, atlas::make_chart_map(full_, chart, seam, false),
-                                   progress)
+        atlas::cut_charts_to_disks(full_, atlas::make_chart_map(full_, chart, seam, false), cutting)
             .charts;
+    auto flattening = progress.part("measuring the final map", 0.9);
     FinalStretch reached;
     reached.all = {1.0, 1.0};
     reached.linf.assign(at(1 + *std::max_element(chart.begin(), chart.end())), 1.0);
     double excess = 0.0;
     for (const flatten::FlatChart& flat :
          flatten::flatten_charts(full_, charts, flatten::FlattenMethod::symmetric_dirichlet,
-                                 progress)
+                                 flattening)
              .flat) {
         judge::TrialMap map;
         judge::measure_stretch(flatten::make_flattening_problem(full_, flat.surface), flat.uv, map);
@@ -142,23 +142,26 @@ FinalStretch WorkingSurface::measure(const std::vector<Index>& chart,
 FinalStretch WorkingSurface::split_above(double linf, const DChartsOptions& options,
                                          std::vector<Index>& chart, std::vector<std::uint8_t>& seam,
                                          Progress& progress) const {
-    FinalStretch reached = measure(chart, seam, progress);
+    auto measuring = progress.part(0.2);
+    FinalStretch reached = measure(chart, seam, measuring);
     // Every round makes charts smaller; these many take a whole surface apart into faces.
     for (int round = 0; round < most_split_rounds && reached.all.linf > linf; ++round) {
+        auto splitting = progress.part(0.2 * progress.left());
         Draft draft = make_untried_draft(full_, chart);
         draft.seam = seam;
         bool changed = false;
         for (std::size_t c = 0; c < reached.linf.size(); ++c)
             if (reached.linf[c] > linf) {
                 const Index worst = static_cast<Index>(c);
-                changed |= split_chart(full_, options, linf, worst, draft, progress) ||
-                           halve_chart(full_, linf, worst, draft, progress);
+                changed |= split_chart(full_, options, linf, worst, draft, splitting) ||
+                           halve_chart(full_, linf, worst, draft, splitting);
             }
         if (!changed)
             break;
         seam = draft.seam;
         chart = atlas::make_chart_map(full_, draft.chart, seam, false).chart;
-        reached = measure(chart, seam, progress);
+        auto again = progress.part(0.2 * progress.left());
+        reached = measure(chart, seam, again);
     }
     return reached;
 }

@@ -289,19 +289,18 @@ DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, P
     check_options(mesh, options);
     DChartsResult result;
 
-    progress.begin_phase("placing seeds", 0.1);
+    auto placing = progress.part("placing seeds", 0.1);
     ConeCost cost(mesh, options, result.chart);
-    for (const Face seed :
-         growth::farthest_point_seeds(mesh, options.charts_number,
-                                      static_cast<std::uint32_t>(options.random_seed), progress))
+    for (const Face seed : growth::farthest_point_seeds(
+             mesh, options.charts_number, static_cast<std::uint32_t>(options.random_seed), placing))
         cost.charts.push_back(first_chart(mesh, seed));
 
-    progress.begin_phase("growing charts", 0.6);
+    auto growing = progress.part("growing charts", 0.7);
     Growth growth(mesh);
-    lloyd(mesh, options, growth, cost, result, progress);
+    lloyd(mesh, options, growth, cost, result, growing);
 
-    progress.begin_phase("filling holes", 0.1);
-    fill_holes(mesh, options, growth, cost, result, progress);
+    auto filling = progress.part("filling holes", 0.2);
+    fill_holes(mesh, options, growth, cost, result, filling);
 
     result.proxies =
         metrics::fit_conics(mesh, result.chart, static_cast<Index>(cost.charts.size()));

@@ -28,11 +28,12 @@ constexpr const char* dcharts_help =
 
 FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOptions& options,
                          Progress& progress) {
-    DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, progress);
-    progress.begin_phase("cutting charts to disks", 0.1);
+    auto segmenting = progress.part(0.98);
+    DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, segmenting);
+    auto cutting = progress.part("cutting charts to disks", 0.02);
     const atlas::ChartMap charts =
         atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
-    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, progress);
+    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
     FilterOutput output;
     output.values = {
         {"charts_number", cuts.charts.count},

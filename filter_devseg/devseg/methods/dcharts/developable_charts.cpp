@@ -81,7 +81,7 @@ void check_bounds(const DevelopableChartsOptions& o) {
 class Designer {
 public:
     Designer(const Mesh& mesh, const DevelopableChartsOptions& options, Progress& progress)
-        : options_(options), progress_(progress), creased_(is_creased(mesh)), growing_(options),
+        : options_(options), creased_(is_creased(mesh)), growing_(options),
           working_(mesh, creased_, std::max(options.charts_number, automatic_seeds), progress) {
         if (options.charts_number == 0)
             growing_.charts_number = std::min(automatic_seeds, mesh.face_count());
@@ -89,9 +89,11 @@ public:
             growing_.max_fitting_error = std::min(options.max_fitting_error, creased_fitting_error);
     }
 
-    DevelopableCharts run() {
-        grow_patches();
-        return options_.charts_number == 0 ? run_automatic() : run_with_estimate();
+    DevelopableCharts run(Progress& progress) {
+        auto growing = progress.part(0.16);
+        grow_patches(growing);
+        auto deciding = progress.part(progress.left());
+        return options_.charts_number == 0 ? run_automatic(deciding) : run_with_estimate(deciding);
     }
 
 private:
@@ -101,50 +103,56 @@ private:
         bool few = false; // few charts matter more than wide necks between their parts
     };
 
-    void grow_patches() {
+    void grow_patches(Progress& progress) {
         const Mesh& mesh = working_.mesh();
-        const DChartsResult grown = segment_dcharts(mesh, growing_, progress_);
+        auto growing = progress.part(0.15);
+        const DChartsResult grown = segment_dcharts(mesh, growing_, growing);
         result_.rounds = grown.rounds;
         result_.converged = grown.converged;
         result_.hole_charts = grown.hole_charts;
         patch_ = grown.chart;
-        progress_.begin_phase("straightening borders", 0.1);
+        auto straightening = progress.part("straightening borders", 0.85);
         if (options_.straighten_boundaries) {
             growth::ExpansionOptions expansion;
             expansion.max_fitting_error = growing_.max_fitting_error;
             expansion.length_weight = creased_ ? creased_length_weight : smooth_length_weight;
-            growth::relabel_by_expansion(mesh, grown.proxies, expansion, patch_, progress_);
+            growth::relabel_by_expansion(mesh, grown.proxies, expansion, patch_, straightening);
         }
         patch_ = atlas::absorb_fragments(mesh, patch_, fragment_share);
     }
 
-    DevelopableCharts run_with_estimate() {
+    DevelopableCharts run_with_estimate(Progress& progress) {
         if (!options_.merge_charts && !options_.add_darts)
-            return finish(make_untried_draft(working_.mesh(), patch_), Straightening::smooth);
+            return finish(make_untried_draft(working_.mesh(), patch_), Straightening::smooth,
+                          progress);
         Aim aim;
         aim.chart = bounds_from(options_.merge_threshold * (creased_ ? creased_threshold : 1.0));
-        Draft draft = try_patches(aim);
-        if (options_.merge_charts && options_.charts_number <= few_seeds &&
-            draft.charts_number() > options_.charts_number)
-            begin_with_more(aim, draft);
-        return finish(draft, Straightening::smooth);
+        const bool few = options_.merge_charts && options_.charts_number <= few_seeds;
+        auto trying = progress.part(few ? 0.5 : 0.95);
+        Draft draft = try_patches(aim, trying);
+        if (few && draft.charts_number() > options_.charts_number)
+            begin_with_more(aim, draft, progress);
+        return finish(draft, Straightening::smooth, progress);
     }
 
-    Draft try_patches(const Aim& aim) {
-        progress_.begin_phase("trying charts", 0.05);
-        Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, progress_);
-        improve(aim, draft);
+    Draft try_patches(const Aim& aim, Progress& progress) {
+        auto trying = progress.part("trying charts", 0.07);
+        Draft draft = make_draft(working_.mesh(), patch_, {}, aim.chart.l2, trying);
+        auto improving = progress.part(0.93);
+        improve(aim, draft, improving);
         return draft;
     }
 
     // What few seeds do not reach becomes charts of its own, of any shape: charts of more seeds may
     // be joined to fewer.
-    void begin_with_more(const Aim& aim, Draft& draft) {
+    void begin_with_more(const Aim& aim, Draft& draft, Progress& progress) {
         const std::vector<Index> patch = patch_;
         const DevelopableCharts result = result_;
         growing_.charts_number = std::min(more_seeds, working_.mesh().face_count());
-        grow_patches();
-        Draft other = try_patches(aim);
+        auto growing = progress.part(0.2 * progress.left());
+        grow_patches(growing);
+        auto trying = progress.part(0.9 * progress.left());
+        Draft other = try_patches(aim, trying);
         if (other.charts_number() < draft.charts_number()) {
             draft = std::move(other);
         } else {
@@ -153,25 +161,25 @@ private:
         }
     }
 
-    void improve(const Aim& aim, Draft& draft) {
+    void improve(const Aim& aim, Draft& draft, Progress& progress) {
         if (options_.merge_charts) {
-            progress_.begin_phase("joining charts", 0.3);
+            auto joining = progress.part("joining charts", options_.add_darts ? 0.75 : 1.0);
             MergeOptions merging;
             merging.chart = aim.chart;
             merging.max_excess = aim.max_excess;
             merging.least_neck = aim.few ? 0.0 : merging.least_neck;
-            result_.joins = merge_charts(working_.mesh(), merging, draft, progress_);
+            result_.joins = merge_charts(working_.mesh(), merging, draft, joining);
         }
         if (options_.add_darts) {
-            progress_.begin_phase("cutting darts", 0.1);
+            auto cutting = progress.part("cutting darts", 1.0);
             DartOptions darts;
             darts.chart = aim.chart;
-            cut_darts(working_.mesh(), darts, draft, progress_);
+            cut_darts(working_.mesh(), darts, draft, cutting);
         }
     }
 
     // Splits the charts that contribute most until the stretch of all leaves room for joins.
-    void split_worst(const Aim& aim, Draft& draft) {
+    void split_worst(const Aim& aim, Draft& draft, Progress& progress) {
         std::vector<std::uint8_t> whole; // charts that could not be split
         for (int i = 0; i < most_splits && draft.excess() > room_for_joins * aim.max_excess; ++i) {
             whole.resize(draft.faces.size(), 0);
@@ -182,22 +190,22 @@ private:
                     worst = c;
             if (worst < 0)
                 return;
-            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress_))
+            if (!split_chart(working_.mesh(), growing_, aim.chart.l2, worst, draft, progress))
                 whole[worst] = 1;
         }
     }
 
     // The fewest charts within the bounds: what the coarse surface may use of them is lowered until
     // the map of the full surface keeps them.
-    DevelopableCharts run_automatic() {
+    DevelopableCharts run_automatic(Progress& progress) {
         const double allowed = options_.max_l2_stretch * options_.max_l2_stretch - 1.0;
         const bool has_linf = options_.max_linf_stretch > 0.0;
         double share = first_share;
         double linf = has_linf ? options_.max_linf_stretch
                                : bounds_from(loose_linf * (options_.max_l2_stretch - 1.0)).linf;
-        progress_.begin_phase("trying charts", 0.05);
+        auto trying = progress.part("trying charts", 0.04);
         const Draft start =
-            make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, progress_);
+            make_draft(working_.mesh(), patch_, {}, options_.max_l2_stretch, trying);
         DevelopableCharts best;
         const int attempts = has_linf ? most_linf_attempts : most_attempts;
         for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -206,11 +214,16 @@ private:
             aim.max_excess = share * allowed * working_.mesh().total_area;
             aim.few = true;
             Draft draft = start;
-            split_worst(aim, draft);
-            improve(aim, draft);
+            auto trial = progress.part(0.5 * progress.left());
+            auto splitting = trial.part("splitting charts", 0.04);
+            split_worst(aim, draft, splitting);
+            auto improving = trial.part(0.76);
+            improve(aim, draft, improving);
             StretchBounds reached;
             for (const auto straightening : {Straightening::smooth, Straightening::fitting}) {
-                DevelopableCharts found = finish_within_bounds(aim, draft, straightening);
+                auto finishing = trial.part(0.1);
+                DevelopableCharts found =
+                    finish_within_bounds(aim, draft, straightening, finishing);
                 reached = {found.l2_stretch, found.linf_stretch};
                 if (best.chart.empty() || distance(found) < distance(best))
                     best = std::move(found);
@@ -224,7 +237,7 @@ private:
         }
         if (has_linf && best.l2_stretch <= options_.max_l2_stretch) {
             const FinalStretch reached = working_.split_above(options_.max_linf_stretch, growing_,
-                                                              best.chart, best.seam, progress_);
+                                                              best.chart, best.seam, progress);
             note_stretch(reached.all, best);
             best.fitting_error = working_.fitting_errors(best.chart);
         }
@@ -242,15 +255,19 @@ private:
 
     // With more darts where the worst spot needs them, and measured.
     DevelopableCharts finish_within_bounds(const Aim& aim, const Draft& draft,
-                                           Straightening straightening) {
-        DevelopableCharts found = finish(draft, straightening);
-        note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+                                           Straightening straightening, Progress& progress) {
+        auto finishing = progress.part(0.1);
+        DevelopableCharts found = finish(draft, straightening, finishing);
+        auto measuring = progress.part(0.6);
+        note_stretch(working_.measure(found.chart, found.seam, measuring).all, found);
         if (options_.max_linf_stretch > 0.0 && options_.add_darts && !found.bounds_kept &&
             found.l2_stretch <= options_.max_l2_stretch) {
             DartOptions darts;
             darts.chart = {aim.chart.l2, options_.max_linf_stretch};
-            found.darts += working_.cut_more_darts(darts, found.chart, found.seam, progress_);
-            note_stretch(working_.measure(found.chart, found.seam, progress_).all, found);
+            auto cutting = progress.part("cutting darts", 0.1);
+            found.darts += working_.cut_more_darts(darts, found.chart, found.seam, cutting);
+            auto again = progress.part(0.1);
+            note_stretch(working_.measure(found.chart, found.seam, again).all, found);
         }
         return found;
     }
@@ -261,25 +278,24 @@ private:
         charts.bounds_kept = distance(charts) <= 1.0;
     }
 
-    DevelopableCharts finish(const Draft& draft, Straightening straightening) {
-        progress_.begin_phase("finishing borders", 0.1);
+    DevelopableCharts finish(const Draft& draft, Straightening straightening, Progress& progress) {
+        auto finishing = progress.part("finishing borders", 1.0);
         if (!options_.straighten_boundaries)
             straightening = Straightening::none;
         else if (!options_.merge_charts) // the bound is F_max then, and not a stretch
             straightening = Straightening::fitting;
         FullCharts full = working_.carry_over(draft, patch_, growing_.max_fitting_error,
-                                              straightening, progress_);
+                                              straightening, finishing);
         DevelopableCharts result = result_;
         result.chart = std::move(full.chart);
         result.seam = std::move(full.seam);
         result.darts = full.darts;
         result.fitting_error = working_.fitting_errors(result.chart);
-        progress_.check();
+        finishing.check();
         return result;
     }
 
     const DevelopableChartsOptions& options_;
-    Progress& progress_;
     const bool creased_;
     DChartsOptions growing_;
     WorkingSurface working_;
@@ -297,8 +313,9 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
         growing.charts_number = 1;
     check_options(mesh, growing);
     check_bounds(options);
-    progress.begin_phase("coarsening", 0.2);
-    return Designer(mesh, options, progress).run();
+    auto coarsening = progress.part("coarsening", 0.06);
+    Designer designer(mesh, options, coarsening);
+    return designer.run(progress);
 }
 
 } // namespace devseg::dcharts

@@ -185,7 +185,8 @@ Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft,
     JoinedMaps joined;
     for (Index joins = 0;; ++joins) {
         const Borders borders = measure_borders(mesh, draft.chart);
-        try_new_pairs(mesh, options, draft, borders, joined, progress);
+        auto trying = progress.part(0.0); // joins say how far it is
+        try_new_pairs(mesh, options, draft, borders, joined, trying);
         const Pair best = choose_pair(mesh, options, draft, borders, joined, progress);
         if (best.first < 0)
             return joins;

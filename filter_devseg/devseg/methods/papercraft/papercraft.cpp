@@ -155,25 +155,25 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     growth::VertexGrowth growth(mesh, cost);
     PapercraftResult result;
 
-    progress.begin_phase("growing charts", 0.2);
+    auto seeding = progress.part("placing seeds", 0.05);
     double threshold = options.growth_threshold;
-    std::vector<Index> seeds = growth.find_seeds(threshold, progress);
+    std::vector<Index> seeds = growth.find_seeds(threshold, seeding);
     for (int i = 0; i < most_halvings && static_cast<Index>(seeds.size()) < wanted; ++i)
-        seeds = growth.find_seeds(threshold *= 0.5, progress);
+        seeds = growth.find_seeds(threshold *= 0.5, seeding);
     result.initial_charts = static_cast<Index>(seeds.size());
 
-    progress.begin_phase("selecting charts", 0.7);
-    growth::VertexCharts grown = growth.grow(seeds, progress);
+    auto selecting = progress.part("selecting charts", 0.92);
+    growth::VertexCharts grown = growth.grow(seeds, selecting);
     while (static_cast<Index>(seeds.size()) > wanted) {
         ++result.rounds;
         const Index surplus = static_cast<Index>(seeds.size()) - wanted;
         const bool last = result.rounds == options.max_iterations;
         seeds = cull(mesh, seeds, grown,
                      last ? surplus : std::max<Index>(1, surplus / share_of_surplus));
-        grown = growth.grow(seeds, progress);
+        grown = growth.grow(seeds, selecting);
     }
 
-    progress.begin_phase("closing slits", 0.1);
+    const auto closing = progress.part("closing slits", 0.03);
     atlas::ChartMap charts = growth::adopt_orphans(mesh, grown);
     result.closed_edges =
         atlas::close_slits(mesh, cost, options.slit_threshold * diagonal, charts.seam).closed_edges;

@@ -228,26 +228,27 @@ bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
         const std::vector<std::vector<Index>> faces = open_patches(surface, seam, open);
         if (faces.empty())
             return all_developable;
+        auto splitting = progress.part(0.5 * progress.left());
         std::vector<Split> splits(faces.size());
         const auto split = [&](int i) {
             Split& result = splits[static_cast<std::size_t>(i)];
             const std::vector<Index>& patch = faces[static_cast<std::size_t>(i)];
-            const PatchTrial trial = try_patch(mesh, patch, seam, limits, true, progress);
+            const PatchTrial trial = try_patch(mesh, patch, seam, limits, true, splitting);
             result.is_needed = !trial.accepted;
             const Splitter splitter(mesh, seam, patch);
             if (!trial.is_disk) {
-                result.cuts = splitter.disk_cuts(progress);
+                result.cuts = splitter.disk_cuts(splitting);
                 return;
             }
             const bool has_map = !trial.face.empty() && round < tuning.patient_rounds;
             if (result.is_needed && has_map)
                 result.cuts = splitter.isoline(trial);
             if (result.is_needed && has_map && result.cuts.empty())
-                result.cuts = splitter.path_through(trial, graph, weight, progress);
+                result.cuts = splitter.path_through(trial, graph, weight, splitting);
             if (result.is_needed && result.cuts.empty())
                 result.cuts = splitter.halves();
         };
-        parallel_for(static_cast<int>(faces.size()), split, progress);
+        parallel_for(static_cast<int>(faces.size()), split, splitting);
         for (std::size_t i = 0; i < splits.size(); ++i) {
             if (splits[i].cuts.empty())
                 for (const Face f : faces[i]) {

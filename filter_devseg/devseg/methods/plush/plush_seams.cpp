@@ -45,26 +45,26 @@ public:
     PlushSegmentation(const WorkingSurface& surface, const PlushOptions& options, Skeleton skeleton,
                       PlushSeams& result, Progress& progress)
         : surface_(surface), mesh_(surface.mesh), options_(options), skeleton_(std::move(skeleton)),
-          result_(result), progress_(progress), graph_(build_vertex_graph(mesh_)),
-          limb_borders_(mesh_.twin.size(), 0) {
-        weigh_edges();
+          result_(result), graph_(build_vertex_graph(mesh_)), limb_borders_(mesh_.twin.size(), 0) {
+        weigh_edges(progress);
     }
 
     /// Seams of the open part, with those that there are elsewhere.
-    SeamMarks decide(const OpenPart& open, const SeamMarks& hard, double max_area_change) {
+    SeamMarks decide(const OpenPart& open, const SeamMarks& hard, double max_area_change,
+                     Progress& progress) {
         open_ = open;
         hard_ = hard;
         max_area_change_ = max_area_change;
         seam_ = open.seam;
         seam_.resize(mesh_.twin.size(), 0);
-        lay_candidates();
-        remove();
+        lay_candidates(progress);
+        remove(progress);
         return seam_;
     }
 
     /// The seams, with small patches and thin tongues given to neighbours.
-    SeamMarks without_remnants(const SeamMarks& seam, const SeamMarks& hard,
-                               double max_area_change) {
+    SeamMarks without_remnants(const SeamMarks& seam, const SeamMarks& hard, double max_area_change,
+                               Progress& progress) {
         hard_ = hard;
         seam_ = seam;
         PatchTester tester(surface_, {max_area_change, false});
@@ -74,20 +74,20 @@ public:
         removal.least_neck = tuning.narrow_neck;
         const SeamSetting setting{
             surface_, graph_, hard_, weights_.weight, tester, tester, options_.max_iterations};
-        progress_.begin_phase("giving tongues away", 0.04);
+        auto giving = progress.part("giving tongues away", 0.35);
         const double width = std::max(tuning.thin * std::sqrt(mesh_.total_area),
                                       tuning.least_thin * mean_edge_length(mesh_));
         PatchTester search(surface_, {max_area_change, true});
         const SeamSetting searching{
             surface_, graph_, hard_, weights_.weight, search, search, options_.max_iterations};
-        result_.trials += give_tongues_away(searching, width, seam_, progress_);
-        progress_.begin_phase("joining patches", 0.04);
-        result_.trials += join_patches(setting, removal, seam_, progress_);
-        progress_.begin_phase("absorbing remnants", 0.01);
+        result_.trials += give_tongues_away(searching, width, seam_, giving);
+        auto joining = progress.part("joining patches", 0.2);
+        result_.trials += join_patches(setting, removal, seam_, joining);
+        auto absorbing = progress.part("absorbing remnants", 0.25);
         result_.trials +=
-            absorb_remnants(setting, natural_cost(), tuning.small_remnant / 2.0, seam_, progress_);
-        progress_.begin_phase("blunting corners", 0.02);
-        result_.trials += blunt_acute_corners(setting, seam_, progress_);
+            absorb_remnants(setting, natural_cost(), tuning.small_remnant / 2.0, seam_, absorbing);
+        auto blunting = progress.part("blunting corners", 0.2);
+        result_.trials += blunt_acute_corners(setting, seam_, blunting);
         return seam_;
     }
 
@@ -119,25 +119,24 @@ public:
     const WorkingSurface& surface() const { return surface_; }
 
 private:
-    void weigh_edges() {
-        progress_.begin_phase("finding the skeleton", 0.08);
+    void weigh_edges(Progress& progress) {
         if (skeleton_.empty())
-            skeleton_ = extract_skeleton(mesh_, progress_);
+            skeleton_ = extract_skeleton(mesh_, progress);
         BoneWeights bones;
         if (!skeleton_.empty())
-            bones = bone_weights(mesh_, skeleton_, progress_);
+            bones = bone_weights(mesh_, skeleton_, progress);
         result_.bones = static_cast<Index>(skeleton_.bones.size());
         curvature_ = mean_curvature(mesh_);
         weights_ = seam_weights(
             mesh_, {options_.geodesic_weight, options_.skeleton_weight, options_.curvature_weight},
-            curvature_, skeleton_, bones, progress_);
+            curvature_, skeleton_, bones, progress);
         for (std::size_t h = 0; h < surface_.image.size() / 2; ++h) {
             for (std::vector<double>* values : {&weights_.weight, &weights_.stray}) {
                 double& image = (*values)[surface_.image[h]];
                 (*values)[h] = image = 0.5 * ((*values)[h] + image);
             }
         }
-        progress_.update(1.0);
+        progress.update(0.9);
         const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh_.points.size())));
         extrema_ = find_extrema(graph_, conformal_factor(mesh_),
                                 options_.max_extrema > 0 ? options_.max_extrema : most);
@@ -161,11 +160,10 @@ private:
         return first;
     }
 
-    void lay_candidates() {
-        progress_.begin_phase("laying seams", 0.08);
+    void lay_candidates(Progress& progress) {
+        auto laying = progress.part("laying seams", 0.04);
         mark_plane();
-        const std::vector<Limb> limbs =
-            find_limbs(mesh_, graph_, curvature_, limb_tips(), progress_);
+        const std::vector<Limb> limbs = find_limbs(mesh_, graph_, curvature_, limb_tips(), laying);
         result_.limbs = std::max(result_.limbs, static_cast<Index>(limbs.size()));
         for (const Limb& limb : limbs)
             for (const HalfEdge h : limb_border(mesh_, limb)) {
@@ -173,11 +171,11 @@ private:
                 limb_borders_[h] = 1;
             }
         mirror_marks(surface_, limb_borders_);
-        add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, progress_);
+        add_structural_seams(mesh_, graph_, weights_.weight, extrema_, seam_, laying);
         clean_patches();
-        progress_.begin_phase("cutting patches", 0.15);
+        auto cutting = progress.part("cutting patches", 0.03);
         add_local_seams(surface_, graph_, weights_.weight, {max_area_change_, true}, open_.faces,
-                        seam_, progress_);
+                        seam_, cutting);
         result_.candidates +=
             static_cast<Index>(find_segments(mesh_, seam_, hard_, weights_.weight).size());
     }
@@ -202,25 +200,25 @@ private:
         mirror_marks(surface_, seam_);
     }
 
-    void remove() {
+    void remove(Progress& progress) {
         PatchTester tester(surface_, {max_area_change_, true});
         PatchTester strict(surface_, {tuning.nearly_flat * max_area_change_, true});
         const SeamSetting setting{
             surface_, graph_, hard_, weights_.weight, tester, strict, options_.max_iterations};
         RemovalOptions removal;
         removal.random_seed = options_.random_seed;
-        progress_.begin_phase("removing seams", 0.25);
-        result_.trials += remove_seams(setting, removal, seam_, progress_);
-        progress_.begin_phase("joining patches", 0.15);
-        result_.trials += join_patches(setting, removal, seam_, progress_);
-        progress_.begin_phase("straightening seams", 0.06);
-        straighten_seams(setting, seam_, progress_);
-        progress_.begin_phase("joining patches", 0.05);
+        auto removing = progress.part("removing seams", 0.35);
+        result_.trials += remove_seams(setting, removal, seam_, removing);
+        auto joining = progress.part("joining patches", 0.22);
+        result_.trials += join_patches(setting, removal, seam_, joining);
+        auto straightening = progress.part("straightening seams", 0.25);
+        straighten_seams(setting, seam_, straightening);
+        auto joining_small = progress.part("joining patches", 0.03);
         removal.most_area = tuning.small_patch;
         removal.least_neck = tuning.narrow_neck;
-        result_.trials += join_patches(setting, removal, seam_, progress_);
-        progress_.begin_phase("shortening darts", 0.02);
-        result_.trials += shorten_darts(setting, seam_, progress_);
+        result_.trials += join_patches(setting, removal, seam_, joining_small);
+        auto shortening = progress.part("shortening darts", 0.08);
+        result_.trials += shorten_darts(setting, seam_, shortening);
     }
 
     const WorkingSurface& surface_;
@@ -228,7 +226,6 @@ private:
     const PlushOptions& options_;
     Skeleton skeleton_;
     PlushSeams& result_;
-    Progress& progress_;
     const VertexGraph graph_;
     std::vector<double> curvature_; // #V
     SeamWeights weights_;
@@ -270,33 +267,40 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_ch
 // working surface, and in the end on the model itself.
 SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
-    PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
+    auto weighing = progress.part("finding the skeleton", 0.02);
+    PlushSegmentation on_model(model, options, working.skeleton(), result, weighing);
     const std::vector<double> cost = on_model.natural_cost();
     const bool is_model =
         !working.surface().is_symmetric() && working.mesh().face_count() == model.mesh.face_count();
     double bound = (is_model ? tuning.own_margin : tuning.margin) * options.max_area_change;
-    SeamMarks seam = working.decide({}, {}, bound);
+    auto deciding = progress.part(0.5);
+    SeamMarks seam = working.decide({}, {}, bound, deciding);
     const int most_rounds =
         working.surface().is_symmetric() ? tuning.second_thoughts + 1 : tuning.second_thoughts;
     OpenPart part;
     for (int round = 0;; ++round) {
-        progress.begin_phase("transferring seams", 0.02);
+        auto transferring = progress.part("transferring seams", 0.06);
         SeamMarks carried = transfer_seams(working.mesh(), seam, model.mesh, on_model.graph(),
-                                           on_model.stray(), progress);
+                                           on_model.stray(), transferring);
         cut_corners(model.mesh, carried);
         part = mend_patches(model.mesh, on_model.graph(), cost, std::move(carried),
-                            {options.max_area_change, false}, progress);
+                            {options.max_area_change, false}, transferring);
         if (!part.has_open_faces() || round == most_rounds)
             break;
         const OpenPart again = same_part(working.surface(), seam, model.mesh, part);
         if (!again.has_open_faces())
             break;
         bound *= tuning.tighter;
-        seam = working.decide(again, fixed_seams(working.mesh(), again), bound);
+        auto second = progress.part(0.4 * progress.left());
+        seam = working.decide(again, fixed_seams(working.mesh(), again), bound, second);
     }
-    if (part.has_open_faces())
-        part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change);
-    return on_model.without_remnants(part.seam, {}, options.max_area_change);
+    if (part.has_open_faces()) {
+        auto last = progress.part(0.6 * progress.left());
+        part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change,
+                                    last);
+    }
+    auto cleaning = progress.part(progress.left());
+    return on_model.without_remnants(part.seam, {}, options.max_area_change, cleaning);
 }
 
 // The same; patches of large models that are not developable are left to settled_seams.
@@ -305,14 +309,17 @@ SeamMarks decide(PlushSegmentation& working, const Mesh& mesh, const PlushOption
     const WorkingSurface model{mesh, {}};
     if (mesh.face_count() <= tuning.large_model)
         return decide_for_model(working, model, options, result, progress);
-    const WorkingSurface smaller = plain_working_surface(mesh, tuning.large_model / 2, progress);
+    auto coarsening = progress.part("coarsening", 0.1);
+    const WorkingSurface smaller = plain_working_surface(mesh, tuning.large_model / 2, coarsening);
     PlushOptions stricter = options;
     stricter.max_area_change *= tuning.own_margin;
-    const SeamMarks seam = decide_for_model(working, smaller, stricter, result, progress);
-    const PlushSegmentation on_model(model, options, working.skeleton(), result, progress);
-    progress.begin_phase("transferring seams", 0.02);
+    auto deciding = progress.part(0.7);
+    const SeamMarks seam = decide_for_model(working, smaller, stricter, result, deciding);
+    auto weighing = progress.part("finding the skeleton", 0.1);
+    const PlushSegmentation on_model(model, options, working.skeleton(), result, weighing);
+    auto transferring = progress.part("transferring seams", 0.1);
     SeamMarks carried =
-        transfer_seams(smaller.mesh, seam, mesh, on_model.graph(), on_model.stray(), progress);
+        transfer_seams(smaller.mesh, seam, mesh, on_model.graph(), on_model.stray(), transferring);
     cut_corners(mesh, carried);
     return carried;
 }
@@ -338,22 +345,28 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
 PlushSeams segment_in_own_frame(const Mesh& framed, const Mesh& mesh, const PlushOptions& options,
                                 Skeleton skeleton, const SeamMarks& hard, Progress& progress) {
     PlushSeams result;
-    progress.begin_phase("finding symmetry", 0.06);
+    auto finding = progress.part("finding symmetry", 0.1);
     std::optional<MirrorPlane> plane;
     if (options.symmetric)
-        plane = find_mirror_plane(framed, tuning.symmetric_within, progress);
-    const WorkingSurface surface = make_working_surface(framed, plane, hard, progress);
+        plane = find_mirror_plane(framed, tuning.symmetric_within, finding);
+    const WorkingSurface surface = make_working_surface(framed, plane, hard, finding);
     result.is_symmetric = surface.is_symmetric();
-    PlushSegmentation working(surface, options, std::move(skeleton), result, progress);
+    auto weighing = progress.part("finding the skeleton", 0.04);
+    PlushSegmentation working(surface, options, std::move(skeleton), result, weighing);
+    auto deciding = progress.part(0.8);
     SeamMarks seam;
-    if (!hard.empty())
-        seam = working.without_remnants(working.decide({}, hard, options.max_area_change), hard,
-                                        options.max_area_change);
-    else
-        seam = decide(working, framed, options, result, progress);
-    progress.begin_phase("measuring patches", 0.05);
-    seam = settled_seams(mesh, std::move(seam), options, result, progress);
-    measure_patches(mesh, seam, options.max_area_change, result, progress);
+    if (!hard.empty()) {
+        auto first = deciding.part(0.8);
+        seam = working.decide({}, hard, options.max_area_change, first);
+        auto cleaning = deciding.part(0.2);
+        seam = working.without_remnants(seam, hard, options.max_area_change, cleaning);
+    } else {
+        seam = decide(working, framed, options, result, deciding);
+    }
+    auto settling = progress.part("measuring patches", 0.5 * progress.left());
+    seam = settled_seams(mesh, std::move(seam), options, result, settling);
+    auto measuring = progress.part("measuring patches", progress.left());
+    measure_patches(mesh, seam, options.max_area_change, result, measuring);
     result.shares = seam_shares(framed, seam, working.guides(), plane, progress);
     return result;
 }

@@ -224,6 +224,7 @@ private:
     // the time.
     void try_choices(const Network& network, std::vector<Removal>& round) {
         const std::vector<Choice> turns = in_turn(round);
+        auto trying = progress_.part(0.0); // the rounds know how far they are
         std::mutex mutex;
         parallel_for(
             static_cast<int>(turns.size()),
@@ -240,7 +241,7 @@ private:
                 const std::lock_guard<std::mutex> lock(mutex);
                 removal.taken = std::min(removal.taken, choice.index);
             },
-            progress_);
+            trying);
         for (const Removal& removal : round)
             trials_ += static_cast<Index>(std::min(removal.taken + 1, removal.choices.size()));
     }

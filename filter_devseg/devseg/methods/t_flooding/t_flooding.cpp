@@ -281,17 +281,17 @@ private:
 TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& options,
                                    Progress& progress) {
     check_options(mesh, options);
-    progress.begin_phase("measuring Gauss areas", 0.05);
+    const auto measuring = progress.part("measuring Gauss areas", 0.02);
     metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, options.crease_angle * degrees);
 
-    progress.begin_phase("placing seeds", 0.05);
+    auto placing = progress.part("placing seeds", 0.03);
     const std::vector<Index> seeds = growth::farthest_point_seeds(
         mesh, growth::at_least_one_per_component(mesh, options.charts_number),
-        static_cast<std::uint32_t>(options.random_seed), progress);
+        static_cast<std::uint32_t>(options.random_seed), placing);
     const Index count = static_cast<Index>(seeds.size());
 
-    progress.begin_phase("flooding", 0.6);
-    Rounds rounds(mesh, areas, options, progress);
+    auto flooding = progress.part("flooding", 0.55);
+    Rounds rounds(mesh, areas, options, flooding);
     rounds.run(seeds, true);
     if (!rounds.is_balanced(unbalanced))
         rounds.run(seeds, false);
@@ -301,8 +301,8 @@ TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& opt
     result.rounds = rounds.count();
     result.converged = rounds.count() < options.max_iterations;
     if (options.straighten_boundaries) {
-        progress.begin_phase("straightening borders", 0.2);
-        balance_borders(mesh, areas, {}, count, result.chart, progress);
+        auto straightening = progress.part("straightening borders", 1.0);
+        balance_borders(mesh, areas, {}, count, result.chart, straightening);
     }
     result.chart_gauss_area = metrics::chart_gauss_areas(mesh, areas, result.chart, count);
     result.gauss_area_std = metrics::standard_deviation(result.chart_gauss_area);

@@ -29,7 +29,8 @@ struct Options : TFloodingOptions {
 };
 
 FilterOutput run_t_flooding(const FilterInput& input, const Options& options, Progress& progress) {
-    TFloodingResult result = segment_t_flooding(input.mesh, options, progress);
+    auto segmenting = progress.part(0.96);
+    TFloodingResult result = segment_t_flooding(input.mesh, options, segmenting);
     FilterOutput output =
         segmentation_output(input, result.chart, std::move(result.face_gauss_area),
                             {options.cut_tips, {all_horns}}, progress);

@@ -187,7 +187,7 @@ TEST(Abf, RunsAreEqualAndCanBeCancelled) {
     const Disk disk(bumpy_grid(8));
     EXPECT_EQ(flatten(disk).uv, flatten(disk).uv);
     Progress stopped([](double, const char*) { return false; });
-    EXPECT_THROW(stopped.begin_phase("flattening", 1.0), Cancelled);
+    EXPECT_THROW(stopped.update(0.0), Cancelled);
     EXPECT_THROW(flatten_abf(disk.problem, AbfOptions{}, stopped), Cancelled);
 }
 

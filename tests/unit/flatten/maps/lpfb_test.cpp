@@ -297,7 +297,7 @@ TEST(Lpfb, RunsAreEqualAndCanBeCancelled) {
     const Disk disk(shapes::torus(14, 9));
     EXPECT_EQ(flatten(disk).uv, flatten(disk).uv);
     Progress stopped([](double, const char*) { return false; });
-    EXPECT_THROW(stopped.begin_phase("flattening", 1.0), Cancelled);
+    EXPECT_THROW(stopped.update(0.0), Cancelled);
     EXPECT_THROW(flatten_lpfb(disk.problem, LpfbOptions{}, stopped), Cancelled);
 }
 

@@ -234,7 +234,6 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
             mark(coarse, h, 1, seam);
     const mesh::FaceComponents before = find_patches(coarse, seam);
     Progress progress;
-    progress.begin_phase("carrying", 1.0);
     SeamMarks carried = transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
                                        std::vector<double>(fine.twin.size(), 0.0), progress);
     cut_corners(fine, carried);

@@ -179,7 +179,6 @@ TEST(Tongues, GoToThePatchBesideThem) {
     });
     const double before = seam_length(mesh, seam);
     Progress progress;
-    progress.begin_phase("tongues", 1.0);
     EXPECT_GE(give_tongues_away(plate.setting(), 0.12 * unit, seam, progress), 1);
     EXPECT_EQ(find_patches(mesh, seam).count, 2);
     EXPECT_LT(seam_length(mesh, seam), before - 0.3 * unit);
