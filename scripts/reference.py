@@ -1,7 +1,7 @@
 """Writes what is generated from the filter declarations.
 
-These are docs/filters.md, the tables in the pages of docs/methods and in README.md, and the scripts
-of scripts/mlx.
+These are docs/filters.md, the tables in the pages of docs/methods and in README.md, the scripts of
+scripts/mlx, and the methods of the command line in scripts/devseg/methods_table.py.
 
 .venv/bin/python scripts/reference.py           writes the files that have changed
 .venv/bin/python scripts/reference.py --check   fails where a file is not up to date
@@ -23,6 +23,7 @@ from xml.sax.saxutils import quoteattr
 ROOT = Path(__file__).resolve().parents[1]
 DESCRIBE = ROOT / "build" / "release" / "tests" / "devseg_describe_filters"
 MLX = Path("scripts") / "mlx"
+METHODS_TABLE = Path("scripts") / "devseg" / "methods_table.py"
 METHOD_PAGES = Path("docs") / "methods"
 # A page asks for the tables of a filter by a line such as <!-- parameters of PYTHON_NAME -->; they
 # stand between it and the next END.
@@ -48,10 +49,9 @@ SEGMENTATION = re.compile(r"compute_segmentation_(\w+)_per_face")
 # What most filters work on is made by these.
 PREPARATION = ("Segmentation: D-Charts", "Charts: Flatten")
 AFTER_SEGMENTATION = ("Charts: Flatten", "Pattern: Export")
-# Methods whose charts are deformed first.
-DEFORMED = ("papercraft",)
+# First where the method says that its charts are deformed.
 DEFORMATION = "Charts: Deform to Exact Developability"
-# The bits of Writes in devseg/filters/filter.h.
+# The bits of Writes in devseg/declare/filter.h.
 WRITES = {
     1: "face attributes `chart_id` and `seam_edges`, edge selection",
     2: "face quality",
@@ -271,9 +271,9 @@ def mlx_scripts(table: list[dict[str, Any]]) -> dict[str, str]:
     for filter_ in table:
         method = SEGMENTATION.fullmatch(filter_["python_name"])
         if method:
-            after = (
-                (DEFORMATION, *AFTER_SEGMENTATION) if method[1] in DEFORMED else AFTER_SEGMENTATION
-            )
+            after = AFTER_SEGMENTATION
+            if filter_["command"]["deforms"]:
+                after = (DEFORMATION, *after)
             steps = [filter_, *(by_name[name] for name in after if name in by_name)]
             scripts[f"{method[1]}.mlx"] = mlx_script(steps)
     return scripts
@@ -309,6 +309,36 @@ def mlx_filter(filter_: dict[str, Any]) -> str:
     return "\n".join([*lines, " </filter>"]) + "\n"
 
 
+def methods_table(table: list[dict[str, Any]]) -> str:
+    """The module that lists the methods of the command line, as ruff formats it."""
+    text = '"""Written by scripts/reference.py from the declarations; do not edit."""\n\n'
+    text += "TABLE = {\n"
+    for filter_ in table:
+        command = filter_["command"]
+        if command["name"]:
+            row = {
+                "filter": filter_["python_name"],
+                "parameters": tuple(p["name"] for p in filter_["parameters"]),
+                "flatten": command["flatten"],
+                "preset": command["preset"] or None,
+                "deforms": command["deforms"],
+            }
+            text += f"    {python(command['name'])}: {{\n"
+            for key, value in row.items():
+                if isinstance(value, tuple):
+                    items = "".join(f"            {python(name)},\n" for name in value)
+                    text += f"        {python(key)}: (\n{items}        ),\n"
+                else:
+                    text += f"        {python(key)}: {python(value)},\n"
+            text += "    },\n"
+    return text + "}\n"
+
+
+def python(value: object) -> str:
+    """A literal with the quotes that ruff wants."""
+    return json.dumps(value) if isinstance(value, str) else repr(value)
+
+
 def generated_files() -> dict[Path, str]:
     """All generated files, relative to the checkout, and their texts."""
     table = declarations()
@@ -319,6 +349,7 @@ def generated_files() -> dict[Path, str]:
     files[index] = methods_index((ROOT / index).read_text(), table, pages)
     files[readme] = readme_table((ROOT / readme).read_text(), table)
     files |= {MLX / name: text for name, text in mlx_scripts(table).items()}
+    files[METHODS_TABLE] = methods_table(table)
     return files
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# All tests: unit tests (ctest), linter and formatter, then pytest on the real hosts, whose closing
-# line ends the output. Fails if any of them failed.
+# All tests: unit tests (ctest), what the sources must keep to, then pytest on the real hosts, whose
+# closing line ends the output. Fails if any of them failed.
 #   DEVSEG_GUI_TESTS=1   builds MeshLab 2025.07 into the cache, once, and tests the windows as well;
 #                        they are also tested where it is there already
 set -euo pipefail
@@ -41,6 +41,8 @@ check() {
 }
 
 check ctest ctest --preset release
+check walls .venv/bin/python scripts/check_walls.py
+check reference .venv/bin/python scripts/reference.py --check
 check "ruff check" .venv/bin/ruff check scripts tests
 check "ruff format" .venv/bin/ruff format --check scripts tests
 if ((${#failed[@]})); then

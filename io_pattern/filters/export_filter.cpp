@@ -20,24 +20,24 @@ using O = sheet::ExportOptions;
 
 declare::Declare<O> with_scale(declare::Declare<O> filter) {
     return filter
-        .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
+        .real(&O::mm_per_unit, "Millimetres per unit",
               "Size on paper of one unit of the model, in millimetres: 1 for a model in "
               "millimetres, 1000 for one in metres. Above 0.")
-        .real(&O::height_mm, "height_mm", "Height of the finished model (mm)", 0.0, 1e9,
+        .real(&O::height_mm, "Height of the finished model (mm)",
               "Scales the pattern so that the finished model is this high, measured along the y "
               "axis, in millimetres. 0 = use the millimetres per unit.")
         .choice(&O::preset, "preset", "Preset", {"Plain", "Sewing", "Papercraft", "Laser"},
                 "What to make; a preset switches on what the craft needs beside the options below. "
                 "Plain adds nothing; Sewing: allowance, notches, grain lines; Papercraft: folds, "
                 "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
-        .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
+        .real(&O::max_piece_mm, "Largest piece (mm)",
               "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
         .real(
-            &O::curve_mm, "curve_mm", "Curves within (mm)", 0.0, 1e3,
+            &O::curve_mm, "Curves within (mm)",
             "Outlines are written as smooth cubic curves of the same lengths that stay within this "
             "distance, in millimetres (splines in DXF for cutters, fine polylines in DXF for "
             "apparel CAD). 0 = straight lines between their points.")
-        .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
+        .real(&O::simplify_mm, "Simplify outlines (mm)",
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
               "moves it by less than this, in millimetres. 0 keeps all vertices.");
 }
@@ -45,10 +45,10 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
 declare::Declare<O> with_seams(declare::Declare<O> filter) {
     return filter
         .real(
-            &O::seam_allowance_mm, "seam_allowance_mm", "Seam allowance (mm)", 0.0, 1e4,
+            &O::seam_allowance_mm, {"seam_allowance_mm", 0.0, 1e4}, "Seam allowance (mm)",
             "Width of the allowance along the seams of each piece in millimetres. 0 = none (7 mm with the "
             "preset Sewing).")
-        .real(&O::hem_allowance_mm, "hem_allowance_mm", "Hem allowance (mm)", -1.0, 1e4,
+        .real(&O::hem_allowance_mm, {"hem_allowance_mm", -1.0, 1e4}, "Hem allowance (mm)",
               "Width of the allowance along open borders of the model in millimetres. 0 = none, "
               "-1 = as along seams.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
@@ -58,18 +58,18 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears.")
-        .real(&O::notch_spacing_mm, "notch_spacing_mm", "Notch spacing (mm)", 0.0, 1e6,
+        .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")
         .boolean(&O::glue_tabs, "glue_tabs", "Glue tabs",
                  "A flap along one side of each seam. Flaps overlap no piece and no other flap: "
                  "they are made smaller or put on the other side.")
-        .real(&O::tab_depth_mm, "tab_depth_mm", "Depth of glue tabs (mm)", 0.5, 1e3,
+        .real(&O::tab_depth_mm, {"tab_depth_mm", 0.5, 1e3}, "Depth of glue tabs (mm)",
               "Depth of the flaps in millimetres, where there is room.")
         .boolean(&O::fold_lines, "fold_lines", "Fold lines",
                  "Mountain folds (solid) and valley folds (dashed) where the surface bends, seen "
                  "from the outside.")
-        .real(&O::fold_angle, "fold_angle", "Least fold angle (degrees)", 0.0, 180.0,
+        .real(&O::fold_angle, "Least fold angle (degrees)",
               "Edges that bend by less are no folds, in degrees.");
 }
 
@@ -78,7 +78,7 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
         .text(&O::page, "page", "Page",
               "Paper to lay the pieces on: none (one sheet as large as it needs to be), a4, "
               "letter, a3, or width x height in millimetres such as 600x400.")
-        .real(&O::page_margin_mm, "page_margin_mm", "Page margin (mm)", 0.0, 1e3,
+        .real(&O::page_margin_mm, {"page_margin_mm", 0.0, 1e3}, "Page margin (mm)",
               "Border of each page that stays empty, in millimetres.")
         .boolean(&O::tiling, "tiling", "Tiling",
                  "Pieces larger than a page go on several pages that are glued together. Off: "

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "devseg/declare/chart_colors.h"
+#include "devseg/declare/segmentation_output.h"
 
 namespace devseg::sheet {
 

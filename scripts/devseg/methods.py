@@ -1,9 +1,11 @@
-"""The methods that the command line offers: one entry each."""
+"""The methods that the command line offers, as the filters declare them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+
+from devseg.methods_table import TABLE
 
 
 @dataclass(frozen=True)
@@ -23,57 +25,33 @@ class Method:
     name: str
     filter: str
     options: Mapping[str, str]
-    deforms: bool = False
-    preset: str | None = None
-    flatten: str = "symmetric-dirichlet"
+    deforms: bool
+    preset: str | None
+    flatten: str
 
 
-# Every segmentation filter has these.
-_COMMON = {"seed": "random_seed", "max_iterations": "max_iterations"}
+# The options of the command line that a method may take, and the filter parameters they set.
+_OPTIONS = {
+    "charts": "charts_number",
+    "max_l2_stretch": "max_l2_stretch",
+    "max_linf_stretch": "max_linf_stretch",
+    "max_fitting_error": "max_fitting_error",
+    "slit_threshold": "slit_threshold",
+    "seed": "random_seed",
+    "max_iterations": "max_iterations",
+}
+METHOD_OPTIONS = tuple(_OPTIONS)
 
 METHODS = {
-    method.name: method
-    for method in (
-        Method(
-            "dcharts",
-            "compute_segmentation_dcharts_per_face",
-            {
-                "charts": "charts_number",
-                "max_l2_stretch": "max_l2_stretch",
-                "max_linf_stretch": "max_linf_stretch",
-                "max_fitting_error": "max_fitting_error",
-                **_COMMON,
-            },
-        ),
-        Method(
-            "t-flooding",
-            "compute_segmentation_t_flooding_per_face",
-            {"charts": "charts_number", **_COMMON},
-        ),
-        Method(
-            "papercraft",
-            "compute_segmentation_papercraft_per_face",
-            {"charts": "charts_number", "slit_threshold": "slit_threshold", **_COMMON},
-            deforms=True,
-            preset="papercraft",
-        ),
-        Method(
-            "plush",
-            "compute_segmentation_plush_seams_per_face",
-            {**_COMMON},
-            flatten="lpfb",
-        ),
-        Method(
-            "vsa",
-            "compute_segmentation_variational_shape_approximation_per_face",
-            {"charts": "charts_number", **_COMMON},
-        ),
-        Method(
-            "mcgim",
-            "compute_segmentation_multi_chart_geometry_images_per_face",
-            {"charts": "charts_number", **_COMMON},
-        ),
+    name: Method(
+        name,
+        row["filter"],
+        {option: of for option, of in _OPTIONS.items() if of in row["parameters"]},
+        row["deforms"],
+        row["preset"],
+        row["flatten"],
     )
+    for name, row in TABLE.items()
 }
 
 # Words of --flatten and the values of the filter's parameter "method".
@@ -84,14 +62,3 @@ FLATTENINGS = {
     "arap": "ARAP",
     "lpfb": "LPFB",
 }
-
-# The options of the command line that a method may take.
-METHOD_OPTIONS = (
-    "charts",
-    "max_l2_stretch",
-    "max_linf_stretch",
-    "max_fitting_error",
-    "slit_threshold",
-    "seed",
-    "max_iterations",
-)

@@ -84,12 +84,19 @@ std::string describe(const declare::Parameter& p) {
            ", \"help\": " + json(p.help) + "}";
 }
 
+std::string describe(const declare::Command& command) {
+    return "{\"name\": " + json(command.name) + ", \"flatten\": " + json(command.flatten) +
+           ", \"preset\": " + json(command.preset) + ", \"deforms\": " + json(command.deforms) +
+           "}";
+}
+
 std::string describe(const declare::FilterDeclaration& filter) {
     return "{\"menu_name\": " + json(filter.menu_name) +
            ", \"python_name\": " + json(filter.python_name) + ", \"help\": " + json(filter.help) +
            ", \"menu\": " + json(category_name(filter.category)) +
            ", \"writes\": " + std::to_string(filter.writes) +
-           ", \"needs_uv\": " + (filter.needs_uv ? "true" : "false") + ", \"parameters\": " +
+           ", \"needs_uv\": " + json(filter.needs_uv) +
+           ", \"command\": " + describe(filter.command) + ", \"parameters\": " +
            list(filter.parameters,
                 [](const declare::Parameter& p) { return "\n  " + describe(p); }) +
            ", \"results\": " +

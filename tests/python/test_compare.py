@@ -61,7 +61,7 @@ def test_unknown_methods_are_refused(torus: Path, capsys: pytest.CaptureFixture[
         main(["compare", str(torus), "--methods", "vsa,best"])
     assert error.value.code == 2
     assert (
-        "expected some of dcharts,t-flooding,papercraft,plush,vsa,mcgim, found 'best'"
+        "expected some of dcharts,t-flooding,plush,papercraft,vsa,mcgim, found 'best'"
         in capsys.readouterr().err
     )
 

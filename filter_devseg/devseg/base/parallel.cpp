@@ -15,9 +15,6 @@ namespace {
 
 std::atomic<int> thread_limit{0};
 
-// How often the calling thread looks for a cancelled run while the workers are busy.
-constexpr std::chrono::milliseconds poll_interval{20};
-
 int worker_count(int tasks) {
     const int limit = thread_limit.load();
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -102,7 +99,7 @@ void parallel_for(int count, const std::function<void(int)>& task, Progress& pro
     {
         std::unique_lock<std::mutex> lock(pool.mutex);
         while (pool.running > 0) {
-            pool.changed.wait_for(lock, poll_interval);
+            pool.changed.wait_for(lock, report_interval);
             const double fraction = static_cast<double>(pool.done) / count;
             lock.unlock();
             try {

@@ -4,14 +4,9 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/parallel.h"
 
 namespace devseg {
-
-namespace {
-// Hosts redraw a progress bar at every call: more often than this only costs time, and less often
-// would make cancelling feel slow.
-constexpr std::chrono::milliseconds minimum_interval{20};
-} // namespace
 
 Progress::Progress(Callback callback) : own_(std::make_unique<Run>()), run_(own_.get()) {
     run_->callback = std::move(callback);
@@ -51,7 +46,7 @@ double Progress::position(double fraction) const {
 // The fraction of the last report, at most once in the interval; false where the user cancelled.
 bool Progress::Run::ask_host() {
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_call < minimum_interval)
+    if (now - last_call < report_interval)
         return true;
     last_call = now;
     if (callback(fraction, name))

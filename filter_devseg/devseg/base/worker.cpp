@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "devseg/base/parallel.h"
+
 namespace devseg {
 
 namespace {
 
-constexpr std::chrono::milliseconds poll_interval{20};
-constexpr std::size_t most_left_behind = 2; // that still run, and keep their memory
+constexpr std::size_t most_abandoned = 2; // that still run, and keep their memory
 
 struct Report {
     double fraction;
@@ -37,10 +38,10 @@ struct Runner {
     std::shared_ptr<Exchange> exchange;
 };
 
-// Threads whose work nobody waits for any more.
-class LeftBehind {
+// Threads of cancelled work, which nobody waits for.
+class Abandoned {
 public:
-    ~LeftBehind() {
+    ~Abandoned() {
         for (Runner& runner : runners_)
             runner.thread.join();
     }
@@ -72,8 +73,8 @@ private:
     std::list<Runner> runners_;
 };
 
-LeftBehind& left_behind() {
-    static LeftBehind threads;
+Abandoned& abandoned() {
+    static Abandoned threads;
     return threads;
 }
 
@@ -103,7 +104,7 @@ void pass_on_reports(Exchange& exchange, Progress& progress) {
     for (bool done = false; !done;) {
         {
             std::unique_lock<std::mutex> lock(exchange.mutex);
-            exchange.changed.wait_for(lock, poll_interval,
+            exchange.changed.wait_for(lock, report_interval,
                                       [&] { return exchange.done || !exchange.reports.empty(); });
             reports.swap(exchange.reports);
             exchange.reports.clear();
@@ -118,18 +119,17 @@ void pass_on_reports(Exchange& exchange, Progress& progress) {
 } // namespace
 
 void run_on_worker(std::function<void(Progress&)> work, Progress& progress) {
-    while (left_behind().forget_ended() >= most_left_behind) {
+    while (abandoned().forget_ended() >= most_abandoned) {
         progress.pass_on(0.0, "waiting for cancelled work to end");
-        std::this_thread::sleep_for(poll_interval);
+        std::this_thread::sleep_for(report_interval);
     }
-    std::list<Runner> runner(1); // made now: what leaves it behind must not fail
+    std::list<Runner> runner(1); // made now: abandoning it must not fail
     const auto exchange = std::make_shared<Exchange>();
     runner.front().exchange = exchange;
     try {
         runner.front().thread =
             std::thread([exchange, own = work]() mutable { run(*exchange, own); });
-    } catch (
-        const std::exception&) { // short of memory or threads: later to be cancelled, if at all
+    } catch (const std::exception&) { // short of memory or threads: cancelled later, if at all
         work(progress);
         return;
     }
@@ -138,7 +138,7 @@ void run_on_worker(std::function<void(Progress&)> work, Progress& progress) {
         pass_on_reports(*exchange, progress);
     } catch (...) {
         exchange->stop = true;
-        left_behind().take(runner);
+        abandoned().take(runner);
         throw;
     }
     runner.front().thread.join();

@@ -3,20 +3,19 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "devseg/base/errors.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/declare/filter.h"
 
 namespace devseg::declare {
 
 /// The options of filters without parameters.
 struct NoOptions {};
-
-/// The value; throws InvalidParameter outside its range.
-double checked(const std::string& name, double minimum, double maximum, double value);
 
 template <class Options>
 class Declare {
@@ -29,34 +28,35 @@ public:
         filter_.help = std::move(help);
     }
 
-    Declare& integer(int Options::*field, std::string name, std::string label, double minimum,
-                     double maximum, std::string help) {
-        return add(ParameterKind::integer, field, std::move(name), std::move(label), minimum,
-                   maximum, {}, std::move(help));
+    /// With name and range of `Options::ranges()`; what runs must check them itself.
+    Declare& integer(int Options::*field, std::string label, std::string help) {
+        return number(ParameterKind::integer, field, range_of(field), std::move(label),
+                      std::move(help));
     }
-    Declare& real(double Options::*field, std::string name, std::string label, double minimum,
-                  double maximum, std::string help) {
-        add(ParameterKind::real, field, name, std::move(label), minimum, maximum, {},
-            std::move(help));
+    Declare& real(double Options::*field, std::string label, std::string help) {
+        return real(field, range_of(field), std::move(label), std::move(help));
+    }
+    Declare& real(double Options::*field, const OptionRange& range, std::string label,
+                  std::string help) {
+        number(ParameterKind::real, field, range, std::move(label), std::move(help));
         setters_.back() = [=](Options& options, const ParameterValue& value) {
-            options.*field = checked(name, minimum, maximum, std::get<double>(value));
+            options.*field = std::get<double>(value);
+            range.check(options.*field);
         };
         return *this;
     }
     Declare& boolean(bool Options::*field, std::string name, std::string label, std::string help) {
-        return add(ParameterKind::boolean, field, std::move(name), std::move(label), 0.0, 1.0, {},
-                   std::move(help));
+        return number(ParameterKind::boolean, field, {std::move(name), 0.0, 1.0}, std::move(label),
+                      std::move(help));
     }
     Declare& text(std::string Options::*field, std::string name, std::string label,
                   std::string help) {
-        return add(ParameterKind::text, field, std::move(name), std::move(label), 0.0, 0.0, {},
-                   std::move(help));
+        return add(ParameterKind::text, field, std::move(name), std::move(label), std::move(help));
     }
     /// `example`: what a dialog proposes.
     Declare& file(std::string Options::*field, std::string name, std::string label,
                   const std::string& example, std::string help) {
-        add(ParameterKind::output_file, field, std::move(name), std::move(label), 0.0, 0.0, {},
-            std::move(help));
+        add(ParameterKind::output_file, field, std::move(name), std::move(label), std::move(help));
         filter_.parameters.back().default_value = example;
         return *this;
     }
@@ -64,24 +64,23 @@ public:
     template <class Enum>
     Declare& choice(Enum Options::*field, std::string name, std::string label,
                     std::vector<std::string> choices, std::string help) {
-        Parameter parameter{std::move(name),
-                            std::move(label),
-                            std::move(help),
-                            ParameterKind::choice,
-                            static_cast<int>(Options{}.*field),
-                            0.0,
-                            static_cast<double>(choices.size()) - 1.0,
-                            std::move(choices)};
-        setters_.emplace_back([field, name = parameter.name, count = parameter.choices.size()](
-                                  Options& options, const ParameterValue& value) {
+        const auto most = static_cast<int>(choices.size()) - 1;
+        setters_.emplace_back([=](Options& options, const ParameterValue& value) {
             const int position = std::get<int>(value);
-            if (position < 0 || static_cast<std::size_t>(position) >= count)
-                throw InvalidParameter(name + ": expected a choice from 0 to " +
-                                       std::to_string(count - 1) + ", found " +
-                                       std::to_string(position));
+            if (position < 0 || position > most)
+                refuse_option(name, "a choice from 0 to " + std::to_string(most), position);
             options.*field = static_cast<Enum>(position);
         });
-        filter_.parameters.push_back(std::move(parameter));
+        filter_.parameters.push_back({std::move(name), std::move(label), std::move(help),
+                                      ParameterKind::choice, static_cast<int>(Options{}.*field),
+                                      0.0, static_cast<double>(most), std::move(choices)});
+        return *this;
+    }
+    /// The method of the command line, with the flattening it takes there, the preset of its
+    /// patterns, and whether its charts are deformed first.
+    Declare& command(std::string name, std::string flatten = "symmetric-dirichlet",
+                     std::string preset = "", bool deforms = false) {
+        filter_.command = {std::move(name), std::move(flatten), std::move(preset), deforms};
         return *this;
     }
     Declare& writes(unsigned what) {
@@ -119,11 +118,38 @@ public:
 
 private:
     template <class Value>
+    static OptionRange range_of(Value Options::*wanted) {
+        const auto is_wanted = [&](auto field) {
+            if constexpr (std::is_convertible_v<decltype(field), Value Options::*>)
+                return field == wanted;
+            else
+                return false;
+        };
+        for (const auto& [field, range] : Options::ranges())
+            if (std::visit(is_wanted, field))
+                return range;
+        throw std::logic_error("a parameter without a range");
+    }
+
+    template <class Value>
+    Declare& number(ParameterKind kind, Value Options::*field, const OptionRange& range,
+                    std::string label, std::string help) {
+        add(kind, field, range.name, std::move(label), std::move(help));
+        filter_.parameters.back().minimum = range.minimum;
+        filter_.parameters.back().maximum = range.maximum;
+        return *this;
+    }
+    template <class Value>
     Declare& add(ParameterKind kind, Value Options::*field, std::string name, std::string label,
-                 double minimum, double maximum, std::vector<std::string> choices,
                  std::string help) {
-        filter_.parameters.push_back({std::move(name), std::move(label), std::move(help), kind,
-                                      Options{}.*field, minimum, maximum, std::move(choices)});
+        filter_.parameters.push_back({std::move(name),
+                                      std::move(label),
+                                      std::move(help),
+                                      kind,
+                                      Options{}.*field,
+                                      0.0,
+                                      0.0,
+                                      {}});
         setters_.emplace_back([field](Options& options, const ParameterValue& value) {
             options.*field = std::get<Value>(value);
         });

@@ -145,7 +145,7 @@ mesh::GatedMesh gate_joined(const mesh::RawMesh& raw, const Progress& progress) 
     return gated;
 }
 
-// A run owns all that it reads and writes: a cancelled one is left behind.
+// A run owns all that it reads and writes: a cancelled one is abandoned.
 struct FilterRun {
     FilterDeclaration filter;
     HostMesh host;
@@ -182,6 +182,15 @@ void FilterRun::operator()(Progress& progress) {
 }
 
 } // namespace
+
+atlas::ChartMap find_charts(const FilterInput& input) {
+    if (input.charts)
+        return *input.charts;
+    if (input.uv)
+        return atlas::charts_from_uv(input.mesh, *input.uv);
+    return atlas::make_chart_map(input.mesh, std::vector<Index>(input.mesh.faces.size(), 0), {},
+                                 false);
+}
 
 HostResult run_filter(const FilterDeclaration& filter, HostMesh host, const ParameterValues& values,
                       Progress& progress) {

@@ -14,9 +14,20 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
-#include "devseg/declare/layer_mesh.h"
+#include "devseg/mesh/input_gate.h"
 
 namespace devseg::declare {
+
+using Color = std::array<std::uint8_t, 3>; // red, green, blue
+
+/// A mesh of its own, in model units or millimetres as the filter says.
+struct LayerMesh {
+    std::string name;
+    mesh::RawMesh geometry;
+    std::vector<Color> face_color;                                         // #F
+    std::vector<double> face_quality;                                      // #F
+    std::vector<std::pair<std::string, std::vector<int>>> face_attributes; // by name, #F each
+};
 
 enum class ParameterKind { boolean, integer, real, choice, text, output_file };
 // A choice is the int of its position, texts and file names are UTF-8.
@@ -41,6 +52,15 @@ struct ResultField {
     std::string name;
     std::string meaning; // with unit
 };
+
+/// One number of each record, by a member or a function.
+template <class Record, class Number>
+std::vector<double> column(const std::vector<Record>& records, Number number) {
+    std::vector<double> values;
+    for (const Record& record : records)
+        values.push_back(static_cast<double>(std::invoke(number, record)));
+    return values;
+}
 
 /// The menu of the host that the filter belongs to.
 enum class FilterCategory { remeshing, texture, color, measure };
@@ -86,6 +106,14 @@ struct FilterOutput {
                                     // what fails leaves none
 };
 
+/// What the command line makes of a segmentation filter.
+struct Command {
+    std::string name;     // of --method; empty: not offered
+    std::string flatten;  // --flatten, where none is given
+    std::string preset;   // --preset, where none is given; empty: that of the export
+    bool deforms = false; // charts are deformed to exact developability
+};
+
 struct FilterDeclaration {
     std::string menu_name;
     std::string python_name;
@@ -96,6 +124,7 @@ struct FilterDeclaration {
     bool joins_borders = false; // reads border edges that lie on each other as one edge
     std::vector<Parameter> parameters;
     std::vector<ResultField> results;
+    Command command;
     std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
 };
 

@@ -1,11 +1,88 @@
 #include "devseg/declare/segmentation_output.h"
 
+#include <algorithm>
+#include <numeric>
+#include <set>
 #include <utility>
 
-#include "devseg/declare/chart_colors.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::declare {
+
+namespace {
+
+// Light enough for black text, far apart from one another also for colour-blind eyes; after
+// P. Tol: Colour Schemes (SRON, 2021), the muted and light schemes.
+constexpr std::array<Color, 14> palette{{{{119, 170, 221}},
+                                         {{238, 136, 102}},
+                                         {{68, 187, 153}},
+                                         {{238, 221, 136}},
+                                         {{255, 170, 187}},
+                                         {{153, 221, 255}},
+                                         {{187, 204, 51}},
+                                         {{170, 68, 153}},
+                                         {{221, 204, 119}},
+                                         {{136, 204, 238}},
+                                         {{204, 102, 119}},
+                                         {{170, 170, 0}},
+                                         {{153, 153, 221}},
+                                         {{221, 221, 221}}}};
+
+} // namespace
+
+std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
+    const std::size_t count = at(charts.count);
+    std::vector<std::set<Index>> neighbours(count);
+    std::vector<double> area(count, 0.0);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index c = charts.chart[h / 3];
+        area[c] += mesh.face_areas[h / 3] / 3.0;
+        if (mesh.twin[h] >= 0 && charts.chart[mesh.twin[h] / 3] != c)
+            neighbours[c].insert(charts.chart[mesh.twin[h] / 3]);
+    }
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return area[a] > area[b]; });
+    std::vector<std::size_t> chosen(count, palette.size());
+    std::array<std::size_t, palette.size()> uses{};
+    for (const std::size_t c : order) {
+        std::array<bool, palette.size()> taken{};
+        for (const Index n : neighbours[c])
+            if (chosen[n] < palette.size())
+                taken[chosen[n]] = true;
+        // The least used free colour keeps charts apart that only look like neighbours.
+        std::size_t best = palette.size();
+        for (std::size_t i = 0; i < palette.size(); ++i)
+            if (!taken[i] && (best == palette.size() || uses[i] < uses[best]))
+                best = i;
+        chosen[c] = best < palette.size() ? best : 0;
+        ++uses[chosen[c]];
+    }
+    std::vector<Color> colors;
+    for (const std::size_t i : chosen)
+        colors.push_back(palette[i]);
+    return colors;
+}
+
+std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
+    const std::vector<Color> colors = chart_colors(mesh, charts);
+    std::vector<Color> result;
+    result.reserve(charts.chart.size());
+    for (const Index c : charts.chart)
+        result.push_back(colors[c]);
+    return result;
+}
+
+FilterOutput chart_output(const Mesh& mesh, atlas::ChartMap charts, std::vector<double> quality,
+                          ResultValues values) {
+    FilterOutput output;
+    output.values = std::move(values);
+    output.face_color = face_chart_colors(mesh, charts);
+    output.face_quality = std::move(quality);
+    output.charts = std::move(charts);
+    return output;
+}
 
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
                                  std::vector<double> face_quality,
@@ -13,16 +90,11 @@ FilterOutput segmentation_output(const FilterInput& input, const std::vector<Ind
     auto cutting = progress.part("cutting charts to disks", 1.0);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(
         input.mesh, atlas::make_chart_map(input.mesh, labels, {}, false), options, cutting);
-    FilterOutput output;
-    output.values = {
-        {"charts_number", cuts.charts.count},
-        {"cut_length", cuts.cut_length * input.mesh.unit_length},
-        {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
-    };
-    output.face_color = face_chart_colors(input.mesh, cuts.charts);
-    output.face_quality = std::move(face_quality);
-    output.charts = std::move(cuts.charts);
-    return output;
+    ResultValues values = {{"charts_number", cuts.charts.count},
+                           {"cut_length", cuts.cut_length * input.mesh.unit_length},
+                           {"seam_length", metrics::seam_length(input.mesh, cuts.charts)}};
+    return chart_output(input.mesh, std::move(cuts.charts), std::move(face_quality),
+                        std::move(values));
 }
 
 } // namespace devseg::declare

@@ -1,4 +1,4 @@
-// What the segmentation filters leave on the mesh once they have a label for each face.
+// What segmentation filters leave on the mesh, with one colour for each chart.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,21 @@
 
 namespace devseg::declare {
 
-/// Cuts the charts of `labels` to disks; charts, colours and `face_quality`, and the values
-/// charts_number, cut_length and seam_length.
+/// Colours of the charts (#charts). The largest charts choose first, each the palette's first
+/// colour that no neighbour has: the same charts get the same colours, whatever their numbers.
+std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts);
+
+/// The same, spread to the faces (#F).
+std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts);
+
+/// Charts with their colours, and these values. `quality`: #F.
+FilterOutput chart_output(const Mesh& mesh, atlas::ChartMap charts, std::vector<double> quality,
+                          ResultValues values);
+
+/// The same of labels (#F), whose charts are cut to disks, with the values charts_number,
+/// cut_length and seam_length.
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
-                                 std::vector<double> face_quality, const atlas::DiskOptions& cuts,
+                                 std::vector<double> quality, const atlas::DiskOptions& cuts,
                                  Progress& progress);
 
 } // namespace devseg::declare

@@ -324,9 +324,7 @@ void check(const DeformResult& result, const DeformOptions& options) {
 DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& charts,
                                    const std::vector<Index>& point_of, const DeformOptions& options,
                                    Progress& progress) {
-    if (options.max_iterations < 1)
-        throw InvalidParameter("max_iterations: expected a number of at least 1, found " +
-                               std::to_string(options.max_iterations));
+    check_ranges(options);
     std::vector<Triangle> faces;
     for (const Triangle& t : mesh.faces)
         faces.push_back({point_of[t[0]], point_of[t[1]], point_of[t[2]]});

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 
 namespace devseg::develop {
@@ -23,6 +24,11 @@ struct DeformOptions {
     double tolerance = 1e-6;      // radians, at every inner vertex
     bool adjust_slits = true;     // see below
     bool keep_unfinished = false; // return the best state instead of throwing
+
+    static OptionRanges<DeformOptions> ranges() {
+        return {{&DeformOptions::max_iterations, {"max_iterations", 1, 1e6}},
+                {&DeformOptions::tolerance, {"tolerance", 1e-10, 1.0}}};
+    }
 };
 
 struct DeformResult {

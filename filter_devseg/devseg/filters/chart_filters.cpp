@@ -1,6 +1,6 @@
 #include "devseg/atlas/disks.h"
-#include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::filters {

@@ -82,10 +82,10 @@ std::vector<FilterDeclaration> deformation_filters() {
     return {
         Declare<O>("Charts: Deform to Exact Developability", "apply_coord_developable_charts",
                    FilterCategory::remeshing, deform_help)
-            .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+            .integer(&O::max_iterations, "Most rounds",
                      "Rounds of the projection; one for a part of the charts counts by that part. "
                      "It ends when only rounding is left.")
-            .real(&O::tolerance, "tolerance", "Tolerance", 1e-10, 1.0,
+            .real(&O::tolerance, "Tolerance",
                   "What the angles around an inner vertex may differ from 360 degrees, in radians. "
                   "Hosts that keep coordinates in 32 bit round to about 0.00001.")
             .boolean(&O::adjust_slits, "adjust_slits", "Adjust slits",

@@ -179,7 +179,7 @@ FilterDeclaration pack() {
     using O = pack::PackOptions;
     return Declare<O>("Charts: Pack", "apply_texcoord_chart_packing_per_wedge",
                       FilterCategory::texture, pack_help)
-        .real(&O::padding, "padding", "Padding", 0.0, 0.1,
+        .real(&O::padding, {"padding", 0.0, 0.1}, "Padding",
               "Least distance of two charts, as a share of the square's side.")
         .boolean(&O::allow_rotation, "allow_rotation", "Allow rotation",
                  "Turn charts to their best box and by quarter turns; off keeps the direction of "

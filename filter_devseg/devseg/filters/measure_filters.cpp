@@ -1,4 +1,10 @@
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
+#include "devseg/metrics/circle_maps.h"
+#include "devseg/metrics/gauss_area.h"
 #include "devseg/metrics/parametrization.h"
 #include "devseg/metrics/segmentation.h"
 
@@ -25,14 +31,20 @@ constexpr const char* parametrization_help =
     "<b>\"Texture Mapping Progressive Meshes\"</b><br>"
     "SIGGRAPH, 2001, doi:10.1145/383259.383307";
 
-// One number of each record.
-template <class Record, class Number>
-std::vector<double> column(const std::vector<Record>& records, Number number) {
-    std::vector<double> values;
-    for (const Record& record : records)
-        values.push_back(static_cast<double>(number(record)));
-    return values;
-}
+constexpr const char* circle_help =
+    "Measures how well charts can be flattened at all, without any flattening method: each chart "
+    "is mapped to a disc, its boundary to the circle by length and its inside conformally, and the "
+    "L2 stretch of that map is taken with the disc scaled to the chart's area.<br>"
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
+    "from the wedge texture coordinates, and without those each connected component of the mesh is "
+    "a chart. Those that are no disks are measured as 'Charts: Cut to Disks' opens them, without "
+    "cuts to tips.<br>"
+    "See:<br><i>Hitoshi Yamauchi, Stefan Gumhold, Rhaleb Zayer, Hans-Peter Seidel</i><br>"
+    "<b>\"Mesh Segmentation Driven by Gaussian Curvature\"</b><br>"
+    "The Visual Computer 21, 2005, doi:10.1007/s00371-005-0319-x<br>"
+    "<i>Mathieu Desbrun, Mark Meyer, Pierre Alliez</i><br>"
+    "<b>\"Intrinsic Parameterizations of Surface Meshes\"</b><br>"
+    "Computer Graphics Forum 21(3), 2002, doi:10.1111/1467-8659.00580";
 
 FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progress& progress) {
     const auto measuring = progress.part("measuring charts", 1.0);
@@ -53,6 +65,8 @@ FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progre
 }
 
 FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Progress& progress) {
+    using Chart = metrics::ChartMeasures;
+    using Seam = metrics::SeamMeasures;
     const auto measuring = progress.part("measuring texture coordinates", 1.0);
     const metrics::ParametrizationMeasures m =
         metrics::measure_parametrization(input.mesh, *input.uv);
@@ -69,29 +83,46 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
         {"overlapping_faces_number", m.overlapping_faces_number},
         {"seam_length", m.seam_length},
         {"packing_efficiency", m.packing_efficiency},
-        {"chart_area", column(m.charts, [](const metrics::ChartMeasures& c) { return c.area; })},
-        {"chart_l2_stretch",
-         column(m.charts, [](const metrics::ChartMeasures& c) { return c.l2_stretch; })},
-        {"chart_extension",
-         column(m.charts, [](const metrics::ChartMeasures& c) { return c.extension; })},
-        {"chart_compression",
-         column(m.charts, [](const metrics::ChartMeasures& c) { return c.compression; })},
+        {"chart_area", column(m.charts, &Chart::area)},
+        {"chart_l2_stretch", column(m.charts, &Chart::l2_stretch)},
+        {"chart_extension", column(m.charts, &Chart::extension)},
+        {"chart_compression", column(m.charts, &Chart::compression)},
         {"chart_worst_face", column(m.charts,
-                                    [&](const metrics::ChartMeasures& c) {
+                                    [&](const Chart& c) {
                                         return c.worst_face < 0
                                                    ? -1.0
                                                    : double(input.source_face[c.worst_face]);
                                     })},
-        {"seam_chart_a", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_a; })},
-        {"seam_chart_b", column(m.seams, [](const metrics::SeamMeasures& s) { return s.chart_b; })},
-        {"seam_length_a",
-         column(m.seams, [](const metrics::SeamMeasures& s) { return s.length_a; })},
-        {"seam_length_b",
-         column(m.seams, [](const metrics::SeamMeasures& s) { return s.length_b; })},
-        {"seam_mismatch",
-         column(m.seams, [](const metrics::SeamMeasures& s) { return s.mismatch(); })},
-        {"seam_mismatch_percent",
-         column(m.seams, [](const metrics::SeamMeasures& s) { return s.mismatch_percent(); })},
+        {"seam_chart_a", column(m.seams, &Seam::chart_a)},
+        {"seam_chart_b", column(m.seams, &Seam::chart_b)},
+        {"seam_length_a", column(m.seams, &Seam::length_a)},
+        {"seam_length_b", column(m.seams, &Seam::length_b)},
+        {"seam_mismatch", column(m.seams, &Seam::mismatch)},
+        {"seam_mismatch_percent", column(m.seams, &Seam::mismatch_percent)},
+    };
+    return output;
+}
+
+FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progress& progress) {
+    auto cutting = progress.part("cutting charts to disks", 0.1);
+    const atlas::DiskCuts cuts =
+        atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
+    auto mapping = progress.part("mapping charts to discs", 0.9);
+    std::vector<double> stretch = metrics::circle_map_stretch(input.mesh, cuts.charts, mapping);
+    double mean = 0.0;
+    double largest = 0.0;
+    for (const double s : stretch) {
+        mean += s / static_cast<double>(stretch.size());
+        largest = std::max(largest, s);
+    }
+    FilterOutput output;
+    output.values = {
+        {"charts_number", static_cast<int>(stretch.size())},
+        {"circle_l2_stretch", mean},
+        {"circle_l2_stretch_std",
+         std::isfinite(mean) ? metrics::standard_deviation(stretch) : mean},
+        {"largest_circle_l2_stretch", largest},
+        {"chart_circle_l2_stretch", std::move(stretch)},
     };
     return output;
 }
@@ -144,10 +175,21 @@ FilterDeclaration parametrization_measures() {
         .runs(run_parametrization);
 }
 
+FilterDeclaration circle_map_measures() {
+    return Declare<NoOptions>("Charts: Measure Maps to the Circle", "get_circle_map_measures",
+                              FilterCategory::measure, circle_help)
+        .result("charts_number", "charts")
+        .result("circle_l2_stretch", "mean over the charts, 1 for an isometry")
+        .result("circle_l2_stretch_std", "standard deviation over the charts")
+        .result("largest_circle_l2_stretch", "of the worst chart")
+        .result("chart_circle_l2_stretch", "L2 stretch of each chart")
+        .runs(run_circle_maps);
+}
+
 } // namespace
 
 std::vector<FilterDeclaration> measure_filters() {
-    return {segmentation_measures(), parametrization_measures()};
+    return {segmentation_measures(), parametrization_measures(), circle_map_measures()};
 }
 
 } // namespace devseg::filters

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "devseg/declare/declare.h"
 #include "devseg/filters/sheet_layout.h"
@@ -36,7 +37,7 @@ constexpr const char* measures_help =
 constexpr const char* optimize_help =
     "Makes flat charts fit for sewing, whoever made them. Parts of a chart that lie on other parts "
     "of it are cut off, and small charts are joined to a neighbour where both together are nearly "
-    "developable and come to lie flat without overlap. Darts that hardly open in the plane are "
+    "developable and lie flat without overlap. Darts that hardly open in the plane are "
     "glued again, from the tip on, as far as they stay closed.<br>"
     "Charts, darts and slits are read from the texture coordinates; the new ones are written to "
     "<b>chart_id</b> and <b>seam_edges</b> as well. Charts keep their places and sizes unless some "
@@ -52,13 +53,13 @@ struct LayerOptions : pattern::PatternOptions {
 template <class O>
 Declare<O> with_scale(Declare<O> filter) {
     return filter
-        .real(&O::mm_per_unit, "mm_per_unit", "Millimetres per unit", 1e-9, 1e9,
+        .real(&O::mm_per_unit, "Millimetres per unit",
               "Size on paper of one unit of the model, in millimetres: 1 for a model in "
               "millimetres, 1000 for one in metres.")
-        .real(&O::height_mm, "height_mm", "Height of the finished model (mm)", 0.0, 1e9,
+        .real(&O::height_mm, "Height of the finished model (mm)",
               "Scales the pattern so that the finished model is this high, measured along the y "
               "axis, in millimetres. 0 = use the millimetres per unit.")
-        .real(&O::max_piece_mm, "max_piece_mm", "Largest piece (mm)", 0.0, 1e9,
+        .real(&O::max_piece_mm, "Largest piece (mm)",
               "Longest side of a piece in millimetres; larger ones are split across their long "
               "direction, along a short line. 0 = no limit.");
 }
@@ -66,17 +67,16 @@ Declare<O> with_scale(Declare<O> filter) {
 template <class O>
 Declare<O> with_seams(Declare<O> filter) {
     return filter
-        .real(&O::simplify_mm, "simplify_mm", "Simplify outlines (mm)", 0.0, 1e6,
+        .real(&O::simplify_mm, "Simplify outlines (mm)",
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
               "moves it by less than this, in millimetres; less on pieces below 100 mm, in "
               "proportion to their size. 0 keeps all vertices.")
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears, by changing the angles of the outlines as little as possible.")
-        .real(&O::notch_spacing_mm, "notch_spacing_mm", "Notch spacing (mm)", 0.0, 1e6,
+        .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
-        .real(&O::pair_tolerance_mm, "pair_tolerance_mm", "Tolerance for equal pieces (mm)", 0.0,
-              1e6,
+        .real(&O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
               "Pieces whose outlines, turned and moved onto each other, differ by less than this, "
               "in millimetres (and a hundredth of their size), have the same shape.");
 }
@@ -141,40 +141,28 @@ FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, P
     return output;
 }
 
-template <class Record, class Number>
-std::vector<double> column(const std::vector<Record>& records, Number number) {
-    std::vector<double> values;
-    for (const Record& record : records)
-        values.push_back(number(record));
-    return values;
-}
-
 double largest(const std::vector<double>& values) {
     return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
 double total(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values)
-        sum += value;
-    return sum;
+    return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 using Piece = pattern::PatternPiece;
+using pattern::Seam;
 
 ResultValues measure_pieces(const pattern::Pattern& pattern) {
     const std::vector<Piece>& pieces = pattern.pieces;
-    const auto areas = column(pieces, [](const Piece& p) { return p.area; });
-    const auto lengths = column(pieces, [](const Piece& p) { return p.long_side; });
+    const auto areas = column(pieces, &Piece::area);
+    const auto lengths = column(pieces, &Piece::long_side);
     const auto extensions = column(pieces, [](const Piece& p) { return p.strain.extension; });
     const auto compressions = column(pieces, [](const Piece& p) { return p.strain.compression; });
     const auto shapes =
         std::count_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.quantity > 0; });
-    const auto folds =
-        column(pieces, [](const Piece& p) { return static_cast<double>(p.folds.size()); });
-    const auto pairs = column(pieces, [](const Piece& p) {
-        return static_cast<double>(std::min(p.quantity, p.mirrored_quantity));
-    });
+    const auto folds = column(pieces, [](const Piece& p) { return p.folds.size(); });
+    const auto pairs =
+        column(pieces, [](const Piece& p) { return std::min(p.quantity, p.mirrored_quantity); });
     return {
         {"pieces_number", static_cast<int>(pieces.size())},
         {"shapes_number", static_cast<int>(shapes)},
@@ -188,42 +176,35 @@ ResultValues measure_pieces(const pattern::Pattern& pattern) {
         {"max_compression", largest(compressions)},
         {"piece_area_mm2", areas},
         {"piece_length_mm", lengths},
-        {"piece_width_mm", column(pieces, [](const Piece& p) { return p.short_side; })},
+        {"piece_width_mm", column(pieces, &Piece::short_side)},
         {"piece_extension", extensions},
         {"piece_compression", compressions},
         {"piece_mean_strain", column(pieces, [](const Piece& p) { return p.strain.mean; })},
         {"piece_area_change", column(pieces, [](const Piece& p) { return p.strain.area_change; })},
-        {"piece_shape",
-         column(pieces, [](const Piece& p) { return static_cast<double>(p.model); })}};
+        {"piece_shape", column(pieces, &Piece::model)}};
 }
 
 ResultValues measure_seams(const pattern::Pattern& pattern) {
-    const std::vector<pattern::Seam>& seams = pattern.seams;
-    const auto mismatches =
-        column(seams, [](const pattern::Seam& s) { return std::abs(s.mismatch()); });
+    const std::vector<Seam>& seams = pattern.seams;
+    const auto mismatches = column(seams, [](const Seam& s) { return std::abs(s.mismatch()); });
     const auto darts =
-        std::count_if(seams.begin(), seams.end(), [](const pattern::Seam& s) { return s.is_dart; });
-    const auto apart = std::count_if(seams.begin(), seams.end(), [](const pattern::Seam& s) {
+        std::count_if(seams.begin(), seams.end(), [](const Seam& s) { return s.is_dart; });
+    const auto apart = std::count_if(seams.begin(), seams.end(), [](const Seam& s) {
         return !pattern::sides_agree(s.sides[0].length, s.sides[1].length);
     });
-    const auto notches = column(seams, [](const pattern::Seam& s) {
-        return static_cast<double>(s.sides[0].notches.size());
-    });
-    return {
-        {"seams_number", static_cast<int>(seams.size())},
-        {"darts_number", static_cast<int>(darts)},
-        {"notches_number", static_cast<int>(total(notches))},
-        {"hem_length_mm", pattern.hem_length},
-        {"mismatched_seams_number", static_cast<int>(apart)},
-        {"max_seam_mismatch_mm", largest(mismatches)},
-        {"max_seam_mismatch_percent",
-         largest(
-             column(seams, [](const pattern::Seam& s) { return std::abs(s.mismatch_percent()); }))},
-        {"seam_length_mm", column(seams,
-                                  [](const pattern::Seam& s) {
-                                      return 0.5 * (s.sides[0].length + s.sides[1].length);
-                                  })},
-        {"seam_mismatch_mm", column(seams, [](const pattern::Seam& s) { return s.mismatch(); })}};
+    const auto notches = column(seams, [](const Seam& s) { return s.sides[0].notches.size(); });
+    return {{"seams_number", static_cast<int>(seams.size())},
+            {"darts_number", static_cast<int>(darts)},
+            {"notches_number", static_cast<int>(total(notches))},
+            {"hem_length_mm", pattern.hem_length},
+            {"mismatched_seams_number", static_cast<int>(apart)},
+            {"max_seam_mismatch_mm", largest(mismatches)},
+            {"max_seam_mismatch_percent",
+             largest(column(seams, [](const Seam& s) { return std::abs(s.mismatch_percent()); }))},
+            {"seam_length_mm",
+             column(seams,
+                    [](const Seam& s) { return 0.5 * (s.sides[0].length + s.sides[1].length); })},
+            {"seam_mismatch_mm", column(seams, &Seam::mismatch)}};
 }
 
 FilterOutput run_measures(const FilterInput& input, const pattern::PatternOptions& options,
@@ -293,12 +274,12 @@ FilterDeclaration optimize() {
         .boolean(&O::reattach_gussets, "reattach_gussets", "Reattach small charts",
                  "Join small charts, such as those cut off, to a neighbour where that is nearly "
                  "developable and lies flat without overlap.")
-        .real(&O::max_gusset_area, "max_gusset_area", "Largest small chart", 0.0, 1.0,
+        .real(&O::max_gusset_area, {"max_gusset_area", 0.0, 1.0}, "Largest small chart",
               "Charts are small below this share of the model's area: 0.02 = 2 %.")
-        .real(&O::merge_threshold, "merge_threshold", "Merge threshold", 0.0, 4.0,
+        .real(&O::merge_threshold, {"merge_threshold", 0.0, 4.0}, "Merge threshold",
               "Largest mean fitting error of a small chart's faces with the conic proxy of both "
               "charts together, no unit, from 0 (exactly developable) to 4 (anything).")
-        .real(&O::max_dart_angle, "max_dart_angle", "Narrowest dart (degrees)", 0.0, 180.0,
+        .real(&O::max_dart_angle, {"max_dart_angle", 0.0, 180.0}, "Narrowest dart (degrees)",
               "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
         .needs_uv()
         .writes(writes_charts | writes_uv)
@@ -314,7 +295,7 @@ FilterDeclaration pieces() {
     using O = LayerOptions;
     return with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
                                  FilterCategory::texture, pieces_help))
-        .real(&O::strain_range, "strain_range", "Strain in full colour", 1e-6, 10.0,
+        .real(&O::strain_range, {"strain_range", 1e-6, 10.0}, "Strain in full colour",
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
         .needs_uv()

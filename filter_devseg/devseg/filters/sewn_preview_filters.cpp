@@ -65,10 +65,10 @@ std::vector<FilterDeclaration> sewn_preview_filters() {
     using O = pattern::SewnOptions;
     return {Declare<O>("Pattern: Sewn Preview", "generate_sewn_preview", FilterCategory::texture,
                        preview_help)
-                .real(&O::stuffing, "stuffing", "Stuffing", 0.0, 0.2,
+                .real(&O::stuffing, "Stuffing",
                       "How much the stuffing stretches the cloth of a ball of the model's size, as "
                       "a share: 0.01 = 1 %.")
-                .integer(&O::max_iterations, "max_iterations", "Most steps", 1, 1e6,
+                .integer(&O::max_iterations, "Most steps",
                          "The simulation ends here at the latest; usually the cloth is at rest "
                          "before.")
                 .needs_uv()

@@ -34,15 +34,14 @@ Filters flattening_filters();
 Filters pattern_filters();
 Filters sewn_preview_filters();
 Filters measure_filters();
-Filters circle_map_filters();
 
 const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), t_flooding::filters(), plush::filters(), papercraft::filters(),
-              baselines::filters(), chart_filters(), deformation_filters(), flattening_filters(),
-              pattern_filters(), sewn_preview_filters(), measure_filters(), circle_map_filters()})
+             {dcharts::filters(), chart_filters(), t_flooding::filters(), plush::filters(),
+              papercraft::filters(), baselines::filters(), deformation_filters(),
+              flattening_filters(), pattern_filters(), sewn_preview_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();

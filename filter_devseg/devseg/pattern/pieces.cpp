@@ -59,29 +59,6 @@ std::string number(double value) {
     return text.str();
 }
 
-void check_options(const PatternOptions& o) {
-    if (!(o.mm_per_unit > 0.0) || !std::isfinite(o.mm_per_unit))
-        throw InvalidParameter("mm_per_unit: expected a number above 0, found " +
-                               number(o.mm_per_unit));
-    if (!(o.height_mm >= 0.0) || !std::isfinite(o.height_mm))
-        throw InvalidParameter("height_mm: expected a number above 0, or 0 to scale by "
-                               "mm_per_unit, found " +
-                               number(o.height_mm));
-    const std::pair<const char*, double> others[] = {
-        {"simplify_mm", o.simplify_mm},
-        {"corner_angle", o.corner_angle},
-        {"curve_mm", o.curve_mm},
-        {"notch_spacing_mm", o.notch_spacing_mm},
-        {"fold_angle", o.fold_angle},
-        {"max_piece_mm", o.max_piece_mm},
-        {"pair_tolerance_mm", o.pair_tolerance_mm},
-    };
-    for (const auto& [name, value] : others)
-        if (!(value >= 0.0) || !std::isfinite(value))
-            throw InvalidParameter(std::string(name) + ": expected a number from 0 on, found " +
-                                   number(value));
-}
-
 // Millimetres for one internal unit of the mesh.
 double paper_scale(const Mesh& mesh, const PatternOptions& options) {
     if (options.height_mm == 0.0)
@@ -399,9 +376,22 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
 
 } // namespace
 
+OptionRanges<PatternOptions> PatternOptions::ranges() {
+    using O = PatternOptions;
+    return {{&O::mm_per_unit, {"mm_per_unit", 1e-9, 1e9}},
+            {&O::height_mm, {"height_mm", 0.0, 1e9}},
+            {&O::max_piece_mm, {"max_piece_mm", 0.0, 1e9}},
+            {&O::simplify_mm, {"simplify_mm", 0.0, 1e6}},
+            {&O::notch_spacing_mm, {"notch_spacing_mm", 0.0, 1e6}},
+            {&O::pair_tolerance_mm, {"pair_tolerance_mm", 0.0, 1e6}},
+            {&O::curve_mm, {"curve_mm", 0.0, 1e3}},
+            {&O::corner_angle, {"corner_angle", 0.0, 180.0}},
+            {&O::fold_angle, {"fold_angle", 0.0, 180.0}}};
+}
+
 Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress) {
-    check_options(options);
+    check_ranges(options);
     const double mm = paper_scale(mesh, options);
     check_coordinates(uv);
 

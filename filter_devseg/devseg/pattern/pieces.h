@@ -2,6 +2,7 @@
 #pragma once
 
 #include "devseg/atlas/texture.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/pattern/pattern.h"
 
@@ -27,6 +28,8 @@ struct PatternOptions {
     double max_piece_mm = 0.0;      // longest side of a piece; larger ones are split; 0 = no limit
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::longest;
+
+    static OptionRanges<PatternOptions> ranges();
 };
 
 /// Texture coordinates (3 #F, made by anyone) → pieces. Charts, darts and slits are read off the

@@ -7,7 +7,6 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
-#include "devseg/base/option_checks.h"
 #include "devseg/mesh/surface_search.h"
 
 namespace devseg::pattern {
@@ -115,8 +114,7 @@ void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
 
 SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOptions& options,
                             Progress& progress) {
-    if (options.max_iterations < 1)
-        refuse_option("max_iterations", "a number of at least 1", options.max_iterations);
+    check_ranges(options);
     const double scale = atlas::layout_scale(mesh, atlas::charts_from_uv(mesh, uv), uv);
     if (!(scale > 0.0))
         throw InvalidMesh("expected texture coordinates with an area, found none; run "

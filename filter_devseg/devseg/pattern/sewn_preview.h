@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "devseg/atlas/texture.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 
 namespace devseg::pattern {
@@ -16,6 +17,11 @@ namespace devseg::pattern {
 struct SewnOptions {
     double stuffing = 0.01;   // how much the cloth is stretched by what is inside: 0.01 = 1 %
     int max_iterations = 300; // steps of the simulation at most
+
+    static OptionRanges<SewnOptions> ranges() {
+        return {{&SewnOptions::stuffing, {"stuffing", 0.0, 0.2}},
+                {&SewnOptions::max_iterations, {"max_iterations", 1, 1e6}}};
+    }
 };
 
 struct SewnPreview {

@@ -305,7 +305,7 @@ TEST(RunApart, ReportsAndErrorsComeThrough) {
     EXPECT_THROW(run_on_worker(fail, progress), InvalidMesh);
 }
 
-// Work that never looks at its progress object is left behind, and what it owns lives on.
+// Work that never looks at its progress object is abandoned, and what it owns lives on.
 TEST(RunApart, CancellingDoesNotWaitForTheWork) {
     struct Owned {
         std::atomic<bool> may_end{false};

@@ -38,12 +38,12 @@ template <class O>
 Declare<O> baseline(const char* menu_name, const char* python_name, const char* help) {
     Declare<O> filter(menu_name, python_name, FilterCategory::remeshing, help);
     filter
-        .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
+        .integer(&O::charts_number, "Number of charts",
                  "From 1 to the number of faces. A mesh of more components gets one chart for each "
                  "of them.")
-        .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+        .integer(&O::max_iterations, "Most rounds",
                  "The rounds of growing charts end here at the latest; usually they end before.")
-        .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+        .integer(&O::random_seed, "Random seed",
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
         .writes(writes_charts | writes_quality | writes_color)
@@ -93,10 +93,12 @@ std::vector<FilterDeclaration> filters() {
                 .result("teleports_number", "charts that were moved elsewhere")
                 .result("total_error", "integral of the squared difference of the normals, model "
                                        "units squared")
+                .command("vsa")
                 .runs(run_vsa),
             baseline<McgimOptions>("Segmentation: Multi-Chart Geometry Images",
                                    "compute_segmentation_multi_chart_geometry_images_per_face",
                                    mcgim_help)
+                .command("mcgim")
                 .runs(run_mcgim)};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "devseg/base/option_checks.h"
 #include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/reseed.h"
 #include "devseg/methods/growth/seeds.h"
@@ -65,7 +64,7 @@ private:
 
 McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progress& progress) {
     check_charts_number(mesh.face_count(), options.charts_number);
-    check_rounds(options.max_iterations, options.random_seed);
+    check_ranges(options);
     const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
     const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
 

@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 
@@ -20,6 +21,11 @@ struct McgimOptions {
     int charts_number = 20;
     int max_iterations = 100; // rounds of growing at most, after the start
     int random_seed = 0;      // 0: a start that does not depend on the order of the faces
+
+    static OptionRanges<McgimOptions> ranges() {
+        return with_rounds<McgimOptions>(
+            {{&McgimOptions::charts_number, {"charts_number", 1, 1e9}}});
+    }
 };
 
 struct McgimResult {

@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "devseg/base/option_checks.h"
 #include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/seeds.h"
 
@@ -278,7 +277,7 @@ void approximate(const VsaOptions& options, Approximation& approximation, VsaRes
 
 VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& progress) {
     check_charts_number(mesh.face_count(), options.charts_number);
-    check_rounds(options.max_iterations, options.random_seed);
+    check_ranges(options);
     Approximation approximation(mesh, progress);
     auto placing = progress.part("placing seeds", 0.3);
     const Index count = growth::at_least_one_per_component(mesh, options.charts_number);

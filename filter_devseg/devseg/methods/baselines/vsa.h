@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 
@@ -17,6 +18,10 @@ struct VsaOptions {
     bool teleport_charts = true; // merge two charts and split the worst one where that helps
     int max_iterations = 100;    // rounds of partitioning at most, after the start
     int random_seed = 0;         // 0: a start that does not depend on the order of the faces
+
+    static OptionRanges<VsaOptions> ranges() {
+        return with_rounds<VsaOptions>({{&VsaOptions::charts_number, {"charts_number", 1, 1e9}}});
+    }
 };
 
 struct VsaResult {

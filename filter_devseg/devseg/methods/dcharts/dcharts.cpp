@@ -8,7 +8,6 @@
 #include <functional>
 #include <numeric>
 
-#include "devseg/base/option_checks.h"
 #include "devseg/methods/dcharts/tuning.h"
 #include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/seeds.h"
@@ -263,20 +262,6 @@ void fill_holes(const Mesh& mesh, const DChartsOptions& options, Growth& growth,
 
 } // namespace
 
-void check_options(const Mesh& mesh, const DChartsOptions& o) {
-    check_charts_number(mesh.face_count(), o.charts_number);
-    check_range("max_fitting_error", o.max_fitting_error, 0.0, 4.0,
-                "a number above 0 and at most 4 (0.2 is usual)");
-    const auto exponent = [](const char* name, double value) {
-        if (!(value >= 0.0) || !(value <= 10.0))
-            refuse_option(name, "a number from 0 to 10", value);
-    };
-    exponent("alpha", o.alpha);
-    exponent("beta", o.beta);
-    exponent("gamma", o.gamma);
-    check_rounds(o.max_iterations, o.random_seed);
-}
-
 std::vector<double> fitting_errors(const Mesh& mesh, const std::vector<Index>& chart,
                                    const std::vector<metrics::ConicProxy>& proxies) {
     std::vector<double> errors;
@@ -285,8 +270,17 @@ std::vector<double> fitting_errors(const Mesh& mesh, const std::vector<Index>& c
     return errors;
 }
 
+OptionRanges<DChartsOptions> DChartsOptions::ranges() {
+    using O = DChartsOptions;
+    return with_rounds<O>({{&O::max_fitting_error, {"max_fitting_error", 0.0, 4.0, true}},
+                           {&O::alpha, {"alpha", 0.0, 10.0}},
+                           {&O::beta, {"beta", 0.0, 10.0}},
+                           {&O::gamma, {"gamma", 0.0, 10.0}}});
+}
+
 DChartsResult segment_dcharts(const Mesh& mesh, const DChartsOptions& options, Progress& progress) {
-    check_options(mesh, options);
+    check_charts_number(mesh.face_count(), options.charts_number);
+    check_ranges(options);
     DChartsResult result;
 
     auto placing = progress.part("placing seeds", 0.1);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 #include "devseg/metrics/conic_proxy.h"
@@ -21,6 +22,8 @@ struct DChartsOptions {
     double gamma = 0.5;             // weight of straight boundaries, exponent of P
     int max_iterations = 100;       // Lloyd rounds at most
     int random_seed = 0;            // 0: a start that does not depend on the order of the faces
+
+    static OptionRanges<DChartsOptions> ranges(); // but of charts_number
 };
 
 struct DChartsResult {
@@ -31,9 +34,6 @@ struct DChartsResult {
     bool converged = false; // fewer than 5 % of the faces changed in the last round
     Index hole_charts = 0;  // charts that hole filling added
 };
-
-/// Throws InvalidParameter for options that segment_dcharts cannot work with.
-void check_options(const Mesh& mesh, const DChartsOptions& options);
 
 /// Throws InvalidParameter for options out of range (1 ≤ charts_number ≤ #F, F_max > 0,
 /// exponents ≥ 0, max_iterations ≥ 1) and Cancelled.

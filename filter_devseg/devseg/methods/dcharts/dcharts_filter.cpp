@@ -1,8 +1,8 @@
 #include <string>
 
 #include "devseg/atlas/disks.h"
-#include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/dcharts/developable_charts.h"
 #include "devseg/metrics/segmentation.h"
 
@@ -34,8 +34,7 @@ FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOption
     const atlas::ChartMap charts =
         atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
-    FilterOutput output;
-    output.values = {
+    ResultValues values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
         {"joined_charts_number", segmentation.joins},
@@ -47,30 +46,28 @@ FilterOutput run_dcharts(const FilterInput& input, const DevelopableChartsOption
         {"converged", segmentation.converged},
         {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
-    output.face_color = face_chart_colors(input.mesh, cuts.charts);
-    output.face_quality = std::move(segmentation.fitting_error);
-    output.charts = std::move(cuts.charts);
-    return output;
+    return chart_output(input.mesh, std::move(cuts.charts), std::move(segmentation.fitting_error),
+                        std::move(values));
 }
 
 FilterDeclaration dcharts() {
     using O = DevelopableChartsOptions;
     return Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
                       FilterCategory::remeshing, dcharts_help)
-        .integer(&O::charts_number, "charts_number", "Number of charts", 0, 1e9,
+        .integer(&O::charts_number, "Number of charts",
                  "The initial estimate of the number of charts, from 1 to the number of faces. "
                  "Large regions that fit no chart get charts of their own, and neighbours that "
                  "flatten well together are joined, so that the final number differs. 0 finds the "
                  "fewest charts whose final map keeps max_l2_stretch and max_linf_stretch.")
-        .real(&O::max_fitting_error, "max_fitting_error", "Largest fitting error", 0.0, 4.0,
+        .real(&O::max_fitting_error, "Largest fitting error",
               "Bound of the fitting error while charts grow, without unit, above 0. Smaller "
               "charts fit better: 0.2 is usual for free forms, 0.01 for mechanical parts.")
-        .real(&O::alpha, "alpha", "Weight of developability", 0.0, 10.0,
+        .real(&O::alpha, "Weight of developability",
               "Exponent of the fitting error in the cost of adding a face, without unit.")
-        .real(&O::beta, "beta", "Weight of compactness", 0.0, 10.0,
+        .real(&O::beta, "Weight of compactness",
               "Exponent of the roundness of the chart in the cost, without unit. Larger values "
               "avoid long strips.")
-        .real(&O::gamma, "gamma", "Weight of straight borders", 0.0, 10.0,
+        .real(&O::gamma, "Weight of straight borders",
               "Exponent of the ratio of outer to inner edge length in the cost, without unit. "
               "Larger values make smoother borders.")
         .boolean(&O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
@@ -79,25 +76,26 @@ FilterDeclaration dcharts() {
         .boolean(&O::merge_charts, "merge_charts", "Join charts",
                  "Join neighbouring charts, those with long common borders first, where a trial "
                  "flattening of both as one chart stays within the bounds of merge_threshold.")
-        .real(&O::merge_threshold, "merge_threshold", "Joining threshold", 0.0, 1.0,
+        .real(&O::merge_threshold, "Joining threshold",
               "How far joined charts may be from developable, without unit: at most 1 + t / 2 of "
               "L2 stretch and 1 + 4 √t of L∞ stretch. 0.01 suits free forms, 0.00001 mechanical "
               "parts. Darts are cut into charts that exceed the same bounds.")
         .boolean(&O::add_darts, "add_darts", "Cut darts",
                  "Cut from the border of a chart to the spots where its map is stretched most, as "
                  "far as that is worth the length of the cut.")
-        .real(&O::max_l2_stretch, "max_l2_stretch", "Largest L2 stretch", 1.0, 100.0,
+        .real(&O::max_l2_stretch, "Largest L2 stretch",
               "Bound of the L2 stretch of the whole map, above 1, without unit; used where "
               "charts_number is 0, and measured on the final map of the full surface.")
-        .real(&O::max_linf_stretch, "max_linf_stretch", "Largest L∞ stretch", 0.0, 1000.0,
+        .real(&O::max_linf_stretch, "Largest L∞ stretch",
               "Bound of the stretch of the worst spot, above 1, without unit; 0 for no bound. Used "
               "where charts_number is 0.")
-        .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+        .integer(&O::max_iterations, "Most rounds",
                  "The rounds of growing and reseeding end here at the latest; usually fewer than "
                  "5 % of the faces change their chart long before.")
-        .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+        .integer(&O::random_seed, "Random seed",
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
+        .command("dcharts")
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("hole_charts_number", "charts that were added where no other fitted")

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "devseg/atlas/fragments.h"
-#include "devseg/base/errors.h"
 #include "devseg/methods/dcharts/coarse_charts.h"
 #include "devseg/methods/dcharts/draft.h"
 #include "devseg/methods/growth/expansion.h"
@@ -60,21 +58,6 @@ bool is_creased(const Mesh& mesh) {
         sharp += cosine < sharp_cosine ? mesh.edge_length(h) : 0.0;
     }
     return sharp > least_creases * std::sqrt(mesh.total_area) && sharp > sharp_share * bent;
-}
-
-void check_bounds(const DevelopableChartsOptions& o) {
-    const auto refuse = [](const char* name, const char* expected, double found) {
-        std::ostringstream text;
-        text << name << ": expected " << expected << ", found " << found;
-        throw InvalidParameter(text.str());
-    };
-    if (!(o.merge_threshold > 0.0) || !(o.merge_threshold <= 1.0))
-        refuse("merge_threshold", "a number above 0 and at most 1 (0.01 is usual)",
-               o.merge_threshold);
-    if (!(o.max_l2_stretch > 1.0))
-        refuse("max_l2_stretch", "a number above 1 (1.01 is usual)", o.max_l2_stretch);
-    if (o.max_linf_stretch != 0.0 && !(o.max_linf_stretch > 1.0))
-        refuse("max_linf_stretch", "0 for no bound, or a number above 1", o.max_linf_stretch);
 }
 
 // One run: the surface on which decisions are made, and how charts grow on it.
@@ -305,14 +288,26 @@ private:
 
 } // namespace
 
+OptionRanges<DevelopableChartsOptions> DevelopableChartsOptions::ranges() {
+    using O = DevelopableChartsOptions;
+    OptionRanges<O> ranges = {{&O::charts_number, {"charts_number", 0, 1e9}},
+                              {&O::merge_threshold, {"merge_threshold", 0.0, 1.0, true}},
+                              {&O::max_l2_stretch, {"max_l2_stretch", 1.0, 100.0, true}},
+                              {&O::max_linf_stretch, {"max_linf_stretch", 0.0, 1000.0}}};
+    for (const auto& [field, range] : DChartsOptions::ranges())
+        std::visit([&, &r = range](auto f) { ranges.push_back({f, r}); }, field);
+    return ranges;
+}
+
 DevelopableCharts segment_developable_charts(const Mesh& mesh,
                                              const DevelopableChartsOptions& options,
                                              Progress& progress) {
-    DChartsOptions growing = options;
-    if (growing.charts_number == 0)
-        growing.charts_number = 1;
-    check_options(mesh, growing);
-    check_bounds(options);
+    if (options.charts_number != 0)
+        check_charts_number(mesh.face_count(), options.charts_number);
+    check_ranges(options);
+    if (options.max_linf_stretch != 0.0 && options.max_linf_stretch <= 1.0)
+        refuse_option("max_linf_stretch", "0 for no bound, or a number above 1",
+                      options.max_linf_stretch);
     auto coarsening = progress.part("coarsening", 0.06);
     Designer designer(mesh, options, coarsening);
     return designer.run(progress);

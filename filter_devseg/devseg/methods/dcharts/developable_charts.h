@@ -19,6 +19,8 @@ struct DevelopableChartsOptions : DChartsOptions {
     // With charts_number = 0: the fewest charts whose final map keeps these bounds.
     double max_l2_stretch = 1.01;
     double max_linf_stretch = 0.0; // 0: no bound
+
+    static OptionRanges<DevelopableChartsOptions> ranges();
 };
 
 struct DevelopableCharts {

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "devseg/atlas/slit_closing.h"
-#include "devseg/base/option_checks.h"
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/methods/growth/seeds.h"
 #include "devseg/methods/growth/vertex_growth.h"
@@ -132,20 +131,19 @@ double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     return length;
 }
 
-void check_options(const Mesh& mesh, const PapercraftOptions& options) {
-    check_charts_number(mesh.face_count(), options.charts_number);
-    check_rounds(options.max_iterations, options.random_seed);
-    check_range("growth_threshold", options.growth_threshold, 0.0, 1000.0,
-                "a number above 0, at most 1000");
-    if (!(options.slit_threshold >= 0.0) || !(options.slit_threshold <= 1000.0))
-        refuse_option("slit_threshold", "a number from 0 to 1000", options.slit_threshold);
-}
-
 } // namespace
+
+OptionRanges<PapercraftOptions> PapercraftOptions::ranges() {
+    using O = PapercraftOptions;
+    return with_rounds<O>({{&O::charts_number, {"charts_number", 1, 1e9}},
+                           {&O::growth_threshold, {"growth_threshold", 0.0, 1000.0, true}},
+                           {&O::slit_threshold, {"slit_threshold", 0.0, 1000.0}}});
+}
 
 PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& options,
                                     Progress& progress) {
-    check_options(mesh, options);
+    check_charts_number(mesh.face_count(), options.charts_number);
+    check_ranges(options);
     const double diagonal = diagonal_of(mesh);
     const std::vector<double> defect = mesh::angle_defects(mesh);
     std::vector<double> cost = vertex_costs(mesh, defect, diagonal);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 
 namespace devseg::papercraft {
@@ -20,6 +21,8 @@ struct PapercraftOptions {
     double slit_threshold = 0.1;   // largest E_s of a slit that is closed, share of the diagonal
     int max_iterations = 100;      // rounds of the chart selection
     int random_seed = 0;
+
+    static OptionRanges<PapercraftOptions> ranges();
 };
 
 struct PapercraftResult {

@@ -1,5 +1,5 @@
-#include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/papercraft/papercraft.h"
 #include "devseg/metrics/segmentation.h"
 
@@ -27,8 +27,7 @@ constexpr const char* papercraft_help =
 FilterOutput run_papercraft(const FilterInput& input, const PapercraftOptions& options,
                             Progress& progress) {
     PapercraftResult result = segment_papercraft(input.mesh, options, progress);
-    FilterOutput output;
-    output.values = {
+    ResultValues values = {
         {"charts_number", result.charts.count},
         {"initial_charts_number", result.initial_charts},
         {"rounds_number", result.rounds},
@@ -36,10 +35,8 @@ FilterOutput run_papercraft(const FilterInput& input, const PapercraftOptions& o
         {"slit_length", result.slit_length * input.mesh.unit_length},
         {"seam_length", metrics::seam_length(input.mesh, result.charts)},
     };
-    output.face_color = face_chart_colors(input.mesh, result.charts);
-    output.face_quality = std::move(result.defect_share);
-    output.charts = std::move(result.charts);
-    return output;
+    return chart_output(input.mesh, std::move(result.charts), std::move(result.defect_share),
+                        std::move(values));
 }
 
 } // namespace
@@ -50,23 +47,24 @@ std::vector<FilterDeclaration> filters() {
         Declare<O>("Segmentation: Papercraft with Creases and Slits",
                    "compute_segmentation_papercraft_per_face", FilterCategory::remeshing,
                    papercraft_help)
-            .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
+            .integer(&O::charts_number, "Number of charts",
                      "From 1 to the number of faces. Fewer charts have more and longer slits. A "
                      "mesh of more components gets one chart for each of them.")
-            .real(&O::growth_threshold, "growth_threshold", "Growth threshold", 0.0, 1000.0,
+            .real(&O::growth_threshold, "Growth threshold",
                   "What the inner vertices of a chart of the initial segmentation may lack to "
                   "360 degrees, or have too much, all together, in radians, above 0. Smaller "
                   "values start from more and smaller charts; halved where there are fewer "
                   "than wanted.")
-            .real(&O::slit_threshold, "slit_threshold", "Slit threshold", 0.0, 1000.0,
+            .real(&O::slit_threshold, "Slit threshold",
                   "Slits are closed where the paper has to bridge a gap of about this width, "
                   "as a share of the diagonal of the model's box. 0 closes none.")
-            .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+            .integer(&O::max_iterations, "Most rounds",
                      "Rounds in which the smallest charts are removed and the others grown "
                      "again; the last one removes all that are too many.")
-            .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+            .integer(&O::random_seed, "Random seed",
                      "0 takes angles as they are; other numbers vary them a little, for other "
                      "charts. The same number always gives the same charts.")
+            .command("papercraft", "symmetric-dirichlet", "papercraft", true)
             .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("initial_charts_number", "charts of the initial segmentation")

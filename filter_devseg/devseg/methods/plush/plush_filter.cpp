@@ -1,8 +1,8 @@
 #include <string>
 #include <utility>
 
-#include "devseg/declare/chart_colors.h"
 #include "devseg/declare/declare.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/plush/plush_seams.h"
 #include "devseg/metrics/segmentation.h"
 
@@ -76,26 +76,24 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
         skeleton = read_skeleton(options.skeleton_file,
                                  [&](const Vec3& p) { return input.from_model(p); });
     PlushSeams seams = segment_plush_seams(mesh, options, std::move(skeleton), hard, progress);
-    FilterOutput output;
-    output.values = {{"charts_number", seams.charts.count},
-                     {"darts_number", seams.darts},
-                     {"limbs_number", seams.limbs},
-                     {"extrema_number", seams.extrema},
-                     {"bones_number", seams.bones},
-                     {"candidate_seams_number", seams.candidates},
-                     {"trials_number", seams.trials},
-                     {"largest_area_change", seams.max_area_change},
-                     {"all_developable", seams.all_developable},
-                     {"is_symmetric", seams.is_symmetric},
-                     {"mirrored_share", seams.shares.mirrored},
-                     {"guided_share", seams.shares.guided},
-                     {"seam_length", metrics::seam_length(mesh, seams.charts)}};
+    ResultValues values = {{"charts_number", seams.charts.count},
+                           {"darts_number", seams.darts},
+                           {"limbs_number", seams.limbs},
+                           {"extrema_number", seams.extrema},
+                           {"bones_number", seams.bones},
+                           {"candidate_seams_number", seams.candidates},
+                           {"trials_number", seams.trials},
+                           {"largest_area_change", seams.max_area_change},
+                           {"all_developable", seams.all_developable},
+                           {"is_symmetric", seams.is_symmetric},
+                           {"mirrored_share", seams.shares.mirrored},
+                           {"guided_share", seams.shares.guided},
+                           {"seam_length", metrics::seam_length(mesh, seams.charts)}};
+    FilterOutput output = chart_output(mesh, std::move(seams.charts), std::move(seams.area_change),
+                                       std::move(values));
     if (!seams.all_developable)
         output.notes.push_back("some patches change their area by more than max_area_change; a "
                                "larger bound or a cleaner mesh helps");
-    output.face_color = face_chart_colors(mesh, seams.charts);
-    output.face_quality = std::move(seams.area_change);
-    output.charts = std::move(seams.charts);
     return output;
 }
 
@@ -103,19 +101,19 @@ FilterDeclaration plush() {
     using O = Options;
     return Declare<O>("Segmentation: Plush Toy Seams", "compute_segmentation_plush_seams_per_face",
                       FilterCategory::remeshing, plush_help)
-        .real(&O::max_area_change, "max_area_change", "Largest change of area", 0.01, 1.0,
+        .real(&O::max_area_change, "Largest change of area",
               "How much the area of a face may change when its patch is flattened, as a share: "
               "0.15 = 15 %. Cotton takes 0.05 to 0.1, plush and fleece 0.15 to 0.2.")
-        .real(&O::geodesic_weight, "geodesic_weight", "Weight of short seams", 0.0, 10.0,
+        .real(&O::geodesic_weight, "Weight of short seams",
               "Exponent of the length of an edge in its weight, without unit. Larger values make "
               "straighter seams.")
-        .real(&O::skeleton_weight, "skeleton_weight", "Weight of the skeleton", 0.0, 10.0,
+        .real(&O::skeleton_weight, "Weight of the skeleton",
               "Exponent of how far an edge turns away from the skeleton, without unit. Larger "
               "values lay seams along limbs and body.")
-        .real(&O::curvature_weight, "curvature_weight", "Weight of curvature", 0.0, 10.0,
+        .real(&O::curvature_weight, "Weight of curvature",
               "Exponent of the flatness at an edge, without unit. Larger values draw seams to "
               "sharp bends.")
-        .integer(&O::max_extrema, "max_extrema", "Most ends of seams", 0, 1e6,
+        .integer(&O::max_extrema, "Most ends of seams",
                  "Tips and saddles between which seams may run, the most prominent ones; a number, "
                  "0 for at most the root of the number of vertices.")
         .text(&O::skeleton_file, "skeleton_file", "Skeleton file",
@@ -129,12 +127,13 @@ FilterDeclaration plush() {
         .boolean(&O::symmetric, "symmetric", "Symmetric seams",
                  "Keep left and right the same where the model is nearly its own mirror image.")
         .integer(
-            &O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+            &O::max_iterations, "Most rounds",
             "Rounds of trials, of six removals each, in every step that takes seams away; they "
             "usually end before, when nothing more can go.")
-        .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+        .integer(&O::random_seed, "Random seed",
                  "0 takes the least natural seams away first; other numbers change that order a "
                  "little at random. The same number always gives the same seams.")
+        .command("plush", "lpfb")
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "patches, each a disk")
         .result("darts_number", "seams that end inside a patch")

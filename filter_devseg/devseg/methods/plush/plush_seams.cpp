@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "devseg/atlas/fragments.h"
-#include "devseg/base/option_checks.h"
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/canonical_frame.h"
 #include "devseg/methods/plush/acute_corners.h"
@@ -296,8 +295,8 @@ SeamMarks decide_for_model(PlushSegmentation& working, const WorkingSurface& mod
     }
     if (part.has_open_faces()) {
         auto last = progress.part(0.6 * progress.left());
-        part.seam = on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change,
-                                    last);
+        part.seam =
+            on_model.decide(part, fixed_seams(model.mesh, part), options.max_area_change, last);
     }
     auto cleaning = progress.part(progress.left());
     return on_model.without_remnants(part.seam, {}, options.max_area_change, cleaning);
@@ -373,13 +372,18 @@ PlushSeams segment_in_own_frame(const Mesh& framed, const Mesh& mesh, const Plus
 
 } // namespace
 
+OptionRanges<PlushOptions> PlushOptions::ranges() {
+    using O = PlushOptions;
+    return with_rounds<O>({{&O::max_area_change, {"max_area_change", 0.01, 1.0}},
+                           {&O::geodesic_weight, {"geodesic_weight", 0.0, 10.0}},
+                           {&O::skeleton_weight, {"skeleton_weight", 0.0, 10.0}},
+                           {&O::curvature_weight, {"curvature_weight", 0.0, 10.0}},
+                           {&O::max_extrema, {"max_extrema", 0, 1e6}}});
+}
+
 PlushSeams segment_plush_seams(const Mesh& mesh, const PlushOptions& options, Skeleton skeleton,
                                const std::vector<std::uint8_t>& hard, Progress& progress) {
-    check_range("max_area_change", options.max_area_change, 0.0, 1.0,
-                "a number above 0 and at most 1");
-    if (options.max_extrema < 0)
-        refuse_option("max_extrema", "a number of at least 0", options.max_extrema);
-    check_rounds(options.max_iterations, options.random_seed);
+    check_ranges(options);
     const mesh::CanonicalFrame frame = mesh::canonical_frame(mesh, progress);
     for (Vec3& joint : skeleton.joints)
         joint = frame.to_frame(joint);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/methods/plush/seam_guides.h"
 #include "devseg/methods/plush/skeleton.h"
@@ -23,6 +24,8 @@ struct PlushOptions {
     bool symmetric = true;         // keep seams symmetric where the model is
     int random_seed = 0;
     int max_iterations = 10000; // rounds of trials of each way of removing seams
+
+    static OptionRanges<PlushOptions> ranges();
 };
 
 struct PlushSeams {

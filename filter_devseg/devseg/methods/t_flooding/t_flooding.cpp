@@ -6,7 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "devseg/base/option_checks.h"
 #include "devseg/methods/growth/multi_heap.h"
 #include "devseg/methods/growth/reseed.h"
 #include "devseg/methods/growth/seeds.h"
@@ -30,16 +29,6 @@ constexpr double calming = 0.8;
 // Local times of candidates behind a crease are scaled by this much: they sort behind all others
 // of their heap, which no real time reaches.
 constexpr float behind_crease = 1e20F;
-
-void check_options(const Mesh& mesh, const TFloodingOptions& o) {
-    check_charts_number(mesh.face_count(), o.charts_number);
-    check_range("crease_angle", o.crease_angle, 0.0, 180.0, "an angle above 0 and at most 180");
-    check_range("speed_epsilon", o.speed_epsilon, 0.0, 1.0, "a fraction above 0 and at most 1");
-    check_range("offset_damping", o.offset_damping, 0.0, 1.0, "a fraction above 0 and at most 1");
-    if (!(o.speed_power >= 0.0) || !(o.speed_power <= 6.0))
-        refuse_option("speed_power", "a number from 0 to 6", o.speed_power);
-    check_rounds(o.max_iterations, o.random_seed);
-}
 
 // Rank of a chart's best candidate, compared from first to last.
 struct FloodingKey {
@@ -199,7 +188,7 @@ public:
         : cost_(mesh, areas, options), heaps_(mesh), border_(mesh), options_(options),
           scale_(areas.total / options.charts_number), progress_(progress) {}
 
-    /// One start: seeds move until they come back or stop to help, then only the offsets change.
+    /// One start: seeds move until they come back or stop helping, then only the offsets change.
     /// Without `early_offsets` there are none until then.
     void run(std::vector<Index> seeds, bool early_offsets) {
         Round best;
@@ -278,9 +267,19 @@ private:
 
 } // namespace
 
+OptionRanges<TFloodingOptions> TFloodingOptions::ranges() {
+    using O = TFloodingOptions;
+    return with_rounds<O>({{&O::charts_number, {"charts_number", 1, 1e9}},
+                           {&O::crease_angle, {"crease_angle", 0.0, 180.0, true}},
+                           {&O::speed_power, {"speed_power", 0.0, 6.0}},
+                           {&O::speed_epsilon, {"speed_epsilon", 0.0, 1.0, true}},
+                           {&O::offset_damping, {"offset_damping", 0.0, 1.0, true}}});
+}
+
 TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& options,
                                    Progress& progress) {
-    check_options(mesh, options);
+    check_charts_number(mesh.face_count(), options.charts_number);
+    check_ranges(options);
     const auto measuring = progress.part("measuring Gauss areas", 0.02);
     metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, options.crease_angle * degrees);
 

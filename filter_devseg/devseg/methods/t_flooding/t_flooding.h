@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 
@@ -23,6 +24,8 @@ struct TFloodingOptions {
     bool straighten_boundaries = true; // short borders that keep the balance
     int max_iterations = 100;          // rounds of flooding at most
     int random_seed = 0;               // 0: a start that does not depend on the order of the faces
+
+    static OptionRanges<TFloodingOptions> ranges();
 };
 
 struct TFloodingResult {

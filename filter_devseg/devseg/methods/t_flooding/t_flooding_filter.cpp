@@ -53,20 +53,20 @@ std::vector<FilterDeclaration> filters() {
     return {
         Declare<O>("Segmentation: t-flooding", "compute_segmentation_t_flooding_per_face",
                    FilterCategory::remeshing, t_flooding_help)
-            .integer(&O::charts_number, "charts_number", "Number of charts", 1, 1e9,
+            .integer(&O::charts_number, "Number of charts",
                      "From 1 to the number of faces. A mesh of more components gets one chart for "
                      "each of them.")
-            .real(&O::crease_angle, "crease_angle", "Crease angle", 0.0, 180.0,
+            .real(&O::crease_angle, "Crease angle",
                   "Edges that bend by more than this are creases, degrees, above 0. Smooth edges "
                   "and vertices have no Gauss area of their own.")
-            .real(&O::speed_power, "speed_power", "Power of the speed", 0.0, 6.0,
+            .real(&O::speed_power, "Power of the speed",
                   "Exponent of the curvature in the time that a chart takes to flood a face, "
                   "without unit. Larger values follow features more closely; 0 ignores them.")
-            .real(&O::speed_epsilon, "speed_epsilon", "Least curvature", 0.0, 1.0,
+            .real(&O::speed_epsilon, "Least curvature",
                   "Added to the curvature, as a share of the largest one on the mesh, above 0. "
                   "Larger values follow features less.")
             .real(
-                &O::offset_damping, "offset_damping", "Damping of offsets", 0.0, 1.0,
+                &O::offset_damping, "Damping of offsets",
                 "Share of the imbalance between charts that the next round takes up, without unit, "
                 "above 0.")
             .boolean(&O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
@@ -74,12 +74,13 @@ std::vector<FilterDeclaration> filters() {
             .boolean(&O::cut_tips, "cut_tips", "Cut tips",
                      "Cut charts open up to tips that are at least half as high as the loop around "
                      "them is long: horns, fingers and limbs.")
-            .integer(&O::max_iterations, "max_iterations", "Most rounds", 1, 1e6,
+            .integer(&O::max_iterations, "Most rounds",
                      "The rounds of flooding and reseeding end here at the latest; usually the "
-                     "balance stops to improve before.")
-            .integer(&O::random_seed, "random_seed", "Random seed", 0, 2147483647,
+                     "balance stops improving earlier.")
+            .integer(&O::random_seed, "Random seed",
                      "0 starts at the face farthest from the centre; other numbers at a random "
                      "face. The same number always gives the same charts.")
+            .command("t-flooding")
             .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("cut_length", "length of the cuts inside of charts, model units")
