@@ -204,7 +204,7 @@ def readme_table(text: str, table: list[dict[str, Any]]) -> str:
     lines = ["| menu | Python | what it does |", "|---|---|---|"]
     for filter_ in sorted(table, key=rank):
         name = filter_["python_name"]
-        what = written.get(name) or first_sentence(markdown(filter_["help"]))[0].rstrip(".")
+        what = written.get(name) or first_sentence(help_text(filter_))[0].rstrip(".")
         lines.append(_row(filter_["menu_name"], f"`{name}`", what))
     return replaced(text, FILTERS, "\n".join(lines))
 
@@ -229,9 +229,9 @@ def filter_tables(filter_: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def help_text(parameter: dict[str, Any]) -> str:
-    """A parameter's help on one line."""
-    return markdown(parameter["help"]).replace("  \n", " ")
+def help_text(described: dict[str, Any]) -> str:
+    """The help of a parameter or a filter on one line."""
+    return markdown(described["help"]).replace("  \n", " ")
 
 
 def first_sentence(text: str) -> tuple[str, str]:
@@ -318,16 +318,16 @@ def methods_table(table: list[dict[str, Any]]) -> str:
         if command["name"]:
             row = {
                 "filter": filter_["python_name"],
-                "parameters": tuple(p["name"] for p in filter_["parameters"]),
+                "parameters": [p["name"] for p in filter_["parameters"]],
                 "flatten": command["flatten"],
                 "preset": command["preset"] or None,
                 "deforms": command["deforms"],
             }
             text += f"    {python(command['name'])}: {{\n"
             for key, value in row.items():
-                if isinstance(value, tuple):
+                if value and isinstance(value, list):
                     items = "".join(f"            {python(name)},\n" for name in value)
-                    text += f"        {python(key)}: (\n{items}        ),\n"
+                    text += f"        {python(key)}: [\n{items}        ],\n"
                 else:
                     text += f"        {python(key)}: {python(value)},\n"
             text += "    },\n"

@@ -3,7 +3,7 @@
 TABLE = {
     "dcharts": {
         "filter": "compute_segmentation_dcharts_per_face",
-        "parameters": (
+        "parameters": [
             "charts_number",
             "max_fitting_error",
             "alpha",
@@ -17,14 +17,14 @@ TABLE = {
             "max_linf_stretch",
             "max_iterations",
             "random_seed",
-        ),
+        ],
         "flatten": "symmetric-dirichlet",
         "preset": None,
         "deforms": False,
     },
     "t-flooding": {
         "filter": "compute_segmentation_t_flooding_per_face",
-        "parameters": (
+        "parameters": [
             "charts_number",
             "crease_angle",
             "speed_power",
@@ -34,14 +34,14 @@ TABLE = {
             "cut_tips",
             "max_iterations",
             "random_seed",
-        ),
+        ],
         "flatten": "symmetric-dirichlet",
         "preset": None,
         "deforms": False,
     },
     "plush": {
         "filter": "compute_segmentation_plush_seams_per_face",
-        "parameters": (
+        "parameters": [
             "max_area_change",
             "geodesic_weight",
             "skeleton_weight",
@@ -52,43 +52,43 @@ TABLE = {
             "symmetric",
             "max_iterations",
             "random_seed",
-        ),
+        ],
         "flatten": "lpfb",
         "preset": None,
         "deforms": False,
     },
     "papercraft": {
         "filter": "compute_segmentation_papercraft_per_face",
-        "parameters": (
+        "parameters": [
             "charts_number",
             "growth_threshold",
             "slit_threshold",
             "max_iterations",
             "random_seed",
-        ),
+        ],
         "flatten": "symmetric-dirichlet",
         "preset": "papercraft",
         "deforms": True,
     },
     "vsa": {
         "filter": "compute_segmentation_variational_shape_approximation_per_face",
-        "parameters": (
+        "parameters": [
             "charts_number",
             "max_iterations",
             "random_seed",
             "teleport_charts",
-        ),
+        ],
         "flatten": "symmetric-dirichlet",
         "preset": None,
         "deforms": False,
     },
     "mcgim": {
         "filter": "compute_segmentation_multi_chart_geometry_images_per_face",
-        "parameters": (
+        "parameters": [
             "charts_number",
             "max_iterations",
             "random_seed",
-        ),
+        ],
         "flatten": "symmetric-dirichlet",
         "preset": None,
         "deforms": False,
