@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "devseg/graph/min_cut.h"
 #include "devseg/methods/plush/tuning.h"
@@ -41,7 +42,7 @@ Root find_root(const Mesh& mesh, const std::vector<double>& distance) {
         const double share = inside / mesh.total_area;
         // A window that grows with the distance sees roots of all sizes alike.
         const int window = std::max(2, i / 5);
-        if (i < 6 || share < tuning.negligible || i - window < 0 || i + 1 + 2 * window > rings)
+        if (i < 6 || share < tuning.speck || i - window < 0 || i + 1 + 2 * window > rings)
             continue;
         if (share > tuning.largest_limb)
             break;
@@ -66,7 +67,7 @@ std::vector<graph::CutSide> cut_off(const Mesh& mesh, const std::vector<double>&
     for (const Face f : mesh.all_faces())
         if (distance[f] < tuning.inner_band * root)
             start[f] = graph::CutSide::source;
-        else if (!(distance[f] < tuning.outer_band * root))
+        else if (!(distance[f] < root / tuning.inner_band))
             start[f] = graph::CutSide::sink;
     graph::MinCut cut(start);
     for (const HalfEdge h : mesh.all_half_edges())

@@ -5,7 +5,7 @@
 //   Transactions on Graphics 22(3), 2003. doi:10.1145/882262.882369 (the cut along concavities)
 #pragma once
 
-#include "devseg/methods/plush/seam_paths.h"
+#include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
 

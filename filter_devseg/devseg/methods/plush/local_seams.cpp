@@ -77,15 +77,15 @@ public:
                     part.push_back(g);
                 }
         }
-        if (part_area < tuning.least_part * area || part_area > (1.0 - tuning.least_part) * area)
+        if (part_area < tuning.least_split * area || part_area > (1.0 - tuning.least_split) * area)
             return {};
         smooth(trial.face, state);
         return border_of(trial.face, state);
     }
 
     // From the worst spot to the nearest place on the border, and to the nearest on its far side.
-    Line path_through(const PatchTrial& trial, const VertexGraph& graph,
-                      const std::vector<double>& weight, const Progress& progress) const {
+    Line path_through(const PatchTrial& trial, const SeamSetting& setting,
+                      const Progress& progress) const {
         const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
         const std::vector<Index>& loop = surface.loops.front();
         const auto vertex = [&](std::size_t i) { return surface.vertex[surface.origin(loop[i])]; };
@@ -98,7 +98,8 @@ public:
         const Vertex tip = worst_inner_vertex(trial, on_border);
         if (tip < 0)
             return {};
-        const PathTree tree = shortest_paths(graph, weight, {tip}, progress, may_enter, on_border);
+        const PathTree tree =
+            shortest_paths(setting.graph, setting.weight, {tip}, progress, may_enter, on_border);
         const auto usable = [&](Vertex v) {
             return is_inside(tree.half_edge[v], trial) && std::isfinite(tree.distance[v]);
         };
@@ -218,9 +219,9 @@ std::vector<std::vector<Index>> open_patches(const WorkingSurface& surface, cons
 
 } // namespace
 
-bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
-                     const std::vector<double>& weight, const PatchLimits& limits,
-                     std::vector<std::uint8_t> open, SeamMarks& seam, Progress& progress) {
+bool add_local_seams(const SeamSetting& setting, std::vector<std::uint8_t> open, SeamMarks& seam,
+                     Progress& progress) {
+    const WorkingSurface& surface = setting.surface;
     const Mesh& mesh = surface.mesh;
     open.resize(mesh.faces.size(), 1);
     bool all_developable = true;
@@ -233,7 +234,8 @@ bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
         const auto split = [&](int i) {
             Split& result = splits[static_cast<std::size_t>(i)];
             const std::vector<Index>& patch = faces[static_cast<std::size_t>(i)];
-            const PatchTrial trial = try_patch(mesh, patch, seam, limits, true, splitting);
+            const PatchTrial trial =
+                try_patch(mesh, patch, seam, setting.tester.limits(), true, splitting);
             result.is_needed = !trial.accepted;
             const Splitter splitter(mesh, seam, patch);
             if (!trial.is_disk) {
@@ -244,7 +246,7 @@ bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
             if (result.is_needed && has_map)
                 result.cuts = splitter.isoline(trial);
             if (result.is_needed && has_map && result.cuts.empty())
-                result.cuts = splitter.path_through(trial, graph, weight, splitting);
+                result.cuts = splitter.path_through(trial, setting, splitting);
             if (result.is_needed && result.cuts.empty())
                 result.cuts = splitter.halves();
         };

@@ -1,8 +1,7 @@
 // Further seams where patches are not developable enough yet.
 #pragma once
 
-#include "devseg/methods/plush/patch_trial.h"
-#include "devseg/methods/plush/seam_paths.h"
+#include "devseg/methods/plush/seam_removal.h"
 
 namespace devseg::plush {
 
@@ -10,8 +9,7 @@ namespace devseg::plush {
 /// way to their worst spot, or where that is too small a part of the patch, by a path through the
 /// worst spot, until all are developable; returns whether they are. Marks stay symmetric where the
 /// surface is. `open`: 0 for faces of patches that stay as they are (#F), or empty.
-bool add_local_seams(const WorkingSurface& surface, const VertexGraph& graph,
-                     const std::vector<double>& weight, const PatchLimits& limits,
-                     std::vector<std::uint8_t> open, SeamMarks& seam, Progress& progress);
+bool add_local_seams(const SeamSetting& setting, std::vector<std::uint8_t> open, SeamMarks& seam,
+                     Progress& progress);
 
 } // namespace devseg::plush

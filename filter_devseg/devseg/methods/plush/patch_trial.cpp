@@ -69,7 +69,7 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
     const double bound = tuning.used_bound * limits.max_area_change;
     const double strictness = std::min(1.0, limits.max_area_change / tuning.usual_change);
-    const double stretch = limits.is_search ? tuning.search_shear : tuning.most_shear;
+    const double stretch = 1.0 + tuning.most_shear / (limits.is_search ? 2.0 : 1.0);
     flatten::SewingMapOptions options;
     options.enough = bound;
     options.enough_stretch = stretch;

@@ -60,8 +60,8 @@ std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBord
         const HalfEdge twin = mesh.twin[h];
         if (twin < 0)
             continue;
-        const std::size_t f = at(h / 3);
-        const std::size_t g = at(twin / 3);
+        const Face f = face_of(h);
+        const Face g = face_of(twin);
         hard[h] =
             by_color ? input.color[f] != input.color[g] : input.selected[f] != input.selected[g];
     }

@@ -1,8 +1,9 @@
 // Seams for plush toys: patches that lie flat, with seams where people expect them.
 //
 // References
-//   Plush toy seams: see the filter's help. [Wan08], [BGB08], [TAOZ12]: see the headers of the
-//   steps.
+//   [Plush] An appearance-aware seam method for plush toys; title and authors are lost in our copy.
+//           See docs/methods/plush.md.
+//   [Wan08], [BGB08], [TAOZ12], [BP07]: see the headers of the steps.
 #pragma once
 
 #include <string>

@@ -11,13 +11,6 @@ namespace devseg::plush {
 
 namespace {
 
-double diagonal_of(const Mesh& mesh) {
-    Eigen::AlignedBox3d box;
-    for (const HalfEdge h : mesh.all_half_edges())
-        box.extend(mesh.points[mesh.origin(h)]);
-    return box.diagonal().norm();
-}
-
 double smooth_step(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -27,7 +20,7 @@ double smooth_step(double from, double to, double x) {
 class EdgeShapes {
 public:
     explicit EdgeShapes(const Mesh& mesh)
-        : mesh_(mesh), reach_(tuning.beside_edge * diagonal_of(mesh)),
+        : mesh_(mesh), reach_(tuning.beside_edge * mesh_diagonal(mesh)),
           seen_(mesh.faces.size(), -1) {}
 
     EdgeShape at_edge(HalfEdge h) {
@@ -56,9 +49,9 @@ private:
         const Vec3& a = mesh_.points[mesh_.origin(h)];
         const Vec3& b = mesh_.points[mesh_.target(h)];
         const Vec3 middle = 0.5 * (a + b);
-        const Vec3 inward = mesh_.face_normals[h / 3].cross(b - a);
-        std::vector<Index> faces{h / 3};
-        seen_[h / 3] = h;
+        const Vec3 inward = mesh_.face_normals[face_of(h)].cross(b - a);
+        std::vector<Index> faces{face_of(h)};
+        seen_[face_of(h)] = h;
         Vec3 normal = Vec3::Zero();
         Vec3 center = Vec3::Zero();
         double area = 0.0;
@@ -68,13 +61,13 @@ private:
             area += mesh_.face_areas[faces[k]];
             for (const HalfEdge e : half_edges_of(faces[k])) {
                 const HalfEdge twin = mesh_.twin[e];
-                if (e == h || twin < 0 || seen_[twin / 3] == h)
+                if (e == h || twin < 0 || seen_[face_of(twin)] == h)
                     continue;
-                const Vec3 away = mesh_.face_centers[twin / 3] - middle;
+                const Vec3 away = mesh_.face_centers[face_of(twin)] - middle;
                 if (away.norm() > reach_ || away.dot(inward) <= 0.0)
                     continue;
-                seen_[twin / 3] = h;
-                faces.push_back(twin / 3);
+                seen_[face_of(twin)] = h;
+                faces.push_back(face_of(twin));
             }
         }
         return {normal.stableNormalized(), center / std::max(area, 1e-300)};
@@ -171,8 +164,9 @@ std::vector<EdgeShape> edge_shapes(const Mesh& mesh, const Progress& progress) {
 }
 
 double straying(double across, double bend) {
-    const double bent = std::max(smooth_step(0.5 * tuning.aligned, tuning.aligned, bend),
-                                 smooth_step(0.25 * tuning.concave, tuning.concave, -bend));
+    const double bent =
+        std::max(smooth_step(0.5 * tuning.aligned, tuning.aligned, bend),
+                 smooth_step(0.25 * tuning.aligned / 3.0, tuning.aligned / 3.0, -bend));
     return std::min(
         smooth_step(1.0 - std::cos(20.0 * degrees), 1.0 - std::cos(50.0 * degrees), across),
         1.0 - bent);
@@ -199,18 +193,18 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
         }
         const double curved = 1.0 / (1.0 + std::abs(curvature[a]) + std::abs(curvature[b]));
         result.stray.push_back(straying(along, shapes[h].bend));
-        result.weight.push_back(natural_factor(tuning.natural_seam, result.stray.back()) *
-                                std::max(tuning.least_weight,
-                                         std::pow(mesh.edge_length(h) / longest, options.geodesic) *
-                                             std::pow(std::max(0.0, along), options.skeleton) *
-                                             std::pow(curved, options.curvature)));
+        result.weight.push_back(
+            natural_factor(tuning.natural_seam, result.stray.back()) *
+            std::max(tuning.tiny, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
+                                      std::pow(std::max(0.0, along), options.skeleton) *
+                                      std::pow(curved, options.curvature)));
     }
     return result;
 }
 
 SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
                        const std::optional<MirrorPlane>& plane, const Progress& progress) {
-    const double diagonal = diagonal_of(mesh);
+    const double diagonal = mesh_diagonal(mesh);
     const Skeleton& skeleton = guides.skeleton;
     BoneWeights bones;
     if (!skeleton.empty())
@@ -222,7 +216,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
         const Index a = mesh.origin(h);
         const Index b = mesh.target(h);
         const EdgeShape shape = shapes.at_edge(h);
-        if (shape.bend >= tuning.aligned || shape.bend <= -tuning.concave)
+        if (shape.bend >= tuning.aligned || shape.bend <= -tuning.aligned / 3.0)
             return true;
         const Vec3 lying = direction - direction.dot(shape.normal) * shape.normal;
         if (!skeleton.empty() &&
@@ -234,7 +228,7 @@ SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides
     };
     for (const SeamSegment& segment : find_segments(mesh, seam)) {
         const std::vector<Vec3> direction =
-            smooth_directions(mesh, segment, tuning.direction_window * diagonal);
+            smooth_directions(mesh, segment, 2.0 * tuning.near_image * diagonal);
         for (std::size_t i = 0; i < direction.size(); ++i) {
             progress.check();
             const HalfEdge h = segment.half_edges[i];

@@ -1,6 +1,12 @@
 #include "devseg/methods/plush/seam_network.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
@@ -67,12 +73,36 @@ void mark(const Mesh& mesh, const std::vector<Index>& line, std::uint8_t value, 
         mark(mesh, h, value, seam);
 }
 
+bool any_marked(const SeamMarks& marks, const std::vector<Index>& line) {
+    return std::any_of(line.begin(), line.end(), [&](HalfEdge h) { return is_marked(marks, h); });
+}
+
 std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam) {
     std::vector<std::uint8_t> on_border(mesh.points.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
         if (is_border(mesh, seam, h))
             on_border[mesh.origin(h)] = on_border[mesh.target(h)] = 1;
     return on_border;
+}
+
+double mesh_diagonal(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : mesh.points)
+        box.extend(p);
+    return box.diagonal().norm();
+}
+
+std::vector<double> edge_lengths(const Mesh& mesh) {
+    std::vector<double> lengths;
+    for (const HalfEdge h : mesh.all_half_edges())
+        lengths.push_back(mesh.edge_length(h));
+    return lengths;
+}
+
+double mean_edge_length(const Mesh& mesh) {
+    const std::vector<double> lengths = edge_lengths(mesh);
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+           std::max<Index>(1, mesh.half_edge_count());
 }
 
 double length_of(const Mesh& mesh, const std::vector<Index>& line) {
@@ -153,6 +183,76 @@ std::vector<std::vector<Index>> patches_beside(const Mesh& mesh, const SeamMarks
 
 mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam) {
     return mesh::face_components(mesh, [&](HalfEdge h) { return seam[h] == 0; });
+}
+
+VertexGraph build_vertex_graph(const Mesh& mesh) {
+    std::vector<std::array<Index, 3>> links; // vertex, neighbour, half-edge
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] < h) {
+            links.push_back({mesh.origin(h), mesh.target(h), h});
+            links.push_back({mesh.target(h), mesh.origin(h), h});
+        }
+    std::sort(links.begin(), links.end());
+    VertexGraph graph;
+    graph.begin.assign(mesh.points.size() + 1, 0);
+    for (const auto& [v, u, h] : links) {
+        ++graph.begin[at(v) + 1];
+        graph.vertex.push_back(u);
+        graph.half_edge.push_back(h);
+    }
+    std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+    return graph;
+}
+
+PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
+                        const std::vector<Index>& sources, const Progress& progress,
+                        const std::vector<std::uint8_t>& may_enter,
+                        const std::vector<std::uint8_t>& is_goal) {
+    graph::ShortestPaths<> paths(graph.begin.size() - 1);
+    for (const Vertex v : sources)
+        paths.add_source(v);
+    paths.run(
+        [&](Vertex v, double distance) {
+            if (distance > 0.0 && !is_goal.empty() && is_goal[v] != 0)
+                return;
+            for (Index i = graph.begin[v]; i < graph.begin[at(v) + 1]; ++i)
+                if (may_enter.empty() || may_enter[graph.vertex[i]] != 0)
+                    paths.reach(graph.vertex[i], distance + weight[graph.half_edge[i]],
+                                graph.half_edge[i]);
+        },
+        progress);
+    return {std::move(paths.distance), std::move(paths.step)};
+}
+
+std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Vertex vertex) {
+    std::vector<Index> path;
+    while (tree.half_edge[vertex] >= 0 && tree.distance[vertex] > 0.0) {
+        const HalfEdge h = tree.half_edge[vertex];
+        path.push_back(h);
+        vertex = mesh.origin(h) == vertex ? mesh.target(h) : mesh.origin(h);
+    }
+    return path;
+}
+
+void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
+                          const std::vector<double>& weight, const std::vector<Index>& ends,
+                          SeamMarks& seam, Progress& progress) {
+    std::vector<double> cost = weight;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (seam[h] != 0)
+            cost[h] *= tuning.shared_seam;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        progress.update(static_cast<double>(i) / static_cast<double>(ends.size()));
+        const PathTree tree = shortest_paths(graph, cost, {ends[i]}, progress);
+        for (std::size_t j = i + 1; j < ends.size(); ++j)
+            for (const HalfEdge h : trace_path(mesh, tree, ends[j])) {
+                if (seam[h] == 0)
+                    for (const HalfEdge side : {h, mesh.twin[h]})
+                        if (side >= 0)
+                            cost[side] = tuning.shared_seam * weight[side];
+                mark(mesh, h, 1, seam);
+            }
+    }
 }
 
 } // namespace devseg::plush

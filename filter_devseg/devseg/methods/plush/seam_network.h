@@ -1,9 +1,11 @@
-// The seams of a segmentation as a network: segments between the places where they meet.
+// The seams of a segmentation as a network: segments between the places where they meet, and paths
+// over edges that become some.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::plush {
@@ -18,6 +20,7 @@ void mark(const Mesh& mesh, const std::vector<Index>& line, std::uint8_t value, 
 inline bool is_marked(const SeamMarks& marks, HalfEdge h) {
     return !marks.empty() && marks[h] != 0;
 }
+bool any_marked(const SeamMarks& marks, const std::vector<Index>& line);
 /// Whether patches end at the edge: a seam, or the mesh's boundary.
 inline bool is_border(const Mesh& mesh, const SeamMarks& seam, HalfEdge h) {
     return seam[h] != 0 || mesh.twin[h] < 0;
@@ -25,7 +28,12 @@ inline bool is_border(const Mesh& mesh, const SeamMarks& seam, HalfEdge h) {
 /// 1 for the vertices (#V) on the borders of patches.
 std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam);
 
-/// Of half-edges, internal units.
+/// Of the box around the mesh, internal units.
+double mesh_diagonal(const Mesh& mesh);
+
+/// Of all half-edges (3 #F), their mean, and the sum of some; internal units.
+std::vector<double> edge_lengths(const Mesh& mesh);
+double mean_edge_length(const Mesh& mesh);
 double length_of(const Mesh& mesh, const std::vector<Index>& line);
 
 /// A line of seam edges from one end to the next. Ends are the vertices where not exactly two seam
@@ -58,5 +66,36 @@ std::vector<std::vector<Index>> patches_beside(const Mesh& mesh, const SeamMarks
 
 /// The labels of the patches, #F: the components of the faces over edges that are no seam.
 mesh::FaceComponents find_patches(const Mesh& mesh, const SeamMarks& seam);
+
+/// Neighbours of all vertices: those of v are vertex[begin[v]] … vertex[begin[v + 1] − 1],
+/// ascending, with a half-edge between the two in either direction.
+struct VertexGraph {
+    std::vector<Index> begin;     // #V + 1
+    std::vector<Index> vertex;    // 2 #E
+    std::vector<Index> half_edge; // 2 #E
+};
+VertexGraph build_vertex_graph(const Mesh& mesh);
+
+/// Distances from one vertex over weighted edges, and the way back.
+struct PathTree {
+    std::vector<double> distance; // #V, infinite where nothing leads
+    std::vector<Index> half_edge; // #V: half-edge of the last step, either direction; −1 = none
+};
+
+/// From any of the sources. `may_enter` (#V, may be empty) closes vertices; vertices with
+/// `is_goal` (#V, may be empty) are reached but not left.
+PathTree shortest_paths(const VertexGraph& graph, const std::vector<double>& weight,
+                        const std::vector<Index>& sources, const Progress& progress,
+                        const std::vector<std::uint8_t>& may_enter = {},
+                        const std::vector<std::uint8_t>& is_goal = {});
+
+/// Half-edges from the tree's root to a vertex, the last one first, in either direction.
+std::vector<Index> trace_path(const Mesh& mesh, const PathTree& tree, Vertex vertex);
+
+/// Marks the shortest paths between all pairs of the vertices; edges that are seams already count
+/// less, so that paths that run side by side become one.
+void add_structural_seams(const Mesh& mesh, const VertexGraph& graph,
+                          const std::vector<double>& weight, const std::vector<Index>& ends,
+                          SeamMarks& seam, Progress& progress);
 
 } // namespace devseg::plush

@@ -324,16 +324,16 @@ Index join_patches(const SeamSetting& setting, const RemovalOptions& options, Se
                 result.push_back(w);
         return result;
     };
-    const Policy joins{[&](const Network& network, std::size_t i) {
-                           return network.smaller_area(i) <=
-                                      options.most_area * network.mesh.total_area &&
-                                  network.is_longest_between(i);
-                       },
-                       [](const Network& network, std::size_t i) {
-                           const SeamSegment& segment = network.segments[i];
-                           return segment.length * segment.weight / std::max(network.size(i), 1e-9);
-                       },
-                       windows};
+    const Policy joins{
+        [&](const Network& network, std::size_t i) {
+            return network.smaller_area(i) <= options.most_area * network.mesh.total_area &&
+                   network.is_longest_between(i);
+        },
+        [](const Network& network, std::size_t i) {
+            const SeamSegment& segment = network.segments[i];
+            return segment.length * segment.weight / std::max(network.size(i), tuning.tiny);
+        },
+        windows};
     return Remover(setting, joins, options, seam, progress).run();
 }
 

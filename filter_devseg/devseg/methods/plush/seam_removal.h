@@ -2,7 +2,7 @@
 #pragma once
 
 #include "devseg/methods/plush/patch_trial.h"
-#include "devseg/methods/plush/seam_paths.h"
+#include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
 
@@ -20,7 +20,7 @@ struct SeamSetting {
 };
 
 struct RemovalOptions {
-    // What goes first: powers of the mean weight of a segment's edges [the paper: 1] and of the
+    // What goes first: powers of the mean weight of a segment's edges [Plush: 1] and of the
     // smaller patch's size.
     double weight_power = 2.0;
     double size_power = 0.5;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "devseg/base/parallel.h"
 #include "devseg/methods/plush/seam_guides.h"
@@ -29,8 +30,7 @@ public:
         }
     }
 
-    Index run() {
-        Index replaced = 0;
+    void run() {
         // Loops have other ends the second time.
         for (const int turn : {0, 1}) {
             const std::vector<Line> lines = find_lines(turn);
@@ -38,11 +38,10 @@ public:
                 progress_.update(0.5 * turn +
                                  0.5 * static_cast<double>(i) / static_cast<double>(lines.size()));
                 const std::vector<Index> path = shorter_path(lines[i]);
-                if (!path.empty() && replace(lines[i].half_edges, path))
-                    ++replaced;
+                if (!path.empty())
+                    replace(lines[i].half_edges, path);
             }
         }
-        return replaced;
     }
 
 private:
@@ -162,16 +161,14 @@ private:
         return true;
     }
 
-    bool replace(const std::vector<Index>& line, const std::vector<Index>& path) {
+    void replace(const std::vector<Index>& line, const std::vector<Index>& path) {
         SeamMarks marks = seam_;
         mark_both(s_.surface, line, 0, marks);
         if (!is_free(line, path, marks))
-            return false;
+            return;
         mark_both(s_.surface, path, 1, marks);
-        if (!keeps_patches(line, path, marks))
-            return false;
-        seam_ = std::move(marks);
-        return true;
+        if (keeps_patches(line, path, marks))
+            seam_ = std::move(marks);
     }
 
     bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
@@ -201,31 +198,28 @@ private:
 } // namespace
 
 void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
-    for (int round = 0; round < tuning.tooth_rounds; ++round) {
-        bool changed = false;
+    for (bool changed = true; changed;) { // the border gets shorter every time
+        changed = false;
         for (const Face f : mesh.all_faces()) {
             std::array<Index, 3> other{-1, -1, -1};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const HalfEdge twin = mesh.twin[at(3 * f) + k];
-                if (twin >= 0 && label[twin / 3] != label[f])
-                    other[k] = label[twin / 3];
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh.twin[h];
+                if (twin >= 0 && label[face_of(twin)] != label[f])
+                    other[corner_of(h)] = label[face_of(twin)];
             }
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::size_t n = (k + 1) % 3;
-                if (other[k] < 0 || other[k] != other[n] || other[(k + 2) % 3] == other[k])
-                    continue;
-                label[f] = other[k];
-                changed = true;
-                break;
-            }
+            for (std::size_t k = 0; k < 3; ++k)
+                if (other[k] >= 0 && other[k] == other[(k + 1) % 3] &&
+                    other[(k + 2) % 3] != other[k]) {
+                    label[f] = other[k];
+                    changed = true;
+                    break;
+                }
         }
-        if (!changed)
-            return;
     }
 }
 
-Index straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
-    return Straightener(setting, seam, progress).run();
+void straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+    Straightener(setting, seam, progress).run();
 }
 
 } // namespace devseg::plush

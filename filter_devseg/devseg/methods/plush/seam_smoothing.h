@@ -1,7 +1,7 @@
 // Seams without teeth and detours.
 #pragma once
 
-#include "devseg/methods/plush/seam_paths.h"
+#include "devseg/methods/plush/seam_network.h"
 #include "devseg/methods/plush/seam_removal.h"
 
 namespace devseg::plush {
@@ -12,7 +12,7 @@ void remove_teeth(const Mesh& mesh, std::vector<Index>& label);
 
 /// Replaces each segment by the shortest path between its ends within a few rings of faces around
 /// it, a closed one in two parts, together with its mirror image, where the patches beside it stay
-/// developable disks. Returns the number of segments that were replaced.
-Index straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
+/// developable disks.
+void straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
 
 } // namespace devseg::plush

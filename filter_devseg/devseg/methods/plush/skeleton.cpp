@@ -14,6 +14,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/mesh/coarsen.h"
+#include "devseg/methods/plush/seam_network.h"
 #include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
@@ -206,13 +207,6 @@ void add_bones(const Curves& curves, double size, Skeleton& skeleton) {
     }
 }
 
-double diagonal(const Mesh& mesh) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : mesh.points)
-        box.extend(p);
-    return box.diagonal().norm();
-}
-
 [[noreturn]] void refuse_line(const std::string& path, int line, const std::string& found) {
     throw InvalidParameter("skeleton_file: expected lines 'v X Y Z' and 'l I J' with joints "
                            "counted from 1, found '" +
@@ -235,7 +229,7 @@ void read_bones(std::istringstream& words, Skeleton& skeleton, bool& is_valid) {
 
 Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
     Skeleton skeleton;
-    const double size = diagonal(mesh);
+    const double size = mesh_diagonal(mesh);
     const mesh::CoarseMesh coarse = mesh::extract_coarse_mesh(
         mesh, mesh::coarsen(mesh.points, mesh.faces, mesh.twin, tuning.skeleton_faces, progress));
     const mesh::FaceComponents parts =
@@ -243,13 +237,13 @@ Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
     std::vector<Index> faces(at(parts.count), 0);
     std::vector<std::uint8_t> is_open(at(parts.count), 0);
     for (const HalfEdge h : coarse.mesh.all_half_edges()) {
-        faces[parts.label[h / 3]] += h % 3 == 0 ? 1 : 0;
+        faces[parts.label[face_of(h)]] += corner_of(h) == 0 ? 1 : 0;
         if (coarse.mesh.twin[h] < 0)
-            is_open[parts.label[h / 3]] = 1;
+            is_open[parts.label[face_of(h)]] = 1;
     }
     const ThrowingChecks guard;
     for (Index c = 0; c < parts.count; ++c) {
-        if (is_open[c] != 0 || faces[c] < tuning.contractible_faces)
+        if (is_open[c] != 0 || faces[c] < tuning.skeleton_faces / 100)
             continue;
         try {
             const SkeletonArena arena;

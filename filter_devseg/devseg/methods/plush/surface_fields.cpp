@@ -17,7 +17,7 @@ namespace {
 flatten::RestTriangle rest_of(const Mesh& mesh, Face f) {
     return flatten::make_rest_triangle(
         {mesh.edge_length(3 * f), mesh.edge_length(3 * f + 1), mesh.edge_length(3 * f + 2)},
-        tuning.same_place);
+        tuning.tiny);
 }
 
 Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::VectorXd& rhs) {
@@ -36,34 +36,15 @@ Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::V
 
 } // namespace
 
-VertexGraph build_vertex_graph(const Mesh& mesh) {
-    std::vector<std::array<Index, 3>> links; // vertex, neighbour, half-edge
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (mesh.twin[h] < h) {
-            links.push_back({mesh.origin(h), mesh.target(h), h});
-            links.push_back({mesh.target(h), mesh.origin(h), h});
-        }
-    std::sort(links.begin(), links.end());
-    VertexGraph graph;
-    graph.begin.assign(mesh.points.size() + 1, 0);
-    for (const auto& [v, u, h] : links) {
-        ++graph.begin[at(v) + 1];
-        graph.vertex.push_back(u);
-        graph.half_edge.push_back(h);
-    }
-    std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
-    return graph;
-}
-
 Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(12 * mesh.faces.size());
     for (const Face f : mesh.all_faces()) {
         const flatten::RestTriangle rest = rest_of(mesh, f);
-        for (Index k = 0; k < 3; ++k) {
-            const Index i = mesh.faces[f][k];
-            const Index j = mesh.faces[f][(k + 1) % 3];
-            const double w = 0.5 * rest.cotangent[k];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Vertex i = mesh.origin(h);
+            const Vertex j = mesh.target(h);
+            const double w = 0.5 * rest.cotangent[corner_of(h)];
             entries.emplace_back(i, i, w);
             entries.emplace_back(j, j, w);
             entries.emplace_back(i, j, -w);
@@ -75,23 +56,10 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
     return matrix;
 }
 
-std::vector<double> edge_lengths(const Mesh& mesh) {
-    std::vector<double> lengths;
-    for (const HalfEdge h : mesh.all_half_edges())
-        lengths.push_back(mesh.edge_length(h));
-    return lengths;
-}
-
-double mean_edge_length(const Mesh& mesh) {
-    const std::vector<double> lengths = edge_lengths(mesh);
-    return std::accumulate(lengths.begin(), lengths.end(), 0.0) /
-           std::max<Index>(1, mesh.half_edge_count());
-}
-
 std::vector<double> vertex_areas(const Mesh& mesh) {
     std::vector<double> areas(mesh.points.size(), 0.0);
     for (const HalfEdge h : mesh.all_half_edges())
-        areas[mesh.origin(h)] += mesh.face_areas[h / 3] / 3.0;
+        areas[mesh.origin(h)] += mesh.face_areas[face_of(h)] / 3.0;
     return areas;
 }
 
@@ -161,8 +129,8 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
         const HalfEdge twin = mesh.twin[h];
         if (twin < 0)
             continue;
-        const Vec3& n = mesh.face_normals[h / 3];
-        const Vec3& m = mesh.face_normals[twin / 3];
+        const Vec3& n = mesh.face_normals[face_of(h)];
+        const Vec3& m = mesh.face_normals[face_of(twin)];
         const Vec3 edge = mesh.points[mesh.target(h)] - mesh.points[mesh.origin(h)];
         const double angle = std::atan2(n.cross(m).dot(edge.normalized()), n.dot(m));
         // A quarter of length times angle to each end, once from each side.

@@ -16,26 +16,14 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
+#include "devseg/methods/plush/seam_network.h"
 #include "devseg/methods/plush/skeleton.h"
 
 namespace devseg::plush {
 
-/// Neighbours of all vertices: those of v are vertex[begin[v]] … vertex[begin[v + 1] − 1],
-/// ascending, with a half-edge between the two in either direction.
-struct VertexGraph {
-    std::vector<Index> begin;     // #V + 1
-    std::vector<Index> vertex;    // 2 #E
-    std::vector<Index> half_edge; // 2 #E
-};
-VertexGraph build_vertex_graph(const Mesh& mesh);
-
 /// Positive semi-definite cotangent Laplacian, #V by #V, and a third of the areas around vertices.
 Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh);
 std::vector<double> vertex_areas(const Mesh& mesh);
-
-/// Of half-edges (3 #F), internal units, and their mean.
-std::vector<double> edge_lengths(const Mesh& mesh);
-double mean_edge_length(const Mesh& mesh);
 
 /// φ with L φ = Kᵀ − K [BGB08], K the angle defects and Kᵀ the total curvature spread by area, with
 /// mean 0: low at tips, high in saddles and between limbs. #V, no unit.
@@ -63,7 +51,7 @@ struct SkeletonDirection {
     double agreement = 0.0;
 };
 
-/// At an edge between two vertices, where the surface has the unit `normal`. The paper's equations
+/// At an edge between two vertices, where the surface has the unit `normal`. [Plush]'s equations
 /// 4 to 6 take the weighted mean of the bones; here they are projected onto the surface first, so
 /// that a line along an arm and over its tip follows the arm, and bones have no sign: the direction
 /// is the first principal axis of the weighted sum of p pᵀ over the projections p.

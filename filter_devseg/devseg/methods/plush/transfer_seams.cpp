@@ -182,6 +182,37 @@ private:
     std::vector<Index> near_;         // half-edges of to that are near the line of the last turn
 };
 
+// Seams along two edges of a face take the third one; where they meet others, one of the two does.
+// A face that hangs on one edge, or in an acute corner, keeps its area badly. Seams only become
+// shorter.
+void cut_corners(const Mesh& mesh, SeamMarks& seam) {
+    std::vector<Index> degree = seam_degrees(mesh, seam);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            const HalfEdge n = Mesh::next(h);
+            const HalfEdge third = Mesh::previous(h);
+            if (seam[h] == 0 || seam[n] == 0 || seam[third] != 0 || mesh.twin[third] < 0)
+                continue;
+            if (degree[mesh.target(h)] != 2) {
+                const HalfEdge longer = mesh.edge_length(h) >= mesh.edge_length(n) ? h : n;
+                const Vertex outer = longer == h ? mesh.origin(h) : mesh.target(n);
+                if (degree[outer] != 2 || !(mesh.edge_length(third) < mesh.edge_length(longer)))
+                    continue;
+                mark(mesh, longer, 0, seam);
+                --degree[mesh.target(h)];
+                ++degree[longer == h ? mesh.target(n) : mesh.origin(h)];
+            } else {
+                mark(mesh, h, 0, seam);
+                mark(mesh, n, 0, seam);
+                degree[mesh.target(h)] = 0;
+            }
+            mark(mesh, third, 1, seam);
+            changed = true;
+        }
+    }
+}
+
 } // namespace
 
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
@@ -212,35 +243,9 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& stray,
                          Progress& progress) {
-    return SeamTransfer(from, to, graph, stray).run(seam, progress);
-}
-
-void cut_corners(const Mesh& mesh, SeamMarks& seam) {
-    std::vector<Index> degree = seam_degrees(mesh, seam);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (const HalfEdge h : mesh.all_half_edges()) {
-            const HalfEdge n = Mesh::next(h);
-            const HalfEdge third = Mesh::previous(h);
-            if (seam[h] == 0 || seam[n] == 0 || seam[third] != 0 || mesh.twin[third] < 0)
-                continue;
-            if (degree[mesh.target(h)] != 2) {
-                const HalfEdge longer = mesh.edge_length(h) >= mesh.edge_length(n) ? h : n;
-                const Vertex outer = longer == h ? mesh.origin(h) : mesh.target(n);
-                if (degree[outer] != 2 || !(mesh.edge_length(third) < mesh.edge_length(longer)))
-                    continue;
-                mark(mesh, longer, 0, seam);
-                --degree[mesh.target(h)];
-                ++degree[longer == h ? mesh.target(n) : mesh.origin(h)];
-            } else {
-                mark(mesh, h, 0, seam);
-                mark(mesh, n, 0, seam);
-                degree[mesh.target(h)] = 0;
-            }
-            mark(mesh, third, 1, seam);
-            changed = true;
-        }
-    }
+    SeamMarks transferred = SeamTransfer(from, to, graph, stray).run(seam, progress);
+    cut_corners(to, transferred);
+    return transferred;
 }
 
 } // namespace devseg::plush

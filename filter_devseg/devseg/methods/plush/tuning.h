@@ -1,4 +1,5 @@
-// The numbers of the method, by stage.
+// The numbers of the method, by stage. Lengths are shares of the model's diagonal and areas shares
+// of its surface where nothing else is said.
 #pragma once
 
 #include <array>
@@ -15,9 +16,12 @@ struct Window {
 };
 
 struct Tuning {
-    // Symmetry. Shares of points and of the model's diagonal.
-    double symmetric_within = 0.03;   // mirror images of animals that stand still are nearer
-    Index plane_samples = 1500;       // points that are mirrored; a sixth while planes are compared
+    double tiny = 1e-9;  // internal units, or a weight: stands for nothing where nothing may not be
+    double speck = 2e-3; // smaller pieces are left out, and smaller ends are no limbs
+
+    // Symmetry.
+    double symmetric_within = 0.03;   // animals that stand still are nearer to their mirror images
+    Index plane_samples = 1500;       // points; a sixth of them while planes are compared
     std::size_t promising_planes = 3; // that are fitted to all samples
     int fitting_rounds = 30;
     double trusted_points = 0.8; // the nearest, that a plane is fitted to: the rest may differ
@@ -25,20 +29,17 @@ struct Tuning {
     // The surface on which seams are decided. Numbers of faces.
     Index mirrored_faces = 6000; // with its mirror image; half as many again without
     Index large_model = 60000;   // gets the seams of a surface with half as many faces: trials of
-                                 // large patches take long
+                                 // large patches take long; a quarter is its own working surface
     double plane_snap = 0.35;    // of a vertex' shortest edge: moved onto the plane, no slivers
-    double same_place = 1e-9;    // internal units: nothing is shorter
-    double negligible = 2e-3;    // of the surface: smaller pieces and ends are no limbs
-    double kept_area = 0.8;      // of the surface: both halves together are not smaller or larger
+    double whole_area = 0.8;     // what both halves have at least together
 
-    // The skeleton. Shares of the model's size.
+    // The skeleton.
     std::size_t skeleton_memory = std::size_t{1} << 28; // bytes; only what is used gets memory
-    Index skeleton_faces = 4000;                        // a skeleton needs no details
-    Index contractible_faces = 40;                      // below, there is nothing to contract
-    double bone_tolerance = 0.02;                       // curves become bones within it
-    double shortest_bone = 0.03;
+    Index skeleton_faces = 4000;     // needs no details; parts with a hundredth have none
+    double bone_tolerance = 0.02;    // curves become bones within it
+    double shortest_bone = 0.03;     // shorter curves are no bones
     std::size_t bones_at_vertex = 6; // the others add up to little
-    double least_bone = 1e-3;        // of the heat
+    double least_bone = 1e-3;        // of the heat at a vertex
     // Heat from a bone against heat along the surface: 1 in [BP07], where a stout body takes the
     // heat of its limbs.
     double conductance = 10.0;
@@ -46,81 +47,60 @@ struct Tuning {
     // the surface: about 20 degrees.
     double lying = 0.12;
     double kernel_shift = 1e-8;    // of the mean diagonal: constants are in the Laplacian's kernel
-    double curvature_radius = 2.0; // mean edges: the curvature is smoothed
+    double curvature_radius = 2.0; // mean edges: smoothing of the curvature
 
-    // Where seams look natural. Shares of the model's diagonal.
-    double beside_edge = 0.015;      // how far normals and borders of limbs count
-    double direction_window = 0.04;  // over which a seam has a direction: seams follow edges
-    double aligned = 30.0 * degrees; // with the skeleton; and the bend of a crease
-    double concave = 10.0 * degrees; // of bend the other way
-    double near_image = 0.02;        // seams that are nearer are mirror images
+    // Where seams look natural.
+    double beside_edge = 0.015; // how far normals and borders of limbs count
+    double near_image = 0.02;   // nearer seams are mirror images; directions are over twice that
+    double aligned = 30.0 * degrees; // with the skeleton; and the bend of a crease, a third of it
+                                     // in concave places
 
     // Limbs.
     int limb_rings = 120;        // by distance from the tip
     double limb_reach = 0.75;    // of the model's extent: roots are not looked for beyond
-    double largest_limb = 0.35;  // of the surface: larger ones are bodies
+    double largest_limb = 0.35;  // larger ones are bodies
     double limb_widening = 1.35; // of the ring behind a root over the ring before it
-    double inner_band = 0.75;    // the cut lies within these shares of the root's distance
-    double outer_band = 1.3;
-    double concave_gain = 4.0; // how much cheaper an edge of curvature −1 is than a flat one
-    double same_limb = 0.6;    // common area over the area of both together
+    double inner_band = 0.75;    // of the root's distance: the cut lies between it and its inverse
+    double concave_gain = 4.0;   // how much cheaper an edge of curvature −1 is than a flat one
+    double same_limb = 0.6;      // common area over the area of both together
 
-    // Costs of paths: shares that go where seams look natural.
-    double least_weight = 1e-4;    // so that paths stay short where a term vanishes
-    double natural_seam = 0.95;    // of a seam's weight
-    double natural_dart = 0.8;     // of a dart's length
-    double natural_transfer = 0.4; // of the length of a path along another surface's seam
-    double natural_straight = 0.5; // of an edge's length, while seams are straightened
+    // Shares of costs that go where seams look natural.
+    double natural_seam = 0.95;    // of a seam's weight, and a dart's length
+    double natural_transfer = 0.4; // of a path along another surface's seam
+    double natural_straight = 0.5; // while seams are straightened
     double shared_seam = 0.25;     // factor of edges that are seams already
-
-    // Local seams.
-    double least_part = 0.12; // of the patch's area: smaller parts are not cut off by isolines
-    int patient_rounds = 15;  // after them, what is left is cut in halves
-    int isoline_rounds = 4;   // of smoothing
 
     // Trials.
     double used_bound = 0.98; // share of the bound: maps are rounded to 32 bits later
-    // L2: what even areas may cost in shear, 20 % in the mean, and 14 % in a search.
-    double most_shear = 1.04;
-    double search_shear = 1.02;
+    double most_shear = 0.04; // L2 stretch above 1 that even areas may cost: 20 % in the mean; half
+                              // of it in a search
     // As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
     // length by 8 % in the mean.
     double hopeless_energy = 0.012;
     double hopeless_overlap = 0.03; // pairs of faces over faces, in such a map
     double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
+    // Local seams.
+    double fragment = 4e-4;    // smaller parts go to a neighbour
+    double least_split = 0.12; // of the patch: smaller parts are not cut off by isolines
+    int patient_rounds = 15;   // after them, what is left is cut in halves
+    int isoline_rounds = 4;    // of smoothing
+
     // Removal.
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
     int most_passes = 2;      // over all segments
     double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
-    // Once seams are straight, patches up to this share of the surface are joined along necks of
-    // this share of their root.
-    double small_patch = 0.1;
-    double narrow_neck = 0.15;
+    double small_patch = 0.1; // smaller ones are joined along narrow necks once seams are straight;
+                              // a fifth of it on the model, and a tenth with darts
+    double narrow_neck = 0.15; // of the root of the smaller patch
+    int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
+    double path_worth = 0.97;  // of its cost: what a new path must save
     // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
-    std::array<Window, 15> join_windows{{{0.0, 1.0},
-                                         {0.15, 1.0},
-                                         {0.0, 0.85},
-                                         {0.15, 0.85},
-                                         {0.35, 1.0},
-                                         {0.0, 0.65},
-                                         {0.25, 0.75},
-                                         {0.55, 1.0},
-                                         {0.0, 0.45},
-                                         {0.35, 0.65},
-                                         {0.7, 1.0},
-                                         {0.0, 0.3},
-                                         {0.4, 0.6},
-                                         {0.2, 0.45},
-                                         {0.55, 0.8}}};
+    Window join_windows[15] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85}, {0.15, 0.85}, {0.35, 1.0},
+                               {0.0, 0.65}, {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65},
+                               {0.7, 1.0},  {0.0, 0.3},   {0.4, 0.6},  {0.2, 0.45},  {0.55, 0.8}};
     // A dart keeps its outer end, which comes first.
-    std::array<Window, 4> dart_windows{{{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}}};
-
-    // Smoothing.
-    double fragment = 4e-4;   // of the surface: smaller parts go to a neighbour
-    int tooth_rounds = 12;    // of taking teeth away
-    int corridor_rings = 3;   // of vertices beside a segment
-    double path_worth = 0.97; // of its cost: what a new path must save
+    Window dart_windows[4] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
     // Transfer to the model.
     int curve_rounds = 3;       // of smoothing, before seams become edges of the model
@@ -130,22 +110,18 @@ struct Tuning {
     std::size_t path_edges = 6; // of a segment: longer paths could take a short cut
     // Of the bound: what is used of it on another surface than the model, on the model before seams
     // are smoothed, and in each round of deciding again.
-    double margin = 0.75;
+    double far_margin = 0.75;
     double own_margin = 0.95;
     double tighter = 0.88;
-    int second_thoughts = 1; // one more where the model has two halves, which then stay alike
+    int second_thoughts = 1; // rounds of deciding again; one more where there are two halves
     int most_cuts = 4;       // that mend a patch
 
-    // What is left on the model.
-    double small_remnant = 0.02; // of the surface: patches are joined, those of half the size with
-                                 // darts
-    double longest_darts = 1.5;  // over the border that goes: an island is worse than a dart
-    // Of the root of the surface, and of the mean edge: tongues that are narrower go.
-    double thin = 0.03;
-    double least_thin = 2.4;
+    // Thin tips. Shares of the root of the surface.
+    double thin = 0.03;          // tongues that are narrower go
+    double least_thin = 2.4;     // mean edges: at least so narrow
     double tongue_slack = 1.3;   // paths over faces are longer than straight lines
     double tongue_reach = 0.8;   // of half the width: how far a tongue sticks out at least
-    double corner_reach = 0.033; // of the root of the surface: seams beside a corner
+    double corner_reach = 0.033; // of seams beside a corner
     double acute = 40.0 * degrees;
     // Over the reach: how far along both seams a junction may slide.
     std::array<double, 9> slides{0.4, 0.7, 1.0, 1.5, 2.2, 3.2, 4.5, 6.5, 9.0};

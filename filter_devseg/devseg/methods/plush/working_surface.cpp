@@ -1,6 +1,7 @@
 #include "devseg/methods/plush/working_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -99,11 +100,7 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
 class PlaneFinder {
 public:
     PlaneFinder(const Mesh& mesh, Progress& progress)
-        : mesh_(mesh), progress_(progress), search_(mesh) {
-        Eigen::AlignedBox3d box;
-        for (const Vec3& p : mesh.points)
-            box.extend(p);
-        diagonal_ = box.diagonal().norm();
+        : mesh_(mesh), progress_(progress), search_(mesh), diagonal_(mesh_diagonal(mesh)) {
         take_samples(tuning.plane_samples);
     }
 
@@ -180,7 +177,7 @@ private:
     Progress& progress_;
     const mesh::SurfaceSearch search_;
     std::vector<Index> vertices_; // samples
-    double diagonal_ = 0.0;
+    const double diagonal_;
 };
 
 // Vertices, edges and faces of a surface: V − E + F.
@@ -196,21 +193,16 @@ Index euler_characteristic(const Mesh& mesh) {
 }
 
 void link_twins(Mesh& mesh) {
-    struct Edge {
-        Index low, high, half_edge;
-    };
-    std::vector<Edge> edges;
+    std::vector<std::array<Index, 3>> edges; // lower and higher vertex, half-edge
     for (const HalfEdge h : mesh.all_half_edges())
-        edges.push_back({std::min(mesh.origin(h), mesh.target(h)),
-                         std::max(mesh.origin(h), mesh.target(h)), h});
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::array{a.low, a.high, a.half_edge} < std::array{b.low, b.high, b.half_edge};
-    });
+        edges.push_back({std::min<Index>(mesh.origin(h), mesh.target(h)),
+                         std::max<Index>(mesh.origin(h), mesh.target(h)), h});
+    std::sort(edges.begin(), edges.end());
     mesh.twin.assign(3 * mesh.faces.size(), -1);
     for (std::size_t i = 0; i + 1 < edges.size(); ++i)
-        if (edges[i].low == edges[i + 1].low && edges[i].high == edges[i + 1].high) {
-            mesh.twin[edges[i].half_edge] = edges[i + 1].half_edge;
-            mesh.twin[edges[i + 1].half_edge] = edges[i].half_edge;
+        if (edges[i][0] == edges[i + 1][0] && edges[i][1] == edges[i + 1][1]) {
+            mesh.twin[edges[i][2]] = edges[i + 1][2];
+            mesh.twin[edges[i + 1][2]] = edges[i][2];
         }
 }
 
@@ -303,7 +295,7 @@ Mesh clean_half(const Mesh& half, double surface_area) {
         area[pieces.label[f]] += half.face_areas[f];
     std::vector<Index> kept;
     for (const Face f : half.all_faces())
-        if (area[pieces.label[f]] > tuning.negligible * surface_area)
+        if (area[pieces.label[f]] > tuning.speck * surface_area)
             kept.push_back(f);
     return atlas::mesh_of(
         half, atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
@@ -311,15 +303,15 @@ Mesh clean_half(const Mesh& half, double surface_area) {
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
 HalfEdge mirrored(HalfEdge h, Index faces) {
-    return 3 * (h / 3 + faces) + 2 - h % 3;
+    return half_edge_of(face_of(h) + faces, 2 - corner_of(h));
 }
 
 WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
     const Index n = half.face_count();
     const auto is_seam = [&](HalfEdge h) {
         return half.twin[h] < 0 &&
-               std::abs(plane.height(half.points[half.origin(h)])) < tuning.same_place &&
-               std::abs(plane.height(half.points[half.target(h)])) < tuning.same_place;
+               std::abs(plane.height(half.points[half.origin(h)])) < tuning.tiny &&
+               std::abs(plane.height(half.points[half.target(h)])) < tuning.tiny;
     };
     std::vector<Index> other(half.points.size(), -1);
     for (const HalfEdge h : half.all_half_edges())
@@ -395,8 +387,8 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
         if (half.faces.empty())
             continue;
         const double area = 2.0 * half.total_area / mesh.total_area;
-        if (std::abs(std::log(area)) >= least || area < tuning.kept_area ||
-            area > 1.0 / tuning.kept_area)
+        if (std::abs(std::log(area)) >= least || area < tuning.whole_area ||
+            area > 1.0 / tuning.whole_area)
             continue;
         if (2 * half.face_count() > most_faces)
             half = mesh::extract_coarse_mesh(half, mesh::coarsen(half.points, half.faces, half.twin,

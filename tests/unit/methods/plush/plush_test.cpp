@@ -14,6 +14,7 @@
 #include "devseg/methods/plush/patch_trial.h"
 #include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/transfer_seams.h"
+#include "devseg/methods/plush/surface_fields.h"
 #include "devseg/methods/plush/working_surface.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
@@ -234,14 +235,13 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
             mark(coarse, h, 1, seam);
     const mesh::FaceComponents before = find_patches(coarse, seam);
     Progress progress;
-    SeamMarks carried = transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
-                                       std::vector<double>(fine.twin.size(), 0.0), progress);
-    cut_corners(fine, carried);
+    const SeamMarks moved = transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
+                                           std::vector<double>(fine.twin.size(), 0.0), progress);
     EXPECT_EQ(before.count, 2);
-    EXPECT_EQ(find_patches(fine, carried).count, before.count);
-    const std::vector<double> even(carried.size(), 1.0);
+    EXPECT_EQ(find_patches(fine, moved).count, before.count);
+    const std::vector<double> even(moved.size(), 1.0);
     double length = 0.0;
-    for (const SeamSegment& segment : find_segments(fine, carried, {}, even))
+    for (const SeamSegment& segment : find_segments(fine, moved, {}, even))
         length += segment.length;
     const double size = 1.0 / fine.unit_length;
     EXPECT_NEAR(length, (2.0 * shapes::pi + 2.0) * size, 0.2 * size);

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "devseg/mesh/canonical_frame.h"
-#include "devseg/methods/plush/acute_corners.h"
 #include "devseg/methods/plush/mend_patches.h"
 #include "devseg/methods/plush/plush_seams.h"
-#include "devseg/methods/plush/tongues.h"
+#include "devseg/methods/plush/thin_tips.h"
 #include "devseg/methods/plush/transfer_seams.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"

@@ -1,0 +1,450 @@
+#include "devseg/methods/plush/thin_tips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "devseg/base/parallel.h"
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/methods/plush/tuning.h"
+
+namespace devseg::plush {
+
+namespace {
+
+using Line = std::vector<Index>; // half-edges
+
+struct Tongue {
+    std::vector<Index> faces;
+    double reach = 0.0; // of its tip from its root
+};
+
+// The border of a tongue with one patch.
+struct Side {
+    Index beyond = 0; // the patch; −1 the tongue's own body, −2 nobody
+    Line edges;
+};
+
+// A seam beside a tongue that would go, and the one across its root that would come.
+struct Change {
+    Line opened;
+    Line closed;
+
+    void apply(const Mesh& mesh, SeamMarks& marks) const {
+        mark(mesh, closed, 1, marks);
+        mark(mesh, opened, 0, marks);
+    }
+};
+
+// Distances (#F) over faces from the sources, inside patches.
+template <class IsSource>
+std::vector<double> distances_from(const Mesh& mesh, const SeamMarks& seam, IsSource is_source,
+                                   const Progress& progress) {
+    graph::ShortestPaths<> paths(mesh.faces.size());
+    for (const Face f : mesh.all_faces())
+        if (is_source(f))
+            paths.add_source(f);
+    paths.run(
+        [&](Face f, double distance) {
+            for (const HalfEdge h : half_edges_of(f))
+                if (!is_border(mesh, seam, h)) {
+                    const Face g = face_of(mesh.twin[h]);
+                    paths.reach(g, distance + (mesh.face_centers[f] - mesh.face_centers[g]).norm());
+                }
+        },
+        progress);
+    return std::move(paths.distance);
+}
+
+// What is left of the patches when disks of the radius have rolled over them, in components.
+std::vector<Tongue> find_tongues(const Mesh& mesh, const SeamMarks& seam, double radius,
+                                 const Progress& progress) {
+    const std::vector<std::uint8_t> on_seam = border_vertices(mesh, seam);
+    const std::vector<double> to_seam = distances_from(
+        mesh, seam,
+        [&](Face f) {
+            const Triangle& t = mesh.faces[f];
+            return std::any_of(t.begin(), t.end(), [&](Vertex v) { return on_seam[v] != 0; });
+        },
+        progress);
+    const std::vector<double> to_body = distances_from(
+        mesh, seam, [&](Face f) { return to_seam[f] > radius; }, progress);
+    const double body = tuning.tongue_slack * radius;
+    const mesh::FaceComponents parts = mesh::face_components(mesh, [&](HalfEdge h) {
+        return seam[h] == 0 && to_body[face_of(h)] > body && to_body[face_of(mesh.twin[h])] > body;
+    });
+    std::vector<Tongue> tongues(at(parts.count));
+    for (const Face f : mesh.all_faces()) {
+        Tongue& tongue = tongues[parts.label[f]];
+        tongue.faces.push_back(f);
+        tongue.reach = std::max(tongue.reach, to_body[f] - body);
+    }
+    // Patches that are thin everywhere have no body.
+    const auto is_none = [&](const Tongue& tongue) {
+        return tongue.reach < tuning.tongue_reach * radius || tongue.reach == infinite;
+    };
+    tongues.erase(std::remove_if(tongues.begin(), tongues.end(), is_none), tongues.end());
+    std::stable_sort(tongues.begin(), tongues.end(),
+                     [](const Tongue& a, const Tongue& b) { return a.reach > b.reach; });
+    return tongues;
+}
+
+// The sides of a tongue, the longest first; none where it is no disk, or an island.
+std::vector<Side> sides_of(const SeamSetting& setting, const SeamMarks& seam,
+                           const std::vector<Index>& label, const Tongue& tongue) {
+    const Mesh& mesh = setting.mesh();
+    const atlas::ChartSurface surface =
+        atlas::extract_surface(mesh, tongue.faces, atlas::enclose(mesh, tongue.faces, seam));
+    if (!surface.is_disk())
+        return {};
+    const auto beyond = [&](HalfEdge h) -> Index {
+        if (mesh.twin[h] < 0 || is_marked(setting.hard, h))
+            return -2;
+        return seam[h] == 0 ? -1 : label[face_of(mesh.twin[h])];
+    };
+    Line loop;
+    for (const HalfEdge h : surface.loops.front())
+        loop.push_back(surface.mesh_half_edge(h));
+    std::size_t first = 0; // a place where a side begins
+    const std::size_t count = loop.size();
+    while (first < count && beyond(loop[first]) == beyond(loop[(first + count - 1) % count]))
+        ++first;
+    std::vector<Side> sides;
+    for (std::size_t k = 0; k < count && first < count; ++k) {
+        const HalfEdge h = loop[(first + k) % count];
+        if (sides.empty() || sides.back().beyond != beyond(h))
+            sides.push_back({beyond(h), {}});
+        sides.back().edges.push_back(h);
+    }
+    std::stable_sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+        return length_of(mesh, a.edges) > length_of(mesh, b.edges);
+    });
+    return sides;
+}
+
+std::vector<Change> find_changes(const SeamSetting& setting, double radius, const SeamMarks& seam,
+                                 const Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    const std::vector<Index> label = find_patches(mesh, seam).label;
+    const auto is_root = [](const Side& side) { return side.beyond == -1; };
+    const auto is_seam = [](const Side& side) { return side.beyond >= 0; };
+    std::vector<Change> changes;
+    for (const Tongue& tongue : find_tongues(mesh, seam, radius, progress)) {
+        const std::vector<Side> sides = sides_of(setting, seam, label, tongue);
+        const auto root = std::find_if(sides.begin(), sides.end(), is_root);
+        const auto longest = std::find_if(sides.begin(), sides.end(), is_seam);
+        if (std::count_if(sides.begin(), sides.end(), is_root) == 1 && longest != sides.end() &&
+            length_of(mesh, longest->edges) > length_of(mesh, root->edges))
+            changes.push_back({longest->edges, root->edges});
+    }
+    return changes;
+}
+
+// The changes that share no edge with one before.
+std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Change>& changes) {
+    std::vector<Change> group;
+    SeamMarks is_used(mesh.twin.size(), 0);
+    for (const Change& change : changes) {
+        Line edges = change.opened;
+        edges.insert(edges.end(), change.closed.begin(), change.closed.end());
+        if (any_marked(is_used, edges))
+            continue;
+        mark(mesh, edges, 1, is_used);
+        group.push_back(change);
+    }
+    return group;
+}
+
+// All at once; those beside patches that are not accepted are left out.
+bool apply_together(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
+                    Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    std::vector<Change> group = without_shared_edges(mesh, changes);
+    while (!group.empty()) {
+        SeamMarks marks = seam;
+        std::vector<Line> closed;
+        for (const Change& change : group) {
+            change.apply(mesh, marks);
+            closed.push_back(change.closed);
+        }
+        const std::vector<std::vector<Index>> patches = patches_beside(mesh, marks, closed);
+        std::vector<std::uint8_t> fails(mesh.faces.size(), 0);
+        parallel_for(
+            static_cast<int>(patches.size()),
+            [&](int i) {
+                const auto& patch = patches[static_cast<std::size_t>(i)];
+                if (!setting.tester.accepts(patch, marks, progress))
+                    for (const Face f : patch)
+                        fails[f] = 1;
+            },
+            progress);
+        const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change& change) {
+            const HalfEdge h = change.closed.front();
+            return fails[face_of(h)] != 0 || fails[face_of(mesh.twin[h])] != 0;
+        });
+        if (kept == group.end()) {
+            seam = std::move(marks);
+            return true;
+        }
+        group.erase(kept, group.end());
+    }
+    return false;
+}
+
+// Each by itself, of each patch one.
+void apply_each(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
+                Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    std::vector<std::uint8_t> is_accepted(changes.size(), 0);
+    std::vector<std::vector<std::vector<Index>>> patches(changes.size());
+    parallel_for(
+        static_cast<int>(changes.size()),
+        [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            SeamMarks marks = seam;
+            changes[k].apply(mesh, marks);
+            patches[k] = patches_beside(mesh, marks, {changes[k].closed});
+            is_accepted[k] = setting.tester.accepts_all(patches[k], marks, progress) ? 1 : 0;
+        },
+        progress);
+    std::vector<std::uint8_t> is_changed(mesh.faces.size(), 0);
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+        bool is_free = is_accepted[k] != 0;
+        for (const auto& patch : patches[k])
+            for (const Face f : patch)
+                is_free = is_free && is_changed[f] == 0;
+        if (!is_free)
+            continue;
+        changes[k].apply(mesh, seam);
+        for (const auto& patch : patches[k])
+            for (const Face f : patch)
+                is_changed[f] = 1;
+    }
+}
+
+// A seam as it leaves one of its ends, up to the next end, and its direction over the reach.
+struct Arm {
+    Line half_edges;
+    Vec3 direction = Vec3::Zero();
+};
+
+Arm make_arm(const Mesh& mesh, Line half_edges, double reach) {
+    // To the point at which the arm is as long as the reach.
+    Vec3 end = mesh.points[mesh.target(half_edges.back())];
+    for (const HalfEdge h : half_edges) {
+        const double length = mesh.edge_length(h);
+        if (length >= reach) {
+            const Vec3& start = mesh.points[mesh.origin(h)];
+            end = start + reach / length * (mesh.points[mesh.target(h)] - start);
+            break;
+        }
+        reach -= length;
+    }
+    const Vec3& start = mesh.points[mesh.origin(half_edges.front())];
+    return {std::move(half_edges), (end - start).normalized()};
+}
+
+struct Arms {
+    std::vector<Arm> all;
+    std::vector<Index> starting; // 3 #F: the arm that begins with a half-edge; −1 = none
+
+    /// The next arm around the same vertex, on the left; −1 where the mesh's boundary comes first.
+    Index next_on_left(const Mesh& mesh, const Arm& arm) const {
+        const HalfEdge start = arm.half_edges.front();
+        for (HalfEdge h = mesh.twin[Mesh::previous(start)]; h >= 0 && h != start;
+             h = mesh.twin[Mesh::previous(h)])
+            if (starting[h] >= 0)
+                return starting[h];
+        return -1;
+    }
+};
+
+Arms find_arms(const Mesh& mesh, const SeamMarks& seam, const SeamMarks& hard, double reach) {
+    Arms arms;
+    for (const SeamSegment& segment : find_segments(mesh, seam, hard)) {
+        if (segment.is_loop)
+            continue;
+        Line back;
+        for (auto h = segment.half_edges.rbegin(); h != segment.half_edges.rend(); ++h)
+            back.push_back(mesh.twin[*h]);
+        arms.all.push_back(make_arm(mesh, segment.half_edges, reach));
+        arms.all.push_back(make_arm(mesh, std::move(back), reach));
+    }
+    arms.starting.assign(mesh.twin.size(), -1);
+    for (std::size_t i = 0; i < arms.all.size(); ++i)
+        arms.starting[arms.all[i].half_edges.front()] = static_cast<Index>(i);
+    return arms;
+}
+
+std::vector<AcuteCorner> corners_between(const Mesh& mesh, const Arms& arms, double max_angle) {
+    std::vector<AcuteCorner> corners;
+    for (const Arm& first : arms.all) {
+        const Index left = arms.next_on_left(mesh, first);
+        if (left < 0)
+            continue;
+        const Arm& second = arms.all[left];
+        const double cosine = first.direction.dot(second.direction);
+        if (cosine > std::cos(max_angle))
+            corners.push_back({first.half_edges.front(), second.half_edges.front(), cosine});
+    }
+    std::stable_sort(
+        corners.begin(), corners.end(),
+        [](const AcuteCorner& a, const AcuteCorner& b) { return a.cosine > b.cosine; });
+    return corners;
+}
+
+Line start_of(const Mesh& mesh, const Line& line, double length) {
+    Line start;
+    for (const HalfEdge h : line)
+        if (start.empty() || length > 0.0) {
+            start.push_back(h);
+            length -= mesh.edge_length(h);
+        }
+    return start;
+}
+
+class CornerBlunter {
+public:
+    CornerBlunter(const SeamSetting& setting, SeamMarks& seam, Progress& progress)
+        : s_(setting), mesh_(setting.mesh()),
+          reach_(tuning.corner_reach * std::sqrt(mesh_.total_area)), seam_(seam),
+          progress_(progress) {}
+
+    Index run() {
+        std::set<std::pair<Index, Index>> left_alone;
+        for (bool found = true; found;) {
+            found = false;
+            const Arms arms = find_arms(mesh_, seam_, s_.hard, reach_);
+            for (const AcuteCorner& corner : corners_between(mesh_, arms, tuning.acute)) {
+                if (!left_alone.insert({corner.first, corner.second}).second)
+                    continue;
+                found = true;
+                if (blunt(arms, corner))
+                    break; // others have changed, too
+            }
+        }
+        return tried_;
+    }
+
+private:
+    bool blunt(const Arms& arms, const AcuteCorner& corner) {
+        const Line& first = arms.all[arms.starting[corner.first]].half_edges;
+        const Line& second = arms.all[arms.starting[corner.second]].half_edges;
+        const std::vector<Index> degree = seam_degrees(mesh_, seam_);
+        for (const Line* line : {&first, &second})
+            if (length_of(mesh_, *line) < tuning.slides.back() * reach_ &&
+                degree[mesh_.target(line->back())] == 1 && replace(*line, {}))
+                return true;
+        for (const double slide : tuning.slides) {
+            const Line a = start_of(mesh_, first, slide * reach_);
+            const Line b = start_of(mesh_, second, slide * reach_);
+            const Line root = path_between(corner, a, b);
+            if (!root.empty() && (replace(a, root) || replace(b, root)))
+                return true;
+        }
+        return false;
+    }
+
+    // Inside the patch, from the end of one seam's start to that of the other, so that it closes
+    // off the tip; empty if there is none.
+    Line path_between(const AcuteCorner& corner, const Line& a, const Line& b) const {
+        const Vertex start = mesh_.target(a.back());
+        const Vertex end = mesh_.target(b.back());
+        const Vertex tip = mesh_.origin(a.front());
+        if (start == end || start == tip || end == tip)
+            return {};
+        Line both = a;
+        both.insert(both.end(), b.begin(), b.end());
+        const double radius = length_of(mesh_, both);
+        std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
+        const std::vector<Index> patch = tip_patch(corner, seam_);
+        for (const Face f : patch)
+            for (const Vertex v : mesh_.faces[f])
+                may_enter[v] = (mesh_.points[v] - mesh_.points[tip]).norm() < radius ? 1 : 0;
+        for (const Face f : patch)
+            for (const HalfEdge h : half_edges_of(f))
+                if (is_border(mesh_, seam_, h))
+                    may_enter[mesh_.origin(h)] = may_enter[mesh_.target(h)] = 0;
+        may_enter[start] = may_enter[end] = 1;
+        const PathTree tree =
+            shortest_paths(s_.graph, edge_lengths(mesh_), {start}, progress_, may_enter);
+        if (!std::isfinite(tree.distance[end]))
+            return {};
+        Line path = trace_path(mesh_, tree, end);
+        return closes_off(corner, a, b, path) ? path : Line{};
+    }
+
+    std::vector<Index> tip_patch(const AcuteCorner& corner, const SeamMarks& marks) const {
+        return patches_of(mesh_, marks, {face_of(corner.first)}).front();
+    }
+
+    bool closes_off(const AcuteCorner& corner, const Line& a, const Line& b,
+                    const Line& path) const {
+        if (any_marked(seam_, path))
+            return false;
+        SeamMarks marks = seam_;
+        mark(mesh_, path, 1, marks);
+        std::size_t border = 0;
+        for (const Face f : tip_patch(corner, marks))
+            for (const HalfEdge h : half_edges_of(f))
+                border += is_border(mesh_, marks, h) ? 1 : 0;
+        return border == a.size() + b.size() + path.size();
+    }
+
+    // Opens one line and closes another where that helps and patches stay developable.
+    bool replace(const Line& opened, const Line& closed) {
+        if (any_marked(s_.hard, opened))
+            return false;
+        SeamMarks marks = seam_;
+        mark(mesh_, opened, 0, marks);
+        mark(mesh_, closed, 1, marks);
+        const auto count = [&](const SeamMarks& seam) {
+            return find_acute_corners(mesh_, seam, s_.hard, reach_, tuning.acute).size();
+        };
+        if (count(marks) >= count(seam_))
+            return false;
+        ++tried_;
+        progress_.check();
+        if (!s_.tester.accepts_all(patches_beside(mesh_, marks, {opened, closed}), marks,
+                                   progress_))
+            return false;
+        seam_ = std::move(marks);
+        return true;
+    }
+
+    const SeamSetting& s_;
+    const Mesh& mesh_;
+    const double reach_;
+    SeamMarks& seam_;
+    Progress& progress_;
+    Index tried_ = 0;
+};
+
+} // namespace
+
+Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
+                        Progress& progress) {
+    const double radius = 0.5 * width;
+    std::vector<Change> changes = find_changes(setting, radius, seam, progress);
+    auto tried = static_cast<Index>(changes.size());
+    progress.update(0.1);
+    if (apply_together(setting, changes, seam, progress)) {
+        changes = find_changes(setting, radius, seam, progress);
+        tried += static_cast<Index>(changes.size());
+    }
+    progress.update(0.6);
+    apply_each(setting, changes, seam, progress);
+    return tried;
+}
+
+std::vector<AcuteCorner> find_acute_corners(const Mesh& mesh, const SeamMarks& seam,
+                                            const SeamMarks& hard, double reach, double max_angle) {
+    return corners_between(mesh, find_arms(mesh, seam, hard, reach), max_angle);
+}
+
+Index blunt_acute_corners(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
+    return CornerBlunter(setting, seam, progress).run();
+}
+
+} // namespace devseg::plush
