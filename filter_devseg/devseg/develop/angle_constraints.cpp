@@ -6,12 +6,6 @@
 
 namespace devseg::develop {
 
-namespace {
-
-constexpr double full_angle = 2.0 * pi;
-
-} // namespace
-
 AngleConstraints::AngleConstraints(const Mesh& mesh, const std::vector<Index>& vertices,
                                    const std::vector<Index>& point_of) {
     const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
@@ -74,7 +68,7 @@ double AngleConstraints::defect(Index r, const std::vector<Vec3>& points) const 
     const Index first = begin_[r] + 1;
     const Index last = begin_[at(r) + 1];
     const Vec3& centre = points[point_[first - 1]];
-    double value = full_angle;
+    double value = 2.0 * pi;
     for (Index e = first; e < last; ++e)
         value -= mesh::corner_angle(centre, points[point_[e]],
                                     points[point_[e + 1 < last ? e + 1 : first]]);

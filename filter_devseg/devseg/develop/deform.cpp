@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -17,20 +16,24 @@ namespace devseg::develop {
 
 namespace {
 
-// Of the tolerance: Newton's steps gain so much at the end that exactness costs one or two more.
-constexpr double polished = 1e-6;
-constexpr int patience = 4;      // rounds without gain
-constexpr int relaxed_after = 3; // rounds in which a place was blocked
-constexpr int cut_after = 7;
-constexpr std::size_t most_slits_at_once = 3;
-constexpr double late = 0.75;     // share of the rounds
-constexpr double late_gain = 0.3; // what the residual has to fall to in `patience` rounds then
-constexpr int attempts = 3;       // at a surface that does not run through itself
-constexpr double held_back = 0.2; // mobility of points where it did
-constexpr int most_focused_rounds = 25;
-constexpr double most_in_focus = 0.5; // share of the inner vertices
-constexpr double focus_share = 0.1;
-constexpr double most_inner_defect = 0.5; // radians: more is not taken inside of a chart
+struct Tuning {
+    // Of the tolerance: Newton's steps gain so much at the end that exactness costs one or two
+    // more.
+    double polished = 1e-6;
+    int gainless_rounds = 4; // at most
+    int relaxed_after = 3;   // rounds in which a place was blocked,
+    int cut_after = relaxed_after + gainless_rounds;
+    std::size_t most_slits_at_once = 3;
+    double late = 0.75;     // share of the rounds
+    double late_gain = 0.3; // what the residual has to fall to in `gainless_rounds` then
+    int attempts = 3;       // at a surface that does not run through itself
+    double held_back = 0.2; // mobility of points where it did
+    int most_focused_rounds = 25;
+    double most_in_focus = 0.5; // share of the inner vertices
+    double focus_share = 0.1;
+    double most_turn_inside = 0.5; // radians: more of a defect is not taken inside of a chart
+};
+constexpr Tuning tuning;
 
 } // namespace
 
@@ -79,7 +82,7 @@ private:
     // Alternates deforming and closing until no tip is left with more than 2π around it.
     void iterate(Progress& progress) {
         if (options_.adjust_slits)
-            add_slits(0, most_inner_defect, rows_.size());
+            add_slits(0, tuning.most_turn_inside, rows_.size());
         do
             project(progress);
         while (options_.adjust_slits && projection_.residual() <= options_.tolerance &&
@@ -98,7 +101,7 @@ private:
         kept_open_.resize(mesh_.points.size(), 0);
         for (const Vertex v : mesh_.all_vertices()) {
             if (boundary[v] != 0 || cuts[v] != 1 || kept_open_[v] != 0 ||
-                !(defect[v] < -options_.tolerance) || defect[v] < -most_inner_defect)
+                !(defect[v] < -options_.tolerance) || defect[v] < -tuning.most_turn_inside)
                 continue;
             HalfEdge edge;
             mesh::visit_star(mesh_, leaving_[v],
@@ -128,9 +131,9 @@ private:
     // Where few charts are left with defects, these are all that has to move.
     bool focus() {
         std::vector<std::uint8_t> open(at(result_.charts.count), 0);
-        const auto chart_of = [&](Vertex v) { return result_.charts.chart[leaving_[v] / 3]; };
+        const auto chart_of = [&](Vertex v) { return result_.charts.chart[face_of(leaving_[v])]; };
         for (Index r = 0; r < projection_.defects().size(); ++r)
-            if (std::abs(projection_.defects()[r]) > focus_share * options_.tolerance)
+            if (std::abs(projection_.defects()[r]) > tuning.focus_share * options_.tolerance)
                 open[chart_of(rows_[r])] = 1;
         std::vector<std::uint8_t> near(mesh_.points.size(), 0);
         std::size_t count = 0;
@@ -138,7 +141,7 @@ private:
             near[v] = open[chart_of(v)];
             count += near[v];
         }
-        if (static_cast<double>(count) > most_in_focus * static_cast<double>(rows_.size()))
+        if (static_cast<double>(count) > tuning.most_in_focus * static_cast<double>(rows_.size()))
             return false;
         std::vector<std::uint8_t> outside(mesh_.points.size(), 0);
         std::vector<Index> rows;
@@ -166,11 +169,11 @@ private:
         int focused_rounds = 0;
         bool may_focus = true;
         while (effort_ < options_.max_iterations) {
-            if (projection_.residual() <= polished * options_.tolerance ||
-                focused_rounds > most_focused_rounds) {
+            if (projection_.residual() <= tuning.polished * options_.tolerance ||
+                focused_rounds > tuning.most_focused_rounds) {
                 if (!focused_)
                     return;
-                may_focus = focused_rounds <= most_focused_rounds;
+                may_focus = focused_rounds <= tuning.most_focused_rounds;
                 focused_rounds = 0;
                 constrain_all();
                 continue;
@@ -184,7 +187,7 @@ private:
             effort_ += static_cast<double>(rows_.size()) / static_cast<double>(all_rows_);
             focused_rounds += focused_ ? 1 : 0;
             idle = projection_.residual() > 0.5 * before ? idle + 1 : 0;
-            if (before <= options_.tolerance && idle == patience) {
+            if (before <= options_.tolerance && idle == tuning.gainless_rounds) {
                 if (!focused_)
                     return; // rounding is all that is left
                 constrain_all();
@@ -192,17 +195,17 @@ private:
             }
             failed = moved ? 0 : failed + 1;
             const int block = projection_.longest_block();
-            if (block == relaxed_after)
-                projection_.relax_blocked(relaxed_after);
-            else if (block >= cut_after && options_.adjust_slits &&
-                     add_slits(cut_after, options_.tolerance, most_slits_at_once))
+            if (block == tuning.relaxed_after)
+                projection_.relax_blocked(tuning.relaxed_after);
+            else if (block >= tuning.cut_after && options_.adjust_slits &&
+                     add_slits(tuning.cut_after, options_.tolerance, tuning.most_slits_at_once))
                 continue;
             // Slits cost parts: they are few as long as there is time, and then as many as it
             // takes.
-            if (options_.adjust_slits && effort_ > late * options_.max_iterations &&
-                result_.rounds % patience == 0) {
+            if (options_.adjust_slits && effort_ > tuning.late * options_.max_iterations &&
+                result_.rounds % tuning.gainless_rounds == 0) {
                 if (projection_.residual() >
-                        std::max(options_.tolerance, late_gain * late_residual_) &&
+                        std::max(options_.tolerance, tuning.late_gain * late_residual_) &&
                     add_slits(0, std::max(options_.tolerance, 0.1 * projection_.residual()),
                               rows_.size())) {
                     failed = 0;
@@ -211,14 +214,15 @@ private:
                 }
                 late_residual_ = projection_.residual();
             }
-            if (failed < patience)
+            if (failed < tuning.gainless_rounds)
                 continue;
-            if (options_.adjust_slits && failed == patience && add_slits(0, options_.tolerance, 1))
+            if (options_.adjust_slits && failed == tuning.gainless_rounds &&
+                add_slits(0, options_.tolerance, 1))
                 failed = 0;
-            if (failed > 2 * patience && !focused_)
+            if (failed > 2 * tuning.gainless_rounds && !focused_)
                 return;
-            if (failed > 2 * patience)
-                focused_rounds = most_focused_rounds + 1;
+            if (failed > 2 * tuning.gainless_rounds)
+                focused_rounds = tuning.most_focused_rounds + 1;
         }
         if (focused_)
             constrain_all();
@@ -245,7 +249,7 @@ private:
                 continue;
             ++result_.added_slits;
             any = true;
-            if (least < most_inner_defect)
+            if (least < tuning.most_turn_inside)
                 mesh::visit_star(mesh_, leaving_[v],
                                  [&](HalfEdge h) { relieved[mesh_.target(h)] = 1; });
         }
@@ -259,7 +263,7 @@ private:
         const std::vector<Index>& chart = result_.charts.chart;
         std::vector<Index> faces;
         for (const Face f : mesh_.all_faces())
-            if (chart[f] == chart[leaving_[v] / 3])
+            if (chart[f] == chart[face_of(leaving_[v])])
                 faces.push_back(f);
         const std::vector<Index> path = atlas::path_to_border(mesh_, faces, result_.charts.seam, v);
         atlas::mark_cuts(mesh_, path, result_.charts.seam);
@@ -338,7 +342,7 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
     const std::vector<Vec3> before = by_point(mesh.points);
     std::vector<double> ease(before.size(), 1.0);
     DeformResult result;
-    for (int attempt = 0; attempt < attempts; ++attempt) {
+    for (int attempt = 0; attempt < tuning.attempts; ++attempt) {
         auto deforming = progress.part("deforming to exact developability",
                                        attempt == 0 ? 0.7 : 0.5 * progress.left());
         DeformResult next = Deformation(mesh, charts, point_of, options, ease).run(deforming);
@@ -354,7 +358,7 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
             break;
         for (const auto& [f, g] : added) // once more, with these held back
             for (std::size_t k = 0; k < 3; ++k)
-                ease[faces[f][k]] = ease[faces[g][k]] = std::pow(held_back, attempt + 1);
+                ease[faces[f][k]] = ease[faces[g][k]] = std::pow(tuning.held_back, attempt + 1);
     }
     if (!options.keep_unfinished)
         check(result, options);

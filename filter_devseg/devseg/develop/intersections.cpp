@@ -1,27 +1,13 @@
 #include "devseg/develop/intersections.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
+#include <numeric>
+
+#include <unsupported/Eigen/BVH>
 
 namespace devseg::develop {
 
 namespace {
-
-struct Box {
-    Vec3 low = Vec3::Constant(infinite);
-    Vec3 high = -low;
-
-    void add(const Vec3& p) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    bool meets(const Box& o) const {
-        return (low.array() <= o.high.array()).all() && (o.low.array() <= high.array()).all();
-    }
-};
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return (b - a).cross(c - a).dot(d - a);
@@ -61,75 +47,20 @@ bool cross(const std::vector<Vec3>& points, const Triangle& s, const Triangle& t
     return one_way(s, t) || one_way(t, s);
 }
 
-// A tree of boxes over the triangles, halved at the middle of their order along the longest axis.
-class BoxTree {
-public:
-    BoxTree(const std::vector<Vec3>& points, const std::vector<Triangle>& faces)
-        : boxes_(faces.size()), order_(faces.size()) {
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-            order_[f] = static_cast<Index>(f);
-            for (const Vertex v : faces[f])
-                boxes_[f].add(points[v]);
-        }
-        nodes_.reserve(2 * faces.size() / leaf_size + 2);
-        build(0, faces.size());
+// Collects the triangles behind triangle f that cross it, from a tree of boxes.
+struct CrossingSearch {
+    const std::vector<Vec3>& points;
+    const std::vector<Triangle>& faces;
+    const std::vector<Eigen::AlignedBox3d>& boxes; // of the triangles
+    Face f;
+    std::vector<std::pair<Index, Index>> pairs;
+
+    bool intersectVolume(const Eigen::AlignedBox3d& box) const { return box.intersects(boxes[f]); }
+    bool intersectObject(Index g) {
+        if (g > f && boxes[g].intersects(boxes[f]) && cross(points, faces[f], faces[g]))
+            pairs.emplace_back(f, g);
+        return false; // there may be more
     }
-
-    template <class Visit>
-    void visit_meeting(Face f, Visit visit) const {
-        std::vector<std::size_t> stack{0};
-        while (!stack.empty()) {
-            const Node& node = nodes_[stack.back()];
-            stack.pop_back();
-            if (!node.box.meets(boxes_[f]))
-                continue;
-            if (node.left == 0) {
-                for (std::size_t i = node.begin; i < node.end; ++i)
-                    if (order_[i] > f && boxes_[order_[i]].meets(boxes_[f]))
-                        visit(order_[i]);
-            } else {
-                stack.push_back(node.left);
-                stack.push_back(node.right);
-            }
-        }
-    }
-
-private:
-    static constexpr std::size_t leaf_size = 4;
-    struct Node {
-        Box box;
-        std::size_t begin = 0, end = 0, left = 0, right = 0;
-    };
-
-    std::size_t build(std::size_t begin, std::size_t end) {
-        const std::size_t index = nodes_.size();
-        nodes_.emplace_back();
-        Box box;
-        for (std::size_t i = begin; i < end; ++i) {
-            box.add(boxes_[order_[i]].low);
-            box.add(boxes_[order_[i]].high);
-        }
-        std::size_t left = 0;
-        std::size_t right = 0;
-        if (end - begin > leaf_size) {
-            Eigen::Index axis = 0;
-            (box.high - box.low).maxCoeff(&axis);
-            const std::size_t middle = (begin + end) / 2;
-            const auto key = [&](Face f) { return boxes_[f].low[axis] + boxes_[f].high[axis]; };
-            std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(begin),
-                             order_.begin() + static_cast<std::ptrdiff_t>(middle),
-                             order_.begin() + static_cast<std::ptrdiff_t>(end),
-                             [&](Index a, Index b) { return key(a) < key(b); });
-            left = build(begin, middle);
-            right = build(middle, end);
-        }
-        nodes_[index] = {box, begin, end, left, right};
-        return index;
-    }
-
-    std::vector<Box> boxes_;
-    std::vector<Index> order_;
-    std::vector<Node> nodes_;
 };
 
 } // namespace
@@ -137,18 +68,23 @@ private:
 std::vector<std::pair<Index, Index>> find_intersections(const std::vector<Vec3>& points,
                                                         const std::vector<Triangle>& faces,
                                                         const Progress& progress) {
-    const BoxTree tree(points, faces);
-    std::vector<std::pair<Index, Index>> pairs;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (f % 1024 == 0)
-            progress.check();
-        tree.visit_meeting(static_cast<Index>(f), [&](Index g) {
-            if (cross(points, faces[f], faces[g]))
-                pairs.emplace_back(static_cast<Index>(f), g);
-        });
+    std::vector<Index> all(faces.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<Eigen::AlignedBox3d> boxes(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const Vertex v : faces[f])
+            boxes[f].extend(points[v]);
+    const Eigen::KdBVH<double, 3, Index> tree(all.begin(), all.end(), boxes.begin(), boxes.end());
+    CrossingSearch search{points, faces, boxes, {}, {}};
+    Heartbeat heartbeat(progress);
+    for (const Index f : all) {
+        heartbeat();
+        search.f = f;
+        if (all.size() > 1) // the tree needs two
+            Eigen::BVIntersect(tree, search);
     }
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
+    std::sort(search.pairs.begin(), search.pairs.end());
+    return search.pairs;
 }
 
 } // namespace devseg::develop

@@ -8,13 +8,16 @@ namespace devseg::develop {
 
 namespace {
 
-constexpr double largest_tear = 0.3; // change of an edge vector in a step, as a share of its length
-constexpr int tear_rounds = 20;
-constexpr int guard_rounds = 8;     // halvings of steps at places that they would spoil
-constexpr int chords = 4;           // steps with one factorization
-constexpr double free_defect = 0.1; // radians that a defect may grow to in a step
-constexpr double least_damping = 1e-13;
-constexpr double most_damping = 1e3;
+struct Tuning {
+    double largest_tear = 0.3; // change of an edge vector in a step, as a share of its length
+    int tear_rounds = 20;
+    int guard_rounds = 8;     // halvings of steps at places that they would spoil
+    int chords = 4;           // steps with one factorization
+    double free_defect = 0.1; // radians that a defect may grow to in a step
+    double least_damping = 1e-13;
+    double most_damping = 1e3;
+};
+constexpr Tuning tuning;
 
 Vec3 face_vector(const std::vector<Vec3>& p, const Triangle& t) {
     return (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
@@ -45,7 +48,8 @@ Projection::Projection(const Mesh& mesh, const std::vector<Index>& point_of,
         ++valence_[edges_.back()[1]];
         if (twin >= 0)
             hinges_.push_back(
-                {h / 3, twin / 3, mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3])});
+                {face_of(h), face_of(twin),
+                 mesh.face_normals[face_of(h)].dot(mesh.face_normals[face_of(twin)])});
     }
     edge_ = std::sqrt(4.0 / std::sqrt(3.0) * mesh.total_area / mesh.face_count());
 }
@@ -78,12 +82,12 @@ int Projection::block(Index r) const {
 // Neighbours may move far together, but not far from each other.
 void Projection::limit_tearing(Field& step) const {
     std::vector<std::uint8_t> torn;
-    for (int round = 0; round < tear_rounds; ++round) {
+    for (int round = 0; round < tuning.tear_rounds; ++round) {
         torn.assign(points_.size(), 0);
         bool any = false;
         for (const auto& [a, b] : edges_)
-            if ((step[a] - step[b]).squaredNorm() >
-                largest_tear * largest_tear * (points_[a] - points_[b]).squaredNorm()) {
+            if ((step[a] - step[b]).squaredNorm() > tuning.largest_tear * tuning.largest_tear *
+                                                        (points_[a] - points_[b]).squaredNorm()) {
                 torn[a] = torn[b] = 1;
                 any = true;
             }
@@ -141,7 +145,7 @@ Index Projection::mark_bad(const Field& moved, const Eigen::VectorXd* after,
     };
     if (after != nullptr)
         for (Index r = 0; r < after->size(); ++r)
-            if (std::abs((*after)[r]) > std::max(free_defect, 1.2 * std::abs(defects_[r])))
+            if (std::abs((*after)[r]) > std::max(tuning.free_defect, 1.2 * std::abs(defects_[r])))
                 mark(constraints_.first_point(r), constraints_.last_point(r));
     for (std::size_t f = 0; f < faces_.size(); ++f)
         if (has_changed(faces_[f]) && face_spoilt(f, moved))
@@ -172,11 +176,11 @@ Eigen::VectorXd Projection::guarded(const Field& step, bool limit_defects, Field
             for (std::size_t p = 0; p < bad.size(); ++p)
                 block_[p] = bad[p] != 0 ? block_[p] + 1 : 0;
         count_blocks_ = false;
-        if (count == 0 || round == guard_rounds)
+        if (count == 0 || round == tuning.guard_rounds)
             return after;
         for (std::size_t p = 0; p < bad.size(); ++p)
             if (bad[p] != 0) {
-                share[p] *= round + 2 < guard_rounds ? 0.5 : 0.0;
+                share[p] *= round + 2 < tuning.guard_rounds ? 0.5 : 0.0;
                 moved[p] = points_[p] + share[p] * step[p];
             }
         constraints_.update_defects(moved, bad, after);
@@ -192,7 +196,8 @@ bool Projection::chord_steps() {
     count_blocks_ = true;
     fast_ = false;
     Field moved(points_.size());
-    for (int chord = 0; chord < chords && gain > 0.0 && (chord == 0 || gain < 0.5); ++chord) {
+    for (int chord = 0; chord < tuning.chords && gain > 0.0 && (chord == 0 || gain < 0.5);
+         ++chord) {
         Field step = constraints_.displacement(mobility_, lambda);
         limit_tearing(step);
         gain = 0.0;
@@ -216,7 +221,7 @@ bool Projection::chord_steps() {
         }
     }
     if (taken >= 0.5)
-        damping_ = std::max(least_damping, damping_ * (fast_ ? 0.05 : 0.3));
+        damping_ = std::max(tuning.least_damping, damping_ * (fast_ ? 0.05 : 0.3));
     return taken > 0.0;
 }
 
@@ -230,7 +235,7 @@ bool Projection::step() {
     solver_.factorize(matrix);
     const bool done = solver_.info() == Eigen::Success && chord_steps();
     if (!done)
-        damping_ = std::min(most_damping, 8.0 * damping_);
+        damping_ = std::min(tuning.most_damping, 8.0 * damping_);
     return done;
 }
 

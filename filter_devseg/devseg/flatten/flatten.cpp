@@ -2,94 +2,256 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "devseg/atlas/disks.h"
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/unfold.h"
 #include "devseg/flatten/one_chart.h"
-#include "devseg/flatten/reattach.h"
+#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-// Flattens the charts with the given numbers; returns the half-edges to cut, per chart.
-std::vector<std::vector<Index>> flatten_some(const Mesh& mesh, FlattenMethod method,
-                                             double tolerance, std::vector<std::size_t> which,
-                                             std::vector<FlatChart>& flat, Progress& progress) {
+struct Tuning {
+    double sliver_share = 0.01; // of the mesh's area: smaller parts are slivers
+    // What a joined map may lose: excess of its energy, as a share of the mesh's area, and the
+    // stretch of its worst face, which may in any case be as high as that of the parts.
+    double allowed_excess = 2e-4;
+    double allowed_stretch = 1.5;
+    double least_hinge = 0.3; // length of the edge over the root of the part's area
+};
+constexpr Tuning tuning;
+
+using Cuts = std::vector<std::vector<HalfEdge>>; // of the mesh, by chart
+
+// Flattens the charts with the given numbers; returns where to cut them.
+Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> which,
+                  std::vector<FlatChart>& flat, Progress& progress) {
     // The largest first, so that no core is left with a large chart at the end.
-    std::stable_sort(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
+    std::stable_sort(which.begin(), which.end(), [&](Index a, Index b) {
         return flat[a].surface.face.size() > flat[b].surface.face.size();
     });
-    std::vector<std::vector<Index>> cuts(flat.size());
+    Cuts cuts(flat.size());
     parallel_for(
         static_cast<int>(which.size()),
         [&](int i) {
-            const std::size_t c = which[static_cast<std::size_t>(i)];
             progress.check();
-            cuts[c] = flatten_one(mesh, method, tolerance, flat[c], progress);
+            const Index c = which[i];
+            cuts[c] = flatten_one(mesh, method, flat[c], progress);
         },
         progress);
     return cuts;
 }
 
-// Cuts the charts as asked, and takes over the maps of those that stay as they are. Returns the
-// numbers of the others.
-std::vector<std::size_t> cut_apart(const Mesh& mesh, const std::vector<std::vector<Index>>& cuts,
-                                   FlattenResult& result, Progress& progress) {
-    std::vector<Index> old_chart = result.charts.chart;
-    std::vector<std::uint8_t> seam = result.charts.seam;
-    for (const std::vector<Index>& cut : cuts) {
-        result.cuts += cut.empty() ? 0 : 1;
-        for (const HalfEdge h : cut)
-            seam[h] = seam[mesh.twin[h]] = 1;
-    }
-    result.charts = atlas::cut_charts_to_disks(
-                        mesh, atlas::make_chart_map(mesh, old_chart, seam, true), progress)
-                        .charts;
-    std::vector<FlatChart> flat;
-    std::vector<std::size_t> open;
-    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, result.charts)) {
-        const std::size_t old = at(old_chart[surface.face.front()]);
+// Takes over other charts, numbered in the order of their first faces, each with the map that the
+// chart of its first face had, unless that one was cut. Returns the numbers of those without a map.
+std::vector<Index> take_over(const Mesh& mesh, atlas::ChartMap charts, const Cuts& cuts,
+                             FlattenResult& result) {
+    const atlas::ChartFaces group = atlas::group_faces(charts);
+    std::vector<FlatChart> flat(at(charts.count));
+    std::vector<Index> open;
+    for (Index c = 0; c < charts.count; ++c) {
+        const auto first = group.faces.begin() + group.begin[c];
+        const Index old = result.charts.chart[*first];
         if (cuts[old].empty()) {
-            flat.push_back(std::move(result.flat[old]));
-        } else {
-            open.push_back(flat.size());
-            flat.emplace_back();
-            flat.back().surface = std::move(surface);
-            flat.back().cut_off = true;
+            flat[c] = std::move(result.flat[old]);
+            continue;
         }
+        const auto end = group.faces.begin() + group.begin[at(c) + 1];
+        flat[c].surface = atlas::extract_surface(mesh, {first, end}, charts.seam);
+        flat[c].cut_off = true;
+        open.push_back(c);
     }
+    result.charts = std::move(charts);
     result.flat = std::move(flat);
     return open;
 }
 
+// Cuts the charts as asked; returns the numbers of the parts.
+std::vector<Index> cut_apart(const Mesh& mesh, const Cuts& cuts, FlattenResult& result,
+                             Progress& progress) {
+    std::vector<std::uint8_t> seam = result.charts.seam;
+    for (const std::vector<HalfEdge>& cut : cuts) {
+        result.cuts += cut.empty() ? 0 : 1;
+        for (const HalfEdge h : cut)
+            seam[h] = seam[mesh.twin[h]] = 1;
+    }
+    const atlas::ChartMap parts = atlas::make_chart_map(mesh, result.charts.chart, seam, true);
+    return take_over(mesh, atlas::cut_charts_to_disks(mesh, parts, progress).charts, cuts, result);
+}
+
+// Joins charts. Labels of charts that are joined to others fall out of use until `renumber`.
+class Reattachment {
+public:
+    Reattachment(const Mesh& mesh, FlattenResult& result) : mesh_(mesh), result_(result) {}
+
+    // Parts that were cut off: (area, chart), the smallest first.
+    std::vector<std::pair<double, Index>> parts() const {
+        std::vector<std::pair<double, Index>> parts;
+        for (std::size_t c = 0; c < result_.flat.size(); ++c)
+            if (result_.flat[c].cut_off)
+                parts.emplace_back(atlas::area_of(mesh_, result_.flat[c].surface),
+                                   static_cast<Index>(c));
+        std::sort(parts.begin(), parts.end());
+        return parts;
+    }
+
+    bool glue(Index part, FlattenMethod method, Progress& progress) {
+        const std::vector<Index> others =
+            atlas::neighbour_labels(mesh_, result_.charts.chart, flat(part).surface);
+        return std::any_of(others.begin(), others.end(), [&](Index other) {
+            progress.check();
+            return try_to_glue(part, other, method, progress);
+        });
+    }
+
+    bool hinge(Index part, double least) {
+        std::vector<std::pair<double, Index>> hinges;
+        for (const Face f : flat(part).surface.face)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin >= 0 && result_.charts.chart[face_of(twin)] != part &&
+                    mesh_.edge_length(h) >= least)
+                    hinges.emplace_back(mesh_.edge_length(h), h);
+            }
+        std::sort(hinges.begin(), hinges.end(), std::greater<>());
+        return std::any_of(hinges.begin(), hinges.end(),
+                           [&](const auto& edge) { return try_hinge(part, edge.second); });
+    }
+
+    void renumber() {
+        const atlas::ChartMap& charts = result_.charts;
+        take_over(mesh_, atlas::make_chart_map(mesh_, charts.chart, charts.seam, false),
+                  Cuts(result_.flat.size()), result_);
+    }
+
+private:
+    FlatChart& flat(Index chart) { return result_.flat[chart]; }
+
+    // Along the whole common border: the map of both is made anew.
+    bool try_to_glue(Index part, Index other, FlattenMethod method, Progress& progress) {
+        const FlatChart& small = flat(part);
+        const FlatChart& large = flat(other);
+        std::vector<std::uint8_t> seam = result_.charts.seam;
+        FlatChart joined;
+        joined.surface = atlas::join_surfaces(mesh_, small.surface, large.surface, seam);
+        if (!joined.surface.is_disk())
+            return false;
+        // What can be folded of paper stays so.
+        if ((small.developed || large.developed) &&
+            !unfold(make_flattening_problem(mesh_, joined.surface)))
+            return false;
+        if (!flatten_one(mesh_, method, joined, progress).empty())
+            return false;
+        const double before = excess_of(small) + excess_of(large);
+        const double worst =
+            std::max({tuning.allowed_stretch, stretch_of(small), stretch_of(large)});
+        if (excess_of(joined) > before + tuning.allowed_excess * mesh_.total_area ||
+            stretch_of(joined) > worst)
+            return false;
+        result_.charts.seam = std::move(seam);
+        replace(part, other, std::move(joined));
+        return true;
+    }
+
+    // Across one edge: an exact development stays one.
+    bool try_hinge(Index part, HalfEdge h) {
+        const HalfEdge twin = mesh_.twin[h];
+        const Index other = result_.charts.chart[face_of(twin)];
+        if (!flat(other).developed)
+            return false;
+        std::vector<std::uint8_t>& seam = result_.charts.seam;
+        seam[h] = seam[twin] = 0;
+        std::vector<Index> faces = flat(other).surface.face;
+        const std::vector<Index>& added = flat(part).surface.face;
+        faces.insert(faces.end(), added.begin(), added.end());
+        std::sort(faces.begin(), faces.end());
+        FlatChart joined;
+        joined.surface = atlas::extract_surface(mesh_, std::move(faces), seam);
+        const FlatteningProblem problem = make_flattening_problem(mesh_, joined.surface);
+        if (!develop(mesh_, problem, joined) ||
+            !overlapping_pairs(joined.surface, joined.uv,
+                               plane::layout_tolerance(problem.model_size))
+                 .empty()) {
+            seam[h] = seam[twin] = 1;
+            return false;
+        }
+        joined.cut_off = flat(other).cut_off;
+        replace(part, other, std::move(joined));
+        return true;
+    }
+
+    void replace(Index part, Index other, FlatChart joined) {
+        for (const Face f : flat(part).surface.face)
+            result_.charts.chart[f] = other;
+        flat(other) = std::move(joined);
+    }
+
+    double excess_of(const FlatChart& chart) const {
+        return (chart.energy - 1.0) * atlas::area_of(mesh_, chart.surface);
+    }
+
+    double stretch_of(const FlatChart& chart) const {
+        return largest_stretch(make_flattening_problem(mesh_, chart.surface), chart.uv);
+    }
+
+    const Mesh& mesh_;
+    FlattenResult& result_;
+};
+
 } // namespace
+
+void hand_over_slivers(const Mesh& mesh, FlattenMethod method, FlattenResult& result,
+                       Progress& progress) {
+    Reattachment reattachment(mesh, result);
+    bool joined = false;
+    for (const auto& [area, part] : reattachment.parts())
+        if (area < tuning.sliver_share * mesh.total_area)
+            joined = reattachment.glue(part, method, progress) || joined;
+    if (joined)
+        reattachment.renumber();
+}
+
+int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress) {
+    Reattachment reattachment(mesh, result);
+    int number = 0;
+    for (const auto& [area, part] : reattachment.parts()) {
+        progress.update(0.0);
+        if (result.flat[part].developed &&
+            reattachment.hinge(part, tuning.least_hinge * std::sqrt(area)))
+            ++number;
+    }
+    if (number > 0)
+        reattachment.renumber();
+    return number;
+}
 
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress) {
     FlattenResult result;
     result.charts = charts;
-    std::vector<std::size_t> open;
+    std::vector<Index> open;
     for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
-        open.push_back(result.flat.size());
-        result.flat.emplace_back();
-        result.flat.back().surface = std::move(surface);
+        open.push_back(static_cast<Index>(open.size()));
+        result.flat.emplace_back().surface = std::move(surface);
     }
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
-    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
     while (!open.empty()) {
         auto flattening = progress.part(0.75 * progress.left());
-        const auto cuts = flatten_some(mesh, method, tolerance, open, result.flat, flattening);
+        const Cuts cuts = flatten_some(mesh, method, open, result.flat, flattening);
         auto cutting = progress.part(0.1 * progress.left());
         open = cut_apart(mesh, cuts, result, cutting);
     }
     auto handing_over = progress.part(0.3 * progress.left());
-    hand_over_slivers(mesh, method, tolerance, result, handing_over);
+    hand_over_slivers(mesh, method, result, handing_over);
     auto reattaching = progress.part(progress.left());
     if (result.cuts > 0)
-        result.reattached = reattach_parts(mesh, tolerance, result, reattaching);
+        result.reattached = reattach_parts(mesh, result, reattaching);
     return result;
 }
 

@@ -17,22 +17,22 @@ struct FlatChart {
     atlas::ChartSurface surface;
     std::vector<Vec2> uv;   // #v, internal units of the mesh
     bool mended = false;    // the chosen method flipped faces: the injective one was used instead
-    bool pushed = false;    // parts lay on top of each other and were pushed apart
-    bool cut_off = false;   // a part of a given chart that lay on top of another part
+    bool pushed = false;    // parts overlapped and were pushed apart
+    bool cut_off = false;   // a part of a given chart that overlapped another part
     bool developed = false; // exactly developable, and unfolded instead of mapped
     bool converged = true;
     double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
 };
 
 struct FlattenResult {
-    atlas::ChartMap charts; // the given charts, cut where a part lay on top of another
+    atlas::ChartMap charts; // the given charts, cut where parts overlapped
     std::vector<FlatChart> flat;
     int cuts = 0;       // that were needed
     int reattached = 0; // parts that were hinged to another chart after that
 };
 
-/// Flattens every chart; all must be disks. Parts of a chart that come to lie on top of each other
-/// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
+/// Flattens every chart; all must be disks. Parts of a chart that overlap in the plane are pushed
+/// apart where the method is symmetric Dirichlet and that changes the shape little, and
 /// else cut apart along a short path; what is then too small to be a chart goes to a neighbour
 /// whose map has room for it. Charts that are exactly developable are unfolded, whatever the
 /// method: only cut apart, never pushed, and small parts are hinged to another chart. The result
@@ -40,5 +40,16 @@ struct FlattenResult {
 /// where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
+
+/// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
+/// their whole common border, where its map stays one-to-one and is stretched little more; the
+/// others stay. Keeps result.charts and result.flat in step.
+void hand_over_slivers(const Mesh& mesh, FlattenMethod method, FlattenResult& result,
+                       Progress& progress);
+
+/// Parts of exact developments that were separated go to a neighbour, also an exact development,
+/// the smallest part first: across one edge, which keeps the development exact, that is long enough
+/// to hold the part. Returns how many.
+int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress);
 
 } // namespace devseg::flatten

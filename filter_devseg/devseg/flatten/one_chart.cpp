@@ -1,208 +1,230 @@
 #include "devseg/flatten/one_chart.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 
-#include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/multilevel.h"
-#include "devseg/flatten/energy/needles.h"
-#include "devseg/flatten/energy/peaks.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/energy/vertex_relaxation.h"
 #include "devseg/flatten/maps/abf.h"
 #include "devseg/flatten/maps/arap.h"
-#include "devseg/flatten/maps/lpfb.h"
 #include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/maps/unfold.h"
 #include "devseg/flatten/repair/overlaps.h"
-#include "devseg/flatten/repair/push_apart.h"
 #include "devseg/flatten/repair/slits.h"
+#include "devseg/flatten/repair/snap.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-// Gap of a slit that readers of texture coordinates certainly see, as a share like slit_gap.
-constexpr double visible_gap = 5e-6;
+using atlas::ChartSurface;
 
-// A face that keeps less of its area has collapsed.
-constexpr double collapsed = 1e-5;
+struct Tuning {
+    double collapsed_share = 1e-5; // of its area: a face that keeps less has collapsed
+    // A map this many times larger than the chart is of no use: needles had to be opened to wide
+    // angles, and the least energy is too far away. The layout would be so large that readers see
+    // no slits.
+    double blown_up = 100.0;
+    // Coarse-to-fine maps of larger charts are settled around needles and then taken as they are:
+    // their energy is within 1e-4 of the minimum, and factorizations of the whole chart, to polish
+    // it or to push its parts away from each other, would cost more than all levels together.
+    Index most_polished_faces = 60000;
+    // Of the chart's size: parts that were pushed apart on a coarse version get finer borders
+    // later.
+    double coarse_gap = 4e-3;
+};
+constexpr Tuning tuning;
 
-// A map this many times larger than the chart is of no use: needles had to be opened to wide
-// angles, and the least energy is too far away. The layout would be so large that readers see no
-// slits.
-constexpr double blown_up = 100.0;
+struct Map {
+    std::vector<Vec2> uv;
+    bool converged = true;
+};
 
-// Coarse-to-fine maps of larger charts are settled around needles and then taken as they are: their
-// energy is within 1e-4 of the minimum, and factorizations of the whole chart, to polish it or to
-// push its parts away from each other, would cost more than all levels together.
-constexpr Index most_polished_faces = 60000;
-// Of the chart's size: parts that were pushed apart on a coarse version get finer borders later.
-constexpr double coarse_gap = 4e-3;
+// One chart with all that its maps need. Methods return nothing where they find no map without
+// flips, and throw NumericalFailure where a solver inside fails.
+class ChartFlattening {
+public:
+    ChartFlattening(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
+                    const Progress& progress)
+        : mesh_(mesh), surface_(surface), problem_(problem),
+          tolerance_(plane::layout_tolerance(problem.model_size)), progress_(progress) {}
 
-using Pairs = std::vector<std::pair<Index, Index>>;
-
-// The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; ABF++;
-// Tutte, which rounding can flip on long closed tubes.
-std::vector<Vec2> valid_start(const FlatteningProblem& problem, const Progress& progress) {
-    const std::function<std::vector<Vec2>()> starts[] = {
-        [&] { return flatten_lscm(problem); },
-        [&] { return flatten_lpfb(problem, LpfbOptions{}, progress).uv; },
-        [&] { return flatten_abf(problem, AbfOptions{}, progress).uv; },
-        [&] { return flatten_tutte(problem); },
-    };
-    for (const auto& start : starts) {
-        try {
-            std::vector<Vec2> uv = start();
-            if (count_flips(problem, uv) == 0)
-                return uv;
-        } catch (const NumericalFailure&) { // the next one may have a solution
-        }
+    std::optional<Map> map(FlattenMethod method) const {
+        return attempt([&] { return map_by(method); });
     }
-    throw NumericalFailure("expected a map without flipped faces, found none for a chart of " +
-                           std::to_string(problem.faces.size()) + " faces");
-}
 
-std::vector<Vec2> isometric_start(const Mesh& mesh, const atlas::ChartSurface& surface,
-                                  const FlatteningProblem& problem, bool& refined,
-                                  const Progress& progress) {
-    refined = false;
-    if (surface.face_count() < multilevel_threshold)
-        return valid_start(problem, progress);
-    // Parts that lie on each other are pushed apart where that is cheap.
-    const auto solve = [&](const FlatteningProblem& coarse, const atlas::ChartSurface& disk) {
-        std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, valid_start(coarse, progress),
-                                                            SymmetricDirichletOptions{}, progress)
-                                   .uv;
-        const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
-        const Pairs pairs = overlapping_pairs(disk, uv, tolerance);
-        if (!pairs.empty() && surface.face_count() > most_polished_faces)
-            if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance, progress, coarse_gap))
-                uv = std::move(*apart);
-        return uv;
-    };
-    try {
-        std::vector<Vec2> uv = flatten_multilevel(mesh, surface, problem, solve, progress);
-        refined = count_flips(problem, uv) == 0;
-        if (refined)
-            return uv;
-    } catch (const NumericalFailure&) { // needles can leave no room for a vertex
-    }
-    return valid_start(problem, progress);
-}
-
-void apply_symmetric_dirichlet(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart,
-                               const Progress& progress) {
-    if (problem.faces.size() == 1) { // needles leave a solver no digits, and need none
-        const Triangle& t = problem.faces.front();
-        chart.uv.assign(3, Vec2::Zero());
-        chart.uv[t[1]] = problem.edges.front().col(0);
-        chart.uv[t[2]] = problem.edges.front().col(1);
-        return;
-    }
-    bool refined = false;
-    chart.uv = isometric_start(mesh, chart.surface, problem, refined, progress);
-    if (refined)
-        settle_peaks(problem, chart.surface.twin, chart.uv, progress);
-    if (!refined || chart.surface.face_count() <= most_polished_faces) {
-        SymmetricDirichletResult result =
-            minimise_symmetric_dirichlet(problem, chart.uv, SymmetricDirichletOptions{}, progress);
-        chart.uv = std::move(result.uv);
-        chart.converged = result.converged;
-    }
-    relieve_peaks(problem, chart.surface.twin, false, chart.uv, progress);
-    scale_to_area(problem, chart.uv);
-}
-
-// Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those of
-// the nearest isometric map, whatever the areas.
-bool apply_lpfb(const Mesh& mesh, const FlatteningProblem& problem, double tolerance,
-                FlatChart& chart, const Progress& progress) {
-    if (auto map = sewing_map(problem, chart.surface, tolerance, SewingMapOptions{}, progress)) {
-        chart.uv = std::move(map->uv);
-        return true;
-    }
-    apply_symmetric_dirichlet(mesh, problem, chart, progress);
-    open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    auto near = settle_lpfb(
-        problem, flatten_lpfb(problem, boundary_angles(problem, chart.uv), LpfbOptions{}, progress),
-        progress);
-    if (!near)
-        return false;
-    chart.uv = std::move(near->uv);
-    return true;
-}
-
-// The method's own map; false where it has flips or cannot be found.
-bool apply_method(const Mesh& mesh, const FlatteningProblem& problem, FlattenMethod method,
-                  double tolerance, FlatChart& chart, const Progress& progress) {
-    try {
+private:
+    std::optional<Map> map_by(FlattenMethod method) const {
         switch (method) {
         case FlattenMethod::symmetric_dirichlet:
-            apply_symmetric_dirichlet(mesh, problem, chart, progress);
-            return true;
+            return isometric();
         case FlattenMethod::lscm:
-            chart.uv = flatten_lscm(problem);
-            break;
+            return if_sound({flatten_lscm(problem_)});
         case FlattenMethod::abf: {
-            AbfResult result = flatten_abf(problem, AbfOptions{}, progress);
-            chart.uv = std::move(result.uv);
-            chart.converged = result.converged;
-            break;
+            AbfResult result = flatten_abf(problem_, AbfOptions{}, progress_);
+            return if_sound({std::move(result.uv), result.converged});
         }
-        case FlattenMethod::arap: {
-            ArapResult result =
-                minimise_arap(problem, valid_start(problem, progress), ArapOptions{}, progress);
-            chart.uv = std::move(result.uv);
-            chart.converged = result.converged;
-            scale_to_area(problem, chart.uv);
-            break;
-        }
+        case FlattenMethod::arap:
+            return rigid();
         case FlattenMethod::lpfb:
-            return apply_lpfb(mesh, problem, tolerance, chart, progress);
+            return length_preserving();
         }
-    } catch (const NumericalFailure&) {
-        if (method == FlattenMethod::symmetric_dirichlet)
-            throw; // there is nothing else to try
-        return false;
+        return std::nullopt;
     }
+
     // Conformal maps of strongly curved charts can shrink faces until 32-bit coordinates flip them.
-    return count_flips(problem, chart.uv) == 0 && least_area_ratio(problem, chart.uv) > collapsed;
+    std::optional<Map> if_sound(Map map) const {
+        if (count_flips(problem_, map.uv) > 0 ||
+            !(least_area_ratio(problem_, map.uv) > tuning.collapsed_share))
+            return std::nullopt;
+        return map;
+    }
+
+    // The first map without flips: LSCM, as on all charts that are nearly developable; LPFB; ABF++;
+    // Tutte, which rounding can flip on long closed tubes.
+    std::optional<std::vector<Vec2>> valid_start(const FlatteningProblem& problem) const {
+        using Uv = std::vector<Vec2>;
+        const std::function<Uv()> starts[] = {
+            [&] { return flatten_lscm(problem); },
+            [&] { return flatten_lpfb(problem, LpfbOptions{}, progress_).uv; },
+            [&] { return flatten_abf(problem, AbfOptions{}, progress_).uv; },
+            [&] { return flatten_tutte(problem); },
+        };
+        for (const auto& start : starts) {
+            Uv uv = attempt(start);
+            if (!uv.empty() && count_flips(problem, uv) == 0)
+                return uv;
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Map> rigid() const {
+        const auto start = valid_start(problem_);
+        if (!start)
+            return std::nullopt;
+        ArapResult result = minimise_arap(problem_, *start, ArapOptions{}, progress_);
+        scale_to_area(problem_, result.uv);
+        return if_sound({std::move(result.uv), result.converged});
+    }
+
+    // Least symmetric Dirichlet energy, without peaks.
+    std::optional<Map> isometric() const {
+        if (problem_.faces.size() == 1) // needles leave a solver no digits, and need none
+            return single_face();
+        Map map;
+        const bool is_large = surface_.face_count() > tuning.most_polished_faces;
+        const auto refined = attempt([&] { return coarse_to_fine(); });
+        if (refined) {
+            map.uv = *refined;
+            settle_peaks(problem_, map.uv, progress_);
+        } else if (auto start = valid_start(problem_)) {
+            map.uv = std::move(*start);
+        } else {
+            return std::nullopt;
+        }
+        if (!refined || !is_large) {
+            SymmetricDirichletResult result =
+                minimise_symmetric_dirichlet(problem_, map.uv, {}, progress_);
+            map = {std::move(result.uv), result.converged};
+        }
+        relieve_peaks(problem_, false, map.uv, progress_);
+        scale_to_area(problem_, map.uv);
+        return map;
+    }
+
+    Map single_face() const {
+        Map map{std::vector<Vec2>(3)};
+        for (Index k = 0; k < 3; ++k)
+            map.uv[problem_.faces.front()[k]] = problem_.corner(0, k);
+        return map;
+    }
+
+    // Nothing for small charts. Parts that overlap are pushed apart where that is cheap.
+    std::optional<std::vector<Vec2>> coarse_to_fine() const {
+        if (surface_.face_count() < multilevel_threshold)
+            return std::nullopt;
+        const auto solve = [&](const FlatteningProblem& coarse, const ChartSurface& disk) {
+            const auto start = valid_start(coarse);
+            if (!start)
+                throw NumericalFailure("expected a map without flipped faces, found none");
+            std::vector<Vec2> uv = minimise_symmetric_dirichlet(coarse, *start, {}, progress_).uv;
+            const Pairs pairs = overlapping_pairs(disk, uv, tolerance_);
+            if (!pairs.empty() && surface_.face_count() > tuning.most_polished_faces)
+                if (auto apart = push_apart(coarse, disk, uv, pairs, tolerance_, progress_,
+                                            tuning.coarse_gap))
+                    uv = std::move(*apart);
+            return uv;
+        };
+        std::vector<Vec2> uv = flatten_multilevel(mesh_, surface_, problem_, solve, progress_);
+        if (count_flips(problem_, uv) > 0)
+            return std::nullopt;
+        return uv;
+    }
+
+    // Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those
+    // of the nearest isometric map, whatever the areas.
+    std::optional<Map> length_preserving() const {
+        if (auto sewn = sewing_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_))
+            return Map{std::move(sewn->uv)};
+        auto map = isometric();
+        if (!map)
+            return std::nullopt;
+        open_closed_slits(mesh_, surface_, slit_gap * problem_.model_size, map->uv);
+        const std::vector<double> angles = boundary_angles(problem_, map->uv);
+        auto near = settle_lpfb(problem_, flatten_lpfb(problem_, angles, LpfbOptions{}, progress_),
+                                progress_);
+        if (!near)
+            return std::nullopt;
+        return Map{std::move(near->uv), map->converged};
+    }
+
+    const Mesh& mesh_;
+    const ChartSurface& surface_;
+    const FlatteningProblem& problem_;
+    double tolerance_;
+    const Progress& progress_;
+};
+
+// The half-edges of the mesh along a short path that takes overlapping faces apart.
+std::vector<HalfEdge> cut_between(const Mesh& mesh, const ChartSurface& surface,
+                                  const Pairs& pairs) {
+    std::vector<HalfEdge> cut;
+    if (!pairs.empty())
+        for (const HalfEdge h : separating_path(mesh, surface, pairs))
+            cut.push_back(surface.mesh_half_edge(h));
+    return cut;
 }
 
-std::vector<Index> on_mesh(const atlas::ChartSurface& surface, std::vector<Index> half_edges) {
-    for (Index& h : half_edges)
-        h = surface.mesh_half_edge(h);
-    return half_edges;
-}
-
-// The mesh half-edges of a short cut between the first face and the one that is most faces away.
-std::vector<Index> halve(const Mesh& mesh, const atlas::ChartSurface& surface) {
+// A short cut between the first face and the one that is most faces away.
+std::vector<HalfEdge> halve(const Mesh& mesh, const ChartSurface& surface) {
+    if (surface.face_count() < 2)
+        throw NumericalFailure(
+            "expected a map without flipped faces, found none for a single face");
     std::vector<std::uint8_t> seen(surface.face.size(), 0);
-    std::vector<Index> reached{0};
+    std::vector<Face> reached{0};
     seen[0] = 1;
     for (std::size_t i = 0; i < reached.size(); ++i)
         for (const HalfEdge h : half_edges_of(reached[i])) {
             const HalfEdge twin = surface.twin[h];
-            if (twin >= 0 && seen[twin / 3] == 0) {
-                seen[twin / 3] = 1;
-                reached.push_back(twin / 3);
+            if (twin >= 0 && seen[face_of(twin)] == 0) {
+                seen[face_of(twin)] = 1;
+                reached.push_back(face_of(twin));
             }
         }
     // A third of the faces on each side takes part, so that the cut is near the middle.
     Pairs pairs{{reached.front(), reached.back()}};
     for (std::size_t i = 0; i < reached.size() / 3; ++i)
         pairs.emplace_back(reached[i], reached[reached.size() - 1 - i]);
-    return on_mesh(surface, separating_path(mesh, surface, pairs));
+    return cut_between(mesh, surface, pairs);
 }
 
 // An isometric map of a disk is no longer than half of its boundary.
@@ -213,68 +235,63 @@ bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) 
     Eigen::AlignedBox2d box;
     for (const Vec2& p : uv)
         box.extend(p);
-    return !(box.diagonal().norm() <= blown_up * (boundary + std::sqrt(problem.total_area)));
+    return !(box.diagonal().norm() <= tuning.blown_up * (boundary + std::sqrt(problem.total_area)));
 }
 
 } // namespace
 
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
-    auto development = unfold(problem, chart.surface.twin);
+    auto development = unfold(problem);
     if (!development)
         return false;
     chart.uv = std::move(*development);
     scale_to_area(problem, chart.uv);
     // Slits are opened only where the chart would not be seen as a disk.
-    const double size = std::sqrt(mesh.total_area);
-    if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * size, chart.uv))
-        open_closed_slits(mesh, chart.surface, slit_gap * size, chart.uv);
+    if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * problem.model_size, chart.uv))
+        open_closed_slits(mesh, chart.surface, slit_gap * problem.model_size, chart.uv);
     chart.developed = true;
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     return true;
 }
 
-std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
-                               FlatChart& chart, const Progress& progress) {
-    const FlatteningProblem problem = make_flattening_problem(mesh, chart.surface);
-    if (develop(mesh, problem, chart)) {
-        // It stays as it is: its parts are not pushed apart.
-        const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
-        return pairs.empty() ? std::vector<Index>{}
-                             : on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
+std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
+                                  const Progress& progress) {
+    const ChartSurface& surface = chart.surface;
+    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
+    const double tolerance = plane::layout_tolerance(problem.model_size);
+    if (develop(mesh, problem, chart)) // stays as it is: its parts are not pushed apart
+        return cut_between(mesh, surface, overlapping_pairs(surface, chart.uv, tolerance));
+    const ChartFlattening flattening(mesh, surface, problem, progress);
+    auto map = flattening.map(method);
+    if (!map && method != FlattenMethod::symmetric_dirichlet) {
+        chart.mended = true;
+        map = flattening.map(FlattenMethod::symmetric_dirichlet);
     }
-    try {
-        if (!apply_method(mesh, problem, method, tolerance, chart, progress)) {
-            chart.mended = true;
-            apply_symmetric_dirichlet(mesh, problem, chart, progress);
-        }
-    } catch (const NumericalFailure&) {
-        if (chart.surface.face_count() < 2)
-            throw;
-        return halve(mesh, chart.surface); // the halves are easier
-    }
-    if (chart.surface.face_count() > 1 && is_blown_up(problem, chart.uv))
-        return halve(mesh, chart.surface);
-    restore_needles(mesh, chart.surface, problem, chart.uv);
-    open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-    chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
-    const Pairs pairs = overlapping_pairs(chart.surface, chart.uv, tolerance);
-    if (pairs.empty())
-        return {};
+    if (!map || (surface.face_count() > 1 && is_blown_up(problem, map->uv)))
+        return halve(mesh, surface); // the halves are easier
+    chart.uv = std::move(map->uv);
+    chart.converged = map->converged;
+    const auto finish = [&] {
+        open_closed_slits(mesh, surface, slit_gap * problem.model_size, chart.uv);
+        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
+    };
+    restore_needles(problem, chart.uv);
+    finish();
+    const Pairs pairs = overlapping_pairs(surface, chart.uv, tolerance);
     // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
     // would not be theirs any more.
     const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
-                          chart.surface.face_count() <= most_polished_faces;
-    if (auto apart = may_push
-                         ? push_apart(problem, chart.surface, chart.uv, pairs, tolerance, progress)
-                         : std::nullopt) {
-        chart.uv = std::move(*apart);
-        relieve_peaks(problem, chart.surface.twin, true, chart.uv, progress);
-        open_closed_slits(mesh, chart.surface, slit_gap * std::sqrt(mesh.total_area), chart.uv);
-        chart.pushed = true;
-        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
-        return {};
-    }
-    return on_mesh(chart.surface, separating_path(mesh, chart.surface, pairs));
+                          surface.face_count() <= tuning.most_polished_faces;
+    if (pairs.empty() || !may_push)
+        return cut_between(mesh, surface, pairs);
+    auto apart = push_apart(problem, surface, chart.uv, pairs, tolerance, progress);
+    if (!apart)
+        return cut_between(mesh, surface, pairs);
+    chart.uv = std::move(*apart);
+    chart.pushed = true;
+    relieve_peaks(problem, true, chart.uv, progress);
+    finish();
+    return {};
 }
 
 } // namespace devseg::flatten

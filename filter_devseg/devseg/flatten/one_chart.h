@@ -9,13 +9,13 @@
 namespace devseg::flatten {
 
 /// Flattens chart.surface, a disk, and fills in the rest of `chart`. Returns the half-edges of the
-/// mesh to cut where parts lie on each other, by more than `tolerance`, and could not be pushed
-/// apart; nothing where the map is one-to-one.
-std::vector<Index> flatten_one(const Mesh& mesh, FlattenMethod method, double tolerance,
-                               FlatChart& chart, const Progress& progress);
+/// mesh to cut where parts overlap in the plane and could not be pushed apart; nothing where the
+/// map is one-to-one.
+std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
+                                  const Progress& progress);
 
 /// The chart's exact development, which every method looks for; false where it has none. Parts may
-/// lie on each other. `problem` is that of chart.surface.
+/// overlap. `problem` is that of chart.surface.
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart);
 
 } // namespace devseg::flatten

@@ -5,41 +5,41 @@
 #include <utility>
 
 #include "devseg/atlas/disks.h"
-#include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
-#include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
-#include "devseg/flatten/repair/push_apart.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::judge {
 
 namespace {
 
-// Rounds stop when ten of them gain less than this share of the excess that is compared with.
-constexpr double precision = 1e-3;
-constexpr double coarsest = 1e-5; // relative to the energy
-constexpr double finest = 1e-7;
-constexpr int few_rounds = 40;
-constexpr int many_rounds = 200;
+struct Tuning {
+    // Rounds stop when ten of them gain less than this share of the excess that is compared with,
+    // and never before they gain less than this share of the energy.
+    double precision = 1e-3;
+    double coarsest = 1e-5;
+    int few_rounds = 40;
+    int many_rounds = 200;
+};
+constexpr Tuning tuning;
 
 // Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over 1,
 // depending on how much of the distortion is shear: an energy whose excess is that of the wanted
 // l2² is hopeless.
 std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const TrialEffort& effort,
                            const Progress& progress) {
-    std::vector<Vec2> uv = flatten::flatten_lscm(problem);
-    if (flatten::count_flips(problem, uv) > 0)
-        uv = flatten::flatten_tutte(problem);
     flatten::SymmetricDirichletOptions options;
     const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
-    options.relative_tolerance = std::clamp(precision * excess, finest, coarsest);
-    options.max_iterations = precision * excess < coarsest ? many_rounds : few_rounds;
+    options.relative_tolerance = std::min(tuning.precision * excess, tuning.coarsest);
+    options.max_iterations =
+        tuning.precision * excess < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
     if (effort.give_up)
         options.give_up_energy = 1.0 + excess;
-    uv = flatten::minimise_symmetric_dirichlet(problem, uv, options, progress).uv;
+    std::vector<Vec2> uv = flatten::minimise_symmetric_dirichlet(
+                               problem, flatten::simple_map(problem), options, progress)
+                               .uv;
     flatten::scale_to_area(problem, uv);
     return uv;
 }
@@ -50,9 +50,9 @@ std::vector<Index> local_maxima(const atlas::ChartSurface& surface,
     std::vector<Index> maxima;
     for (const Face f : surface.all_faces()) {
         bool highest = true;
-        for (HalfEdge h = 3 * f; h < 3 * f + 3 && highest; ++h)
-            mesh::visit_star(surface.twin, h, [&](Index k) {
-                const Index g = k / 3;
+        for (const HalfEdge h : half_edges_of(f))
+            mesh::visit_star(surface.twin, h, [&](HalfEdge k) {
+                const Face g = face_of(k);
                 if (stretch[g] > stretch[f] || (stretch[g] == stretch[f] && g < f))
                     highest = false;
             });
@@ -75,17 +75,10 @@ double TrialMap::peaks_above(double bound) const {
 
 std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
                                     const std::vector<Vec2>& uv, TrialMap& map) {
-    std::vector<double> stretch(problem.faces.size());
     map.area = problem.total_area;
-    map.l2_squared = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = flatten::jacobian(problem, uv, f);
-        const double det = j.determinant();
-        stretch[f] = flatten::face_stretch(problem, uv, f);
-        map.l2_squared +=
-            0.5 * j.squaredNorm() / (det * det) * problem.area[f] / problem.total_area;
-        map.linf = std::max(map.linf, stretch[f]);
-    }
+    map.l2_squared = flatten::squared_l2_stretch(problem, uv);
+    std::vector<double> stretch = flatten::face_stretches(problem, uv);
+    map.linf = std::max(map.linf, *std::max_element(stretch.begin(), stretch.end()));
     return stretch;
 }
 
@@ -99,14 +92,11 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     const atlas::ChartSurface surface = atlas::cut_to_disk(
         mesh, atlas::extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
-    std::vector<Vec2> uv;
-    try {
-        uv = trial_uv(problem, effort, progress);
-    } catch (const NumericalFailure&) {
-        return map; // not flat
-    }
-    map.flat = true;
-    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
+    std::vector<Vec2> uv = flatten::attempt([&] { return trial_uv(problem, effort, progress); });
+    map.flat = !uv.empty();
+    if (!map.flat)
+        return map;
+    const double tolerance = plane::layout_tolerance(problem.model_size);
     auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
     map.overlaps = !pairs.empty();
     if (map.overlaps && effort.push_apart)

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "devseg/mesh/angle_defects.h"
+
 namespace devseg::metrics {
 
 namespace {
 
-constexpr double full_sphere = 4.0 * pi;
-
 // Rounding leaves areas of this size where all normals agree; as they are, they would decide
 // between charts that are exactly developable.
-constexpr double rounding = 1e-13;
+constexpr double rounding_area = 1e-13; // steradians
 
 double signed_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     return 2.0 * std::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
@@ -20,27 +20,18 @@ double signed_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 double absolute_area(const std::vector<Vec3>& corners) {
     const double area = std::abs(signed_spherical_area(corners));
-    return area > rounding ? std::min(area, full_sphere) : 0.0;
-}
-
-// A half-edge that leaves each vertex; on the boundary the one from which visit_star goes around
-// the whole fan without turning back.
-std::vector<Index> first_half_edges(const Mesh& mesh) {
-    std::vector<Index> first(mesh.points.size(), -1);
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (first[mesh.origin(h)] < 0 || mesh.twin[h] < 0)
-            first[mesh.origin(h)] = h;
-    return first;
+    return area > rounding_area ? std::min(area, 4.0 * pi) : 0.0;
 }
 
 // The faces around a vertex as half-edges that leave it, counter-clockwise, beginning behind a
 // crease where there is one.
 struct Star {
-    std::vector<Index> half_edges;
+    std::vector<HalfEdge> half_edges;
     bool closed = false;
 };
 
-void walk_star(const Mesh& mesh, Index first, const std::vector<std::uint8_t>& crease, Star& star) {
+void walk_star(const Mesh& mesh, HalfEdge first, const std::vector<std::uint8_t>& crease,
+               Star& star) {
     star.half_edges.clear();
     star.closed = mesh::visit_star(mesh, first, [&](HalfEdge h) { star.half_edges.push_back(h); });
     if (star.closed)
@@ -67,27 +58,27 @@ Vec3 weighted_normal(const Mesh& mesh, HalfEdge h) {
     return scale > 0.0 ? Vec3(a.cross(b) / scale) : Vec3::Zero();
 }
 
-Vec3 part_normal(const Mesh& mesh, const Index* begin, const Index* end) {
+Vec3 part_normal(const Mesh& mesh, const HalfEdge* begin, const HalfEdge* end) {
     Vec3 sum = Vec3::Zero();
-    for (const Index* h = begin; h != end; ++h)
+    for (const HalfEdge* h = begin; h != end; ++h)
         sum += weighted_normal(mesh, *h);
     const double length = sum.norm();
     if (length > 0.0 && std::isfinite(length))
         return sum / length;
-    return mesh.face_normals[*begin / 3]; // all weights vanish: any of the faces
+    return mesh.face_normals[face_of(*begin)]; // all weights vanish: any of the faces
 }
 
 // Calls visit(begin, end) for the smooth parts around a vertex.
 template <class Visit>
 void visit_parts(const Star& star, const std::vector<std::uint8_t>& crease, Visit visit) {
-    const Index* const begin = star.half_edges.data();
-    const Index* const end = begin + star.half_edges.size();
+    const HalfEdge* const begin = star.half_edges.data();
+    const HalfEdge* const end = begin + star.half_edges.size();
     if (count_parts(star, crease) == 1) {
         visit(begin, end);
         return;
     }
-    for (const Index* from = begin; from != end;) {
-        const Index* to = from + 1;
+    for (const HalfEdge* from = begin; from != end;) {
+        const HalfEdge* to = from + 1;
         while (to != end && crease[*to] == 0)
             ++to;
         visit(from, to);
@@ -110,7 +101,9 @@ std::vector<std::uint8_t> find_creases(const Mesh& mesh, double angle) {
     for (const HalfEdge h : mesh.all_half_edges()) {
         const HalfEdge twin = mesh.twin[h];
         if (twin >= 0)
-            crease[h] = mesh.face_normals[h / 3].dot(mesh.face_normals[twin / 3]) < cosine ? 1 : 0;
+            crease[h] = mesh.face_normals[face_of(h)].dot(mesh.face_normals[face_of(twin)]) < cosine
+                            ? 1
+                            : 0;
     }
     return crease;
 }
@@ -118,13 +111,13 @@ std::vector<std::uint8_t> find_creases(const Mesh& mesh, double angle) {
 std::vector<Vec3> split_normals(const Mesh& mesh, const std::vector<std::uint8_t>& crease) {
     std::vector<Vec3> normals(mesh.twin.size(), Vec3::UnitZ());
     Star star;
-    for (const Index first : first_half_edges(mesh)) {
+    for (const HalfEdge first : mesh::leaving_half_edges(mesh)) {
         if (first < 0)
             continue;
         walk_star(mesh, first, crease, star);
-        visit_parts(star, crease, [&](const Index* begin, const Index* end) {
+        visit_parts(star, crease, [&](const HalfEdge* begin, const HalfEdge* end) {
             const Vec3 normal = part_normal(mesh, begin, end);
-            for (const Index* h = begin; h != end; ++h)
+            for (const HalfEdge* h = begin; h != end; ++h)
                 normals[*h] = normal;
         });
     }
@@ -174,13 +167,14 @@ GaussAreas compute_gauss_areas(const Mesh& mesh, double crease_angle) {
         result.total += result.edge[h] = result.edge[twin] = absolute_area(corners);
     }
     Star star;
-    for (const Index first : first_half_edges(mesh)) {
+    for (const HalfEdge first : mesh::leaving_half_edges(mesh)) {
         if (first < 0)
             continue;
         walk_star(mesh, first, result.crease, star);
         corners.clear();
-        visit_parts(star, result.crease,
-                    [&](const Index* begin, const Index*) { corners.push_back(normals[*begin]); });
+        visit_parts(star, result.crease, [&](const HalfEdge* begin, const HalfEdge*) {
+            corners.push_back(normals[*begin]);
+        });
         if (star.closed)
             result.total += result.vertex[mesh.origin(first)] = absolute_area(corners);
     }
@@ -189,22 +183,22 @@ GaussAreas compute_gauss_areas(const Mesh& mesh, double crease_angle) {
 
 std::vector<double> chart_gauss_areas(const Mesh& mesh, const GaussAreas& areas,
                                       const std::vector<Index>& chart, Index count) {
-    constexpr Index shared = -2;
     std::vector<double> sums(at(count), 0.0);
-    std::vector<Index> owner(mesh.points.size(), -1);
+    std::vector<std::uint8_t> shared(mesh.points.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges()) {
-        const Index c = chart[h / 3];
-        Index& first = owner[mesh.origin(h)];
-        first = first == -1 || first == c ? c : shared;
+        const Index c = chart[face_of(h)];
         const HalfEdge twin = mesh.twin[h];
-        if (h < twin && chart[twin / 3] == c)
+        if (twin >= 0 && chart[face_of(twin)] != c)
+            shared[mesh.origin(h)] = shared[mesh.target(h)] = 1;
+        else if (h < twin)
             sums[c] += areas.edge[h];
     }
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const Face f : mesh.all_faces())
         sums[chart[f]] += areas.face[f];
-    for (std::size_t v = 0; v < owner.size(); ++v)
-        if (owner[v] >= 0)
-            sums[owner[v]] += areas.vertex[v];
+    const std::vector<Index> leaving = mesh::leaving_half_edges(mesh);
+    for (const Vertex v : mesh.all_vertices())
+        if (leaving[v] >= 0 && shared[v] == 0)
+            sums[chart[face_of(leaving[v])]] += areas.vertex[v];
     return sums;
 }
 

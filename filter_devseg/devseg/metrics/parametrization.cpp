@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -14,32 +16,27 @@ namespace devseg::metrics {
 
 namespace {
 
-// A face thinner than this share of its longest edge squared has no shape to be compared.
-constexpr double no_area = 1e-12;
-// A face that covers less than this share of the area it should cover has collapsed in the plane.
-constexpr double collapsed = 1e-6;
-
-struct Corner3 {
-    Vec3 a, b, c;
+struct Tuning {
+    double no_area = 1e-12;       // of the longest edge squared: a thinner face has no shape
+    double collapsed_face = 1e-6; // of its area: a face that covers less has collapsed in the plane
 };
-
-Corner3 corners_on_surface(const Mesh& mesh, Face f) {
-    const Triangle& t = mesh.faces[f];
-    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
-}
+constexpr Tuning tuning;
 
 bool has_area(const Mesh& mesh, Face f) {
-    const Corner3 p = corners_on_surface(mesh, f);
-    const double longest =
-        std::max({(p.b - p.a).squaredNorm(), (p.c - p.b).squaredNorm(), (p.a - p.c).squaredNorm()});
-    return mesh.face_areas[f] > no_area * longest;
+    double longest = 0.0;
+    for (const HalfEdge h : half_edges_of(f))
+        longest = std::max(
+            longest, (mesh.points[mesh.target(h)] - mesh.points[mesh.origin(h)]).squaredNorm());
+    return mesh.face_areas[f] > tuning.no_area * longest;
 }
 
 // Singular values of the affine map from the plane to the surface on one face, Γ first.
 std::array<double, 2> singular_values(const Mesh& mesh, const CornerUv& uv, Face f) {
-    const Corner3 p = corners_on_surface(mesh, f);
-    const double base = (p.b - p.a).norm();
-    const double x = (p.c - p.a).dot(p.b - p.a) / base;
+    const Vec3& corner = mesh.points[mesh.faces[f][0]];
+    const Vec3 first = mesh.points[mesh.faces[f][1]] - corner;
+    const Vec3 second = mesh.points[mesh.faces[f][2]] - corner;
+    const double base = first.norm();
+    const double x = second.dot(first) / base;
     const double y = 2.0 * mesh.face_areas[f] / base;
     Eigen::Matrix2d surface;
     surface << base, x, 0.0, y;
@@ -96,13 +93,10 @@ ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
 }
 
 double bounding_box_area(const CornerUv& uv) {
-    Vec2 low = uv.front();
-    Vec2 high = uv.front();
-    for (const Vec2& p : uv) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    return (high - low).prod();
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : uv)
+        box.extend(p);
+    return box.sizes().prod();
 }
 
 // Sums over faces, for the whole layout and for one chart.
@@ -167,7 +161,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(plane::uv_area(uv, f));
         covered += flat;
-        if (has_area(mesh, f) && flat * scale > collapsed * mesh.face_areas[f])
+        if (has_area(mesh, f) && flat * scale > tuning.collapsed_face * mesh.face_areas[f])
             add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
     }
     result.l2_stretch = all.l2_stretch();
@@ -185,6 +179,34 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     result.seams = measure_seams(mesh, charts, uv);
     const double box = bounding_box_area(uv);
     result.packing_efficiency = box > 0.0 ? covered / box : 0.0;
+    return result;
+}
+
+std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const atlas::ChartMap& charts,
+                                        const CornerUv& uv) {
+    const double scale = atlas::layout_scale(mesh, charts, uv) * mesh.unit_length;
+    const auto flat_length = [&](HalfEdge h) { return scale * (uv[Mesh::next(h)] - uv[h]).norm(); };
+    std::map<std::pair<Index, Index>, SeamMeasures> seams;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const HalfEdge twin = mesh.twin[h];
+        if (charts.seam[h] == 0 || h > twin)
+            continue;
+        const auto chart_of = [&](HalfEdge side) { return charts.chart[face_of(side)]; };
+        HalfEdge a = h; // the side in the chart with the lower number
+        HalfEdge b = twin;
+        if (chart_of(a) > chart_of(b))
+            std::swap(a, b);
+        const std::pair<Index, Index> key(chart_of(a), chart_of(b));
+        SeamMeasures& seam = seams[key];
+        seam.chart_a = key.first;
+        seam.chart_b = key.second;
+        seam.surface_length += mesh.edge_length(h) * mesh.unit_length;
+        seam.length_a += flat_length(a);
+        seam.length_b += flat_length(b);
+    }
+    std::vector<SeamMeasures> result;
+    for (const auto& [key, seam] : seams)
+        result.push_back(seam);
     return result;
 }
 

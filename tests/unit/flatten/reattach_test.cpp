@@ -1,5 +1,3 @@
-#include "devseg/flatten/reattach.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,8 +11,6 @@
 
 namespace devseg::flatten {
 namespace {
-
-constexpr double tolerance = 1e-9;
 
 // A plate in two charts, and a piece of two squares at its lower edge between them.
 Mesh plate() {
@@ -47,7 +43,7 @@ TEST(Slivers, GoToANeighbourThatHasRoom) {
     ASSERT_EQ(flat.charts.count, 3);
     flat.flat[sliver_of(flat)].cut_off = true;
     Progress progress;
-    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, flat, progress);
     ASSERT_EQ(flat.charts.count, 2);
     ASSERT_EQ(flat.flat.size(), 2U);
     EXPECT_TRUE(checks::is_valid(mesh, flat.charts));
@@ -67,7 +63,7 @@ TEST(Slivers, ChartsThatWereGivenStay) {
     const Mesh mesh = plate();
     FlattenResult flat = flat_with_sliver(mesh);
     Progress progress;
-    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, flat, progress);
     EXPECT_EQ(flat.charts.count, 3);
 }
 
@@ -87,7 +83,7 @@ TEST(Slivers, StayWhereTheJoinedMapWouldOverlap) {
     ASSERT_GE(before, 2);
     for (FlatChart& chart : flat.flat)
         chart.cut_off = chart.surface.face_count() < 10;
-    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, tolerance, flat, progress);
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, flat, progress);
     EXPECT_EQ(flat.charts.count, before);
     for (const FlatChart& chart : flat.flat)
         EXPECT_TRUE(chart.surface.is_disk());
@@ -133,7 +129,7 @@ TEST(Reattach, SheetsWithHolesAreDisksInThePlane) {
         EXPECT_TRUE(chart.developed);
         chart.cut_off = chart.surface.face_count() < mesh.face_count() / 2;
     }
-    EXPECT_EQ(reattach_parts(mesh, tolerance, flat, progress), 1);
+    EXPECT_EQ(reattach_parts(mesh, flat, progress), 1);
     ASSERT_EQ(flat.charts.count, 1);
     EXPECT_EQ(disks_in_the_plane(mesh, flat), 1);
 }

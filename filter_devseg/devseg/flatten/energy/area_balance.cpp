@@ -2,43 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "devseg/base/errors.h"
 #include "devseg/flatten/energy/distortion.h"
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/energy/projected_newton.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-constexpr double even = 0.1; // changes below this are left alone: Wang's own bound for LPFB
-// The penalty is (z²)³, with z the change over this bound: nothing for changes that are allowed,
-// and more than the shear of a usual face for others.
-constexpr double bound = 0.12;
-constexpr double usual_weight = 0.02;
-constexpr double least_share = 0.5; // of the mean area: what a small face counts at least
-// Of the boundary where it moves, while areas become even and where the last of them do.
-constexpr double stiffness = 5e3;
-constexpr double last_stiffness = 5e6;
-constexpr int most_steps = 12;
-constexpr double sufficient_decrease = 1e-4; // Armijo's constant
-constexpr double safe_step = 0.8;            // of the step at which the first face collapses
-constexpr double smallest_step = 1e-4;
-constexpr double little_gain = 5e-3; // share of the energy's excess that a step must gain
-constexpr double uneven = 0.6;       // faces above this share of the bound are moved
-constexpr int rings = 6;             // of faces around them, which move as well
+struct Tuning {
+    // The penalty is (z²)³, with z the change over this bound: nothing for changes that are
+    // allowed, and more than the shear of a usual face for others.
+    double penalised_change = 1.2 * usual_area_change;
+    double small_face = 0.5; // of the mean area: what a small face counts at least
+    int newton_steps = 12;
+    double excess_gain = 5e-3; // share of the energy's excess that a step must gain
+    double uneven = 0.6;       // faces above this share of the bound are moved
+    int moved_rings = 6;       // of faces around them, which move as well
+};
+constexpr Tuning tuning;
+
+// Of the penalty, and of the boundary where it moves: while areas become even, and where the last
+// of them do.
+struct Stage {
+    double weight;
+    double stiffness;
+};
+constexpr Stage stages[] = {{0.02, 5e3}, {0.6, 5e6}};
 
 // The energy: symmetric Dirichlet, and the penalty on each face's ratio of areas ρ = det J, whose
 // least lies in the middle of the ratios that are allowed at both scales.
 class BalancedEnergy {
 public:
     explicit BalancedEnergy(double whole) {
-        const double low = std::max(1.0 - bound, whole / (1.0 + bound));
-        const double high = std::min(1.0 + bound, whole * (1.0 + bound));
+        const double low =
+            std::max(1.0 - tuning.penalised_change, whole / (1.0 + tuning.penalised_change));
+        const double high =
+            std::min(1.0 + tuning.penalised_change, whole * (1.0 + tuning.penalised_change));
         center_ = low < high ? 0.5 * (low + high) : whole;
-        width_ = std::max(0.5 * (high - low), 0.25 * bound);
+        width_ = std::max(0.5 * (high - low), 0.25 * tuning.penalised_change);
     }
 
     double value(const FlatteningProblem& problem, const Positions& x) const {
@@ -97,7 +99,7 @@ public:
         return largest;
     }
 
-    double weight = usual_weight;    // of the penalty
+    double weight = 0.0;             // of the penalty
     double boundary_stiffness = 0.0; // of the boundary edges, where they may move
 
 private:
@@ -114,38 +116,12 @@ private:
     // Of the penalty: a small face must keep its area as well, although it has little of it.
     static double share(const FlatteningProblem& problem, std::size_t f) {
         const double mean = problem.total_area / static_cast<double>(problem.faces.size());
-        return std::max(problem.area[f], least_share * mean) / problem.total_area;
+        return std::max(problem.area[f], tuning.small_face * mean) / problem.total_area;
     }
 
     double center_ = 1.0;
     double width_ = 1.0;
 };
-
-bool is_even(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    return measure_area_change(problem, uv).largest() <= even;
-}
-
-} // namespace
-
-double AreaChange::largest() const {
-    return std::max({1.0 - least, most - 1.0, 1.0 - least / whole, most / whole - 1.0,
-                     least > 0.0 ? whole / least - 1.0 : infinite});
-}
-
-AreaChange measure_area_change(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    AreaChange change;
-    change.least = infinite;
-    change.most = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const double ratio = jacobian(problem, uv, f).determinant();
-        change.least = std::min(change.least, ratio);
-        change.most = std::max(change.most, ratio);
-    }
-    change.whole = map_area(problem, uv) / problem.total_area;
-    return change;
-}
-
-namespace {
 
 // The faces around those that change most: the border of their part, and the chart's, stay.
 PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::vector<Vec2>& uv,
@@ -156,9 +132,9 @@ PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::v
             inside[v] = 2;
     };
     for (std::size_t f = 0; f < whole.faces.size(); ++f)
-        if (std::abs(energy.change(jacobian(whole, uv, f).determinant())) > uneven)
+        if (std::abs(energy.change(jacobian(whole, uv, f).determinant())) > tuning.uneven)
             take(f);
-    for (int ring = 0; ring < rings; ++ring) {
+    for (int ring = 0; ring < tuning.moved_rings; ++ring) {
         for (std::uint8_t& mark : inside)
             mark = mark != 0 ? 1 : 0;
         for (std::size_t f = 0; f < whole.faces.size(); ++f) {
@@ -183,61 +159,73 @@ PartialProblem region_around_uneven(const FlatteningProblem& whole, const std::v
     return region;
 }
 
-void hold(const std::vector<std::uint8_t>& fixed, Positions& rows) {
-    for (std::size_t v = 0; v < fixed.size(); ++v)
-        if (fixed[v] != 0)
-            rows.row(static_cast<Eigen::Index>(v)).setZero();
-}
-
 void descend(const PartialProblem& region, const BalancedEnergy& energy, Positions& x,
              const Progress& progress) {
     ProjectedNewton newton(
         region.problem, region.fixed,
         [&](std::size_t f, double det) { return energy.curvature(region.problem, f, det); },
         energy.boundary_stiffness);
-    double value = energy.value(region.problem, x);
-    for (int i = 0; i < most_steps; ++i) {
+    const auto value_at = [&](const Positions& y) { return energy.value(region.problem, y); };
+    double value = value_at(x);
+    for (int i = 0; i < tuning.newton_steps; ++i) {
         progress.check();
         Positions gradient = energy.gradient(region.problem, x);
-        hold(region.fixed, gradient);
+        hold_fixed(region.fixed, gradient);
         Positions d = newton.direction(x, gradient);
-        hold(region.fixed, d);
-        const double decrease = (gradient.array() * d.array()).sum();
+        hold_fixed(region.fixed, d);
         const double before = value;
-        double step = std::min(1.0, safe_step * collapse_step(region.problem, x, d));
-        for (; decrease < 0.0 && step > smallest_step; step *= 0.5) {
-            const Positions next = x + step * d;
-            const double next_value = energy.value(region.problem, next);
-            if (next_value <= value + sufficient_decrease * step * decrease) {
-                x = next;
-                value = next_value;
-                break;
-            }
-        }
-        if (before - value < little_gain * (before - 1.0))
+        line_search(region.problem, value_at, d, (gradient.array() * d.array()).sum(), x, value);
+        if (before - value < tuning.excess_gain * (before - 1.0))
             return;
     }
 }
 
+// All stages, until no change of a face's area is above the bound.
+Positions balance(const PartialProblem& region, const std::vector<Vec2>& start, bool holds_boundary,
+                  BalancedEnergy& energy, const Progress& progress) {
+    Positions x = positions_of(start);
+    for (const Stage& stage : stages) {
+        energy.weight = stage.weight;
+        energy.boundary_stiffness = holds_boundary ? 0.0 : stage.stiffness;
+        descend(region, energy, x, progress);
+        if (energy.largest_change(region.problem, x) <= 1.0)
+            break;
+    }
+    return x;
+}
+
 } // namespace
+
+double AreaChange::largest() const {
+    return std::max({1.0 - least, most - 1.0, 1.0 - least / whole, most / whole - 1.0,
+                     least > 0.0 ? whole / least - 1.0 : infinite});
+}
+
+AreaChange measure_area_change(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    AreaChange change;
+    change.least = infinite;
+    change.most = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const double ratio = jacobian(problem, uv, f).determinant();
+        change.least = std::min(change.least, ratio);
+        change.most = std::max(change.most, ratio);
+    }
+    change.whole = map_area(problem, uv) / problem.total_area;
+    return change;
+}
 
 void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
                    const Progress& progress) {
-    if (is_even(problem, uv))
+    if (measure_area_change(problem, uv).largest() <= usual_area_change)
         return;
     BalancedEnergy energy(map_area(problem, uv) / problem.total_area);
     const PartialProblem region = region_around_uneven(problem, uv, energy);
     if (region.vertex.empty())
         return;
-    Positions x(region.problem.vertex_count, 2);
-    for (std::size_t v = 0; v < region.vertex.size(); ++v)
-        x.row(static_cast<Eigen::Index>(v)) = uv[region.vertex[v]].transpose();
-    for (const double strength : {1.0, 30.0}) {
-        energy.weight = strength * usual_weight;
-        descend(region, energy, x, progress);
-        if (energy.largest_change(region.problem, x) <= 1.0)
-            break;
-    }
+    std::vector<Vec2> start;
+    for (const Vertex v : region.vertex)
+        start.push_back(uv[v]);
+    const Positions x = balance(region, start, true, energy, progress);
     std::vector<Vec2> moved = uv;
     for (std::size_t v = 0; v < region.vertex.size(); ++v)
         moved[region.vertex[v]] = x.row(static_cast<Eigen::Index>(v)).transpose();
@@ -248,21 +236,7 @@ void balance_areas(const FlatteningProblem& problem, std::vector<Vec2>& uv,
 std::vector<Vec2> balance_with_boundary(const FlatteningProblem& problem,
                                         const std::vector<Vec2>& uv, const Progress& progress) {
     BalancedEnergy energy(1.0);
-    const PartialProblem region{problem, {}, {}};
-    Positions x(problem.vertex_count, 2);
-    for (std::size_t v = 0; v < uv.size(); ++v)
-        x.row(static_cast<Eigen::Index>(v)) = uv[v].transpose();
-    for (const double strength : {1.0, 30.0}) {
-        energy.weight = strength * usual_weight;
-        energy.boundary_stiffness = strength > 1.0 ? last_stiffness : stiffness;
-        descend(region, energy, x, progress);
-        if (energy.largest_change(problem, x) <= 1.0)
-            break;
-    }
-    std::vector<Vec2> moved;
-    for (Eigen::Index v = 0; v < x.rows(); ++v)
-        moved.emplace_back(x.row(v).transpose());
-    return moved;
+    return points_of(balance({problem, {}, {}}, uv, false, energy, progress));
 }
 
 } // namespace devseg::flatten

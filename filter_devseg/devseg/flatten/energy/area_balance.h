@@ -1,6 +1,11 @@
 // Evening out the areas of a map with a fixed boundary: the inside of LPFB maps for sewing.
 // A high power of each face's area change is minimised beside the symmetric Dirichlet energy, by
 // projected Newton steps.
+//
+// References
+//   [Wan08] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
+//           Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
+//           doi:10.1109/TVCG.2007.1067
 #pragma once
 
 #include <vector>
@@ -9,6 +14,9 @@
 #include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
+
+/// Changes of area up to this are usual for LPFB [Wan08, section 5], of a face and of a whole map.
+constexpr double usual_area_change = 0.1;
 
 /// How much the areas of faces change: in the plane over on the surface.
 struct AreaChange {

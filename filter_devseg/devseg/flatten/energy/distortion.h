@@ -1,5 +1,11 @@
-// The symmetric Dirichlet energy with its derivatives, per face and for a whole map.
+// The symmetric Dirichlet energy with its derivatives, per face and for a whole map; what its
+// minimisers share: Newton's directions with projected Hessians, and the line search.
 #pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -8,6 +14,12 @@
 namespace devseg::flatten {
 
 using Positions = Eigen::MatrixX2d; // #v by 2
+
+Positions positions_of(const std::vector<Vec2>& uv);
+std::vector<Vec2> points_of(const Positions& x);
+
+/// Sets the rows of vertices that are marked in `fixed` (#v, or empty) to zero.
+void hold_fixed(const std::vector<std::uint8_t>& fixed, Positions& rows);
 
 /// Jacobian of the map from the rest triangle of face f to the plane.
 inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const Positions& x,
@@ -31,5 +43,34 @@ Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& jacobian);
 
 /// The step along direction d at which the first triangle has no area left.
 double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d);
+
+/// Goes from x along d, whose product with the gradient is `slope`, as far as pays: before the
+/// first triangle would collapse, with the decrease of `energy` that Armijo's rule asks for. False
+/// where there is no such step; x and `energy` then stay.
+bool line_search(const FlatteningProblem& problem,
+                 const std::function<double(const Positions&)>& value, const Positions& d,
+                 double slope, Positions& x, double& energy);
+
+/// Of a face, by its number and det J: the second derivative, at least 0, of a further term of its
+/// energy; as all of ψ it is weighted by the face's area.
+using AreaCurvature = std::function<double(std::size_t face, double det)>;
+
+/// Directions −H⁻¹ g for the symmetric Dirichlet energy, with H the sum of the faces' projected
+/// Hessians. Each direction costs a sparse factorization; the order of elimination is found once.
+class ProjectedNewton {
+public:
+    /// Vertices that are marked in `fixed` (#v, may be empty) stay where they are.
+    /// `boundary_stiffness` k adds k Σ (length − own length)² / Σ A over the boundary edges.
+    ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
+                    AreaCurvature area_curvature = {}, double boundary_stiffness = 0.0);
+    ~ProjectedNewton();
+
+    /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
+    Positions direction(const Positions& x, const Positions& gradient);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 } // namespace devseg::flatten

@@ -1,6 +1,7 @@
 #include "devseg/flatten/energy/multilevel.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/LU>
@@ -8,26 +9,27 @@
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/vertex_relaxation.h"
 #include "devseg/mesh/coarsen.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-constexpr Index coarse_faces = 2000;
-constexpr double growth = 2.0; // vertices at the end of a level over those at its beginning
-constexpr int sweeps = 3;      // over all vertices at the end of a level
-constexpr int bisections = 60; // towards the middle of the kernel, which is valid
-constexpr std::size_t check_every = 4096; // vertices between two looks at the progress
-constexpr double least_room = 1e-2;       // area of a new face over that of its rest triangle
+struct Tuning {
+    int sweeps = 3;           // over all vertices at the end of a level
+    double least_room = 1e-2; // area of a new face over that of its rest triangle
+};
+constexpr Tuning tuning;
 
-constexpr double full_turn = 2.0 * pi;
+// Halvings of the way to the middle of the kernel, which is valid: more of them end there.
+constexpr int bisections = std::numeric_limits<double>::digits;
 
 class Refinement {
 public:
     Refinement(const Mesh& mesh, mesh::CoarseSurface coarse, std::vector<Vec2> uv)
         : mesh_(mesh), s_(std::move(coarse)), uv_(std::move(uv)), leaving_(mesh.points.size(), -1) {
         for (const HalfEdge h : mesh.all_half_edges())
-            if (s_.alive[h / 3] != 0)
+            if (s_.alive[face_of(h)] != 0)
                 leaving_[origin(h)] = h;
         for (const Vertex v : mesh.all_vertices())
             if (leaving_[v] >= 0)
@@ -36,14 +38,13 @@ public:
 
     bool done() const { return s_.collapses.empty(); }
 
-    // Puts vertices back until their number has grown by the factor `growth`.
+    // Puts vertices back until there are twice as many.
     void refine(const Progress& progress) {
-        const std::size_t wanted =
-            static_cast<std::size_t>(growth * static_cast<double>(alive_.size()));
+        Heartbeat heartbeat(progress);
+        const std::size_t wanted = 2 * alive_.size();
         while (!done() && alive_.size() < wanted) {
             insert(mesh::undo_collapse(s_));
-            if (alive_.size() % check_every == 0)
-                progress.check();
+            heartbeat();
         }
         // A level that would add little more is joined to this one.
         if (s_.collapses.size() < alive_.size() / 4)
@@ -54,19 +55,19 @@ public:
     // `rest` has the areas and cotangents of the full chart; other levels measure their own faces.
     void relax(const FlatteningProblem* rest, const Progress& progress) {
         measure(rest);
-        for (int i = 0; i < sweeps; ++i)
-            for (std::size_t k = 0; k < alive_.size(); ++k) {
-                if (k % check_every == 0)
-                    progress.check();
-                gather(alive_[k]);
-                uv_[alive_[k]] = relax_vertex(star_, uv_[alive_[k]]);
+        Heartbeat heartbeat(progress);
+        for (int i = 0; i < tuning.sweeps; ++i)
+            for (const Vertex v : alive_) {
+                heartbeat();
+                gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[v], star_);
+                uv_[v] = relax_vertex(star_, uv_[v]);
             }
     }
 
     std::vector<Vec2> take() { return std::move(uv_); }
 
 private:
-    Index origin(HalfEdge h) const { return s_.faces[h / 3][h % 3]; }
+    Vertex origin(HalfEdge h) const { return s_.faces[face_of(h)][corner_of(h)]; }
 
     void insert(HalfEdge h) {
         const Vertex v = origin(h);
@@ -93,9 +94,7 @@ private:
 
     bool has_room(const Vec2& p) const {
         for (const VertexStar::Face& f : star_.faces) {
-            const Vec2 a = f.from - p;
-            const Vec2 b = f.to - p;
-            if (!(a.x() * b.y() - a.y() * b.x() > 2.0 * least_room * f.area))
+            if (!(plane::cross(f.from - p, f.to - p) > 2.0 * tuning.least_room * f.area))
                 return false;
         }
         return true;
@@ -107,18 +106,18 @@ private:
         star_.faces.clear();
         ring_.clear();
         double turn = 0.0;
-        Index first = leaving_[v];
+        HalfEdge first = leaving_[v];
         while (s_.twin[first] >= 0) { // to the end of an open star, or once around
             first = Mesh::next(s_.twin[first]);
             if (first == leaving_[v])
                 break;
         }
         const Vec3& p = mesh_.points[v];
-        Index k = first;
+        HalfEdge k = first;
         bool closed = false;
         while (true) {
-            const Index a = origin(Mesh::next(k));
-            const Index b = origin(Mesh::previous(k));
+            const Vertex a = origin(Mesh::next(k));
+            const Vertex b = origin(Mesh::previous(k));
             const Vec3 ea = mesh_.points[a] - p;
             const Vec3 eb = mesh_.points[b] - p;
             ring_.push_back({turn, ea.norm(), uv_[a]});
@@ -128,7 +127,7 @@ private:
             face.to = uv_[b];
             set_rest(face, p, mesh_.points[a], mesh_.points[b]);
             star_.faces.push_back(face);
-            const Index next = s_.twin[Mesh::previous(k)];
+            const HalfEdge next = s_.twin[Mesh::previous(k)];
             if (next < 0) {
                 ring_.push_back({turn, eb.norm(), uv_[b]});
                 break;
@@ -141,12 +140,12 @@ private:
         }
         if (closed && turn > 0.0)
             for (Spoke& spoke : ring_)
-                spoke.angle *= full_turn / turn;
+                spoke.angle *= 2.0 * pi / turn;
     }
 
     static void set_rest(VertexStar::Face& face, const Vec3& p, const Vec3& a, const Vec3& b) {
-        const double lengths[] = {(a - p).norm(), (b - a).norm(), (p - b).norm()};
-        const RestTriangle rest = make_rest_triangle({lengths[0], lengths[1], lengths[2]}, 0.0);
+        const RestTriangle rest =
+            make_rest_triangle({(a - p).norm(), (b - a).norm(), (p - b).norm()}, 0.0);
         face.area = rest.area;
         face.cot_apex = rest.cotangent[1];
         face.cot_from = rest.cotangent[2];
@@ -193,10 +192,6 @@ private:
         }
     }
 
-    void gather(Vertex v) {
-        gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[v], star_);
-    }
-
     struct Spoke {
         double angle;
         double length;
@@ -206,8 +201,8 @@ private:
     const Mesh& mesh_; // of the chart alone
     mesh::CoarseSurface s_;
     std::vector<Vec2> uv_;
-    std::vector<Index> leaving_; // #v: a half-edge that leaves the vertex, −1 while it is removed
-    std::vector<Index> alive_;
+    std::vector<HalfEdge> leaving_; // #v: one that leaves the vertex, −1 while it is removed
+    std::vector<Vertex> alive_;
     std::vector<double> area_;
     std::vector<std::array<double, 3>> cotangent_;
     VertexStar star_;
@@ -223,7 +218,7 @@ std::vector<Vec2> flatten_multilevel(
     const Progress& progress) {
     const Mesh local = atlas::mesh_of(mesh, surface);
     mesh::CoarseSurface coarse =
-        mesh::coarsen(local.points, local.faces, local.twin, coarse_faces, progress);
+        mesh::coarsen(local.points, local.faces, local.twin, coarse_chart_faces, progress);
     const mesh::CoarseMesh small = mesh::extract_coarse_mesh(local, coarse);
     std::vector<Index> all(small.mesh.faces.size());
     std::iota(all.begin(), all.end(), 0);

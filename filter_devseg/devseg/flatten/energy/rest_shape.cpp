@@ -62,6 +62,8 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     FlatteningProblem problem;
     problem.vertex_count = surface.vertex_count();
     problem.faces = surface.corners;
+    problem.twin = surface.twin;
+    problem.model_size = std::sqrt(mesh.total_area);
     for (const HalfEdge h : surface.loops.front()) {
         problem.boundary.push_back(surface.origin(h));
         problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));
@@ -71,11 +73,11 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
         longest = std::max(longest, mesh.edge_length(surface.mesh_half_edge(h)));
     // Faces whose corners coincide get a size as well: a billionth of the chart's longest edge, and
     // one whose fourth power does not vanish where the chart is a point.
-    const double floor = std::max(1e-9 * longest, 1e-60 * std::sqrt(mesh.total_area));
+    const double floor = std::max(1e-9 * longest, 1e-60 * problem.model_size);
     for (const Face f : surface.all_faces()) {
         std::array<double, 3> length{};
-        for (Index k = 0; k < 3; ++k)
-            length[k] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));
+        for (const HalfEdge h : half_edges_of(f))
+            length[corner_of(h)] = mesh.edge_length(surface.mesh_half_edge(h));
         const RestTriangle triangle = make_rest_triangle(length, floor);
         const Eigen::Matrix2d& e = triangle.edges;
         Eigen::Matrix2d inverse;
@@ -83,6 +85,7 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
         problem.edges.push_back(e);
         problem.inverse.push_back(inverse);
         problem.area.push_back(triangle.area);
+        problem.given_area.push_back(mesh.face_areas[surface.face[f]]);
         problem.total_area += triangle.area;
         problem.cotangent.push_back(triangle.cotangent);
     }

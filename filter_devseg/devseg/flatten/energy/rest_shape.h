@@ -16,13 +16,21 @@ namespace devseg::flatten {
 struct FlatteningProblem {
     Index vertex_count = 0;
     std::vector<Triangle> faces;          // #f local vertices
+    std::vector<HalfEdge> twin;           // 3 #f: the opposite half-edge, −1 on the boundary
     std::vector<Index> boundary;          // vertices of the only boundary loop, counterclockwise
     std::vector<double> boundary_edge;    // length of the edge from boundary[i] to boundary[i + 1]
     std::vector<Eigen::Matrix2d> edges;   // #f: columns are the edges 0→1 and 0→2 of the face
     std::vector<Eigen::Matrix2d> inverse; // #f: the inverse of `edges`
     std::vector<double> area;             // #f
     std::vector<std::array<double, 3>> cotangent; // #f: of the angle opposite to edge k → k + 1
+    std::vector<double> given_area;               // #f: on the mesh, before needles are widened
     double total_area = 0.0;
+    double model_size = 0.0; // root of the whole mesh's area, which gaps and tolerances refer to
+
+    /// Corner k of face f as it is laid into the plane.
+    Vec2 corner(Face f, Index k) const {
+        return k == 0 ? Vec2(0.0, 0.0) : Vec2(edges[f].col(k - 1));
+    }
 };
 
 /// One triangle laid into the plane.

@@ -12,23 +12,44 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
-#include "devseg/flatten/energy/distortion.h"
 #include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/energy/projected_newton.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-constexpr std::size_t history = 6;           // pairs that L-BFGS remembers
-constexpr double sufficient_decrease = 1e-4; // Armijo's constant
-constexpr double safe_step = 0.8; // share of the step at which the first triangle collapses
-constexpr double smallest_step = 1e-12;
-constexpr int stall_window = 10;      // steps over which progress is judged
-constexpr double locked = 1e20;       // stiffness of vertices that stay: their steps vanish
-constexpr double near_isometry = 1.2; // energy below which one factorization is enough
-constexpr double little_gain = 1e-3;  // share of the energy that a Newton step must gain
-constexpr double steps_to_come = 4.0; // gains like the last one that a descent may still hope for
+struct Tuning {
+    std::size_t history = 6;       // pairs that L-BFGS remembers
+    std::size_t stall_window = 10; // steps over which progress is judged
+    double immovable = 1e20;       // stiffness of vertices that stay: their steps vanish
+    double near_isometry = 1.2;    // energy below which one factorization is enough
+    double newton_gain = 1e-3;     // share of the energy that a Newton step must gain
+    double gains_to_come = 4.0;    // like the last one, that a descent may still hope for
+};
+constexpr Tuning tuning;
+
+// The distance of a vertex to the left of the line of its edge, with its derivatives.
+struct SignedDistance {
+    double value = 0.0;
+    Vec2 by_vertex, by_from, by_to;
+};
+
+SignedDistance signed_distance(const Contact& contact, const Positions& x) {
+    const Vec2 p = x.row(contact.vertex).transpose();
+    const Vec2 a = x.row(contact.from).transpose();
+    const Vec2 b = x.row(contact.to).transpose();
+    const Vec2 direction = (b - a).normalized();
+    const Vec2 left(-direction.y(), direction.x());
+    const double length = (b - a).norm();
+    const double along = (p - a).dot(direction) / length; // 0 at `from`, 1 at `to`
+    SignedDistance d;
+    d.value = (p - a).dot(left);
+    // A motion of the edge's ends moves the foot of the vertex in proportion.
+    d.by_vertex = left;
+    d.by_from = -(1.0 - along) * left;
+    d.by_to = -along * left;
+    return d;
+}
 
 // The cotangent Laplacian of the rest shape, made definite by a shift far below its own size: the
 // energy's Hessian at an isometry, up to a factor and the rotations.
@@ -50,12 +71,12 @@ public:
             }
         double shift = 1e-8 / problem.total_area;
         for (Vertex v = 0; v < problem.vertex_count; ++v)
-            entries.emplace_back(v, v, fixed.empty() || fixed[v] == 0 ? shift : locked);
+            entries.emplace_back(v, v, fixed.empty() || fixed[v] == 0 ? shift : tuning.immovable);
         Eigen::SparseMatrix<double> matrix(problem.vertex_count, problem.vertex_count);
         matrix.setFromTriplets(entries.begin(), entries.end());
         solver_.compute(matrix);
         // The cotangents of needles swallow the shift.
-        for (; solver_.info() != Eigen::Success && shift < locked; shift *= 1e3) {
+        for (; solver_.info() != Eigen::Success && shift < tuning.immovable; shift *= 1e3) {
             matrix.diagonal().array() += shift;
             solver_.factorize(matrix);
         }
@@ -117,7 +138,7 @@ public:
         const double curvature = dot(step, change);
         if (!(curvature > 0.0))
             return; // the energy is not convex here: the pair would spoil the model
-        if (pairs_.size() == history)
+        if (pairs_.size() == tuning.history)
             pairs_.pop_front();
         pairs_.push_back({step, change, curvature});
     }
@@ -148,27 +169,16 @@ public:
 
     /// Goes along a descent direction as far as pays; false if there is no such step.
     bool advance(Positions d) {
-        hold_fixed(d);
-        const double decrease = dot(gradient_, d);
-        if (!(decrease < 0.0))
+        hold_fixed(fixed_, d);
+        const Positions start = x_;
+        const auto energy_at = [this](const Positions& y) { return value(y); };
+        if (!line_search(problem_, energy_at, d, dot(gradient_, d), x_, energy_))
             return false;
-        double step = std::min(1.0, safe_step * collapse_step(problem_, x_, d));
-        for (; step > smallest_step; step *= 0.5) {
-            Positions next = x_ + step * d;
-            const double next_energy = value(next);
-            if (next_energy > energy_ + sufficient_decrease * step * decrease)
-                continue;
-            if (!(next_energy < energy_))
-                return false;
-            Positions next_gradient = slope(next);
-            step_ = next - x_;
-            change_ = next_gradient - gradient_;
-            x_ = std::move(next);
-            gradient_ = std::move(next_gradient);
-            energy_ = next_energy;
-            return true;
-        }
-        return false;
+        Positions gradient = slope(x_);
+        step_ = x_ - start;
+        change_ = gradient - gradient_;
+        gradient_ = std::move(gradient);
+        return true;
     }
     const Positions& last_step() const { return step_; }
     const Positions& last_change() const { return change_; } // of the gradient
@@ -178,13 +188,8 @@ private:
     Positions slope(const Positions& y) const {
         Positions g = distortion_gradient(problem_, y);
         penalty_.add_gradient(y, g);
-        hold_fixed(g);
+        hold_fixed(fixed_, g);
         return g;
-    }
-    void hold_fixed(Positions& rows) const {
-        for (std::size_t v = 0; v < fixed_.size(); ++v)
-            if (fixed_[v] != 0)
-                rows.row(static_cast<Eigen::Index>(v)).setZero();
     }
 
     const FlatteningProblem& problem_;
@@ -198,24 +203,24 @@ private:
 };
 
 bool is_hopeless(double energy, double last_gain, const SymmetricDirichletOptions& options) {
-    return energy - steps_to_come * last_gain > options.give_up_energy;
+    return energy - tuning.gains_to_come * last_gain > options.give_up_energy;
 }
 
 // Newton's method until the map is near enough to an isometry for the Laplacian to be a good model
 // of the Hessian, or until it gains little.
 void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
               const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
-    if (descent.energy() < near_isometry)
+    if (descent.energy() < tuning.near_isometry)
         return;
     ProjectedNewton newton(problem, options.fixed);
-    while (result.iterations < options.max_iterations && descent.energy() > near_isometry) {
+    while (result.iterations < options.max_iterations && descent.energy() > tuning.near_isometry) {
         progress.check();
         const double before = descent.energy();
         if (!descent.advance(newton.direction(descent.x(), descent.gradient())))
             return;
         ++result.iterations;
         const double gain = before - descent.energy();
-        if (gain < little_gain * before || is_hopeless(descent.energy(), gain, options))
+        if (gain < tuning.newton_gain * before || is_hopeless(descent.energy(), gain, options))
             return;
     }
 }
@@ -237,7 +242,7 @@ void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& o
         if (is_hopeless(descent.energy(), before - descent.energy(), options))
             return;
         recent.push_back(descent.energy());
-        if (recent.size() > stall_window) {
+        if (recent.size() > tuning.stall_window) {
             result.converged =
                 recent.front() - descent.energy() < options.relative_tolerance * descent.energy();
             recent.pop_front();
@@ -247,6 +252,28 @@ void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& o
 
 } // namespace
 
+double ContactPenalty::energy(const Positions& x) const {
+    double sum = 0.0;
+    for (const Contact& contact : contacts) {
+        const double depth = signed_distance(contact, x).value + gap;
+        if (depth > 0.0)
+            sum += depth * depth;
+    }
+    return 0.5 * stiffness * sum;
+}
+
+void ContactPenalty::add_gradient(const Positions& x, Positions& gradient) const {
+    for (const Contact& contact : contacts) {
+        const SignedDistance d = signed_distance(contact, x);
+        const double force = stiffness * (d.value + gap);
+        if (force <= 0.0)
+            continue;
+        gradient.row(contact.vertex) += force * d.by_vertex.transpose();
+        gradient.row(contact.from) += force * d.by_from.transpose();
+        gradient.row(contact.to) += force * d.by_to.transpose();
+    }
+}
+
 SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& start,
                                                       const SymmetricDirichletOptions& options,
@@ -254,26 +281,17 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
                                                       const ContactPenalty& penalty) {
     if (count_flips(problem, start) > 0)
         throw NumericalFailure("expected a start without flipped faces");
-    Positions x(problem.vertex_count, 2);
-    for (Vertex v = 0; v < problem.vertex_count; ++v)
-        x.row(v) = start[v].transpose();
-
     SymmetricDirichletResult result;
-    Descent descent(problem, options.fixed, penalty, std::move(x));
+    Descent descent(problem, options.fixed, penalty, positions_of(start));
     approach(problem, options, progress, descent, result);
     polish(problem, options, progress, descent, result);
     result.energy = distortion(problem, descent.x());
-    result.uv.resize(at(problem.vertex_count));
-    for (Vertex v = 0; v < problem.vertex_count; ++v)
-        result.uv[v] = descent.x().row(v).transpose();
+    result.uv = points_of(descent.x());
     return result;
 }
 
 double symmetric_dirichlet_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    Positions x(problem.vertex_count, 2);
-    for (Vertex v = 0; v < problem.vertex_count; ++v)
-        x.row(v) = uv[v].transpose();
-    return distortion(problem, x);
+    return distortion(problem, positions_of(uv));
 }
 
 } // namespace devseg::flatten

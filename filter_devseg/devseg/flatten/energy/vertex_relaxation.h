@@ -1,10 +1,12 @@
-// Moving one vertex at a time to where the symmetric Dirichlet energy of its faces is least.
+// Moving one vertex at a time to where the symmetric Dirichlet energy of its faces is least, and
+// single faces that a map stretches far more than the rest.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
+#include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
 
@@ -45,5 +47,19 @@ Vec2 relax_vertex(const VertexStar& star, const Vec2& start);
 /// the kernel of the polygon around the vertex. Of an open star, where the kernel has no end, it
 /// stays within the bounds of the star. Falls back to `hint` where rounding leaves nothing.
 Vec2 kernel_point(const VertexStar& star, const Vec2& hint);
+
+/// Lowers the largest stretch where few faces stand out: the vertices around them are relaxed under
+/// Σ A exp(s (ψ − 1)), with ψ the symmetric Dirichlet density, which shares the stretch out among
+/// the faces nearby. No face flips; all other vertices stay. The map stays as it is if that would
+/// cost more than a small part of its distortion. With `hold_boundary` the outline stays as well.
+/// uv is #v.
+void relieve_peaks(const FlatteningProblem& problem, bool hold_boundary, std::vector<Vec2>& uv,
+                   const Progress& progress);
+
+/// Brings the vertices around faces that stand out to the least symmetric Dirichlet energy, all
+/// together, while the rest of the map stays: for maps that were relaxed vertex by vertex, which
+/// leaves needles behind. No face flips, and the energy does not rise.
+void settle_peaks(const FlatteningProblem& problem, std::vector<Vec2>& uv,
+                  const Progress& progress);
 
 } // namespace devseg::flatten

@@ -2,8 +2,6 @@
 //   [Wan08] C. C. L. Wang: Computing Length-Preserved Free Boundary for Quasi-Developable Mesh
 //           Segmentation. IEEE Transactions on Visualization and Computer Graphics 14(1), 2008.
 //           doi:10.1109/TVCG.2007.1067
-//   [Flo03] M. S. Floater: Mean Value Coordinates. Computer Aided Geometric Design 20(1), 2003.
-//           doi:10.1016/S0167-8396(03)00002-5
 #include "devseg/flatten/maps/lpfb.h"
 
 #include <algorithm>
@@ -13,18 +11,22 @@
 #include <Eigen/SparseCholesky>
 
 #include "devseg/base/errors.h"
+#include "devseg/flatten/energy/harmonic.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-constexpr double closed = 1e-12;       // share of a boundary's length that may be left open
-constexpr double rounding = 1e-15;     // and what each edge may add to it
-constexpr double smallest_step = 1e-6; // of the line search
-// Vertices at mean-value weights at most. On the charts of 22 models, all that this mended had
-// fewer; on the others, the boundary is at fault.
-constexpr Index most_mended = 32;
+struct Tuning {
+    double gap = 1e-12;               // share of a boundary's length that may be left open
+    double gap_of_edge = 1e-15;       // and what each edge may add to it
+    double shortest_step = 1e-6;      // of the line search
+    double pull_shift = 1e-12;        // keeps straight polygons solvable
+    double least_inner_weight = 0.02; // blunt triangles would turn others over
+};
+constexpr Tuning tuning;
 
 // The three conditions of a closed boundary [Wan08], as a share of its length where they are
 // lengths, and their derivatives: Σ (π − θ) = 2π, Σ l cos φ = 0, Σ l sin φ = 0, where edge i has
@@ -60,7 +62,7 @@ Eigen::VectorXd least_norm(const Eigen::Matrix3Xd& gradient, const Eigen::Vector
 // violated, which a small enough one achieves wherever their gradients are independent.
 bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta, int max_rounds,
                          int& rounds, const Progress& progress) {
-    const double enough = closed + rounding * static_cast<double>(theta.size());
+    const double enough = tuning.gap + tuning.gap_of_edge * static_cast<double>(theta.size());
     Closure closure = closure_of(lengths, theta);
     for (int k = 0; k < max_rounds && closure.value.norm() > enough; ++k, ++rounds) {
         progress.check();
@@ -72,9 +74,9 @@ bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta,
             share *= 0.5;
             theta = from + share * step;
             closure = closure_of(lengths, theta);
-        } while (share > smallest_step &&
+        } while (share > tuning.shortest_step &&
                  !(closure.value.norm() < (1.0 - 0.5 * share) * violation));
-        if (share <= smallest_step)
+        if (share <= tuning.shortest_step)
             return false;
     }
     return closure.value.norm() <= enough;
@@ -100,111 +102,6 @@ bool close_by_newton(const Eigen::VectorXd& lengths, const Eigen::VectorXd& targ
     }
     return false;
 }
-
-Vec2 rest_corner(const FlatteningProblem& problem, std::size_t f, std::size_t c) {
-    return c == 0 ? Vec2(0.0, 0.0) : Vec2(problem.edges[f].col(c == 1 ? 0 : 1));
-}
-
-// Inner vertices in balance between their neighbours, with the boundary where it is.
-class Interior {
-public:
-    Interior(const FlatteningProblem& problem, std::vector<Vec2>& uv) : problem_(problem) {
-        slot_.assign(uv.size(), 0);
-        for (const Vertex v : problem.boundary)
-            slot_[v] = -1;
-        for (Index& s : slot_)
-            if (s >= 0)
-                s = unknowns_++;
-        if (unknowns_ > 0)
-            balance(uv);
-    }
-
-    // Puts the inner vertices of flipped faces at mean-value weights [Flo03]. Rows S of the system
-    // A x = b become M x = r. With Z the columns S of A⁻¹, x + Z c meets all other rows for every
-    // c, and the new ones for (M Z) c = r − M x. Returns the number of rows, 0 if nothing is done.
-    Index mend(std::vector<Vec2>& uv) const {
-        std::vector<Index> row(slot_.size(), -1); // #v
-        Index count = 0;
-        for (const Triangle& t : problem_.faces)
-            if (!(orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0))
-                for (const Vertex v : t)
-                    if (slot_[v] >= 0 && row[v] < 0)
-                        row[v] = count++;
-        if (count == 0 || count > most_mended)
-            return 0;
-        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(unknowns_, count); // Z
-        for (std::size_t v = 0; v < row.size(); ++v)
-            if (row[v] >= 0)
-                columns(slot_[v], row[v]) = 1.0;
-        columns = Eigen::MatrixXd(solver_.solve(columns));
-        Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count, count); // M Z
-        Eigen::MatrixX2d missing = Eigen::MatrixX2d::Zero(count, 2);  // r − M x
-        for (std::size_t f = 0; f < problem_.faces.size(); ++f)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vertex v = problem_.faces[f][k];
-                if (row[v] < 0)
-                    continue;
-                const double half =
-                    std::tan(0.5 * std::atan2(1.0, problem_.cotangent[f][(k + 1) % 3]));
-                for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
-                    const Index u = problem_.faces[f][other];
-                    const Vec2 edge = rest_corner(problem_, f, other) - rest_corner(problem_, f, k);
-                    const double w = half / edge.norm();
-                    missing.row(row[v]) += w * (uv[u] - uv[v]).transpose();
-                    system.row(row[v]) += w * columns.row(slot_[v]);
-                    if (slot_[u] >= 0)
-                        system.row(row[v]) -= w * columns.row(slot_[u]);
-                }
-            }
-        const Eigen::MatrixX2d change = columns * system.partialPivLu().solve(missing);
-        for (std::size_t v = 0; v < uv.size(); ++v)
-            if (slot_[v] >= 0)
-                uv[v] += change.row(slot_[v]).transpose();
-        return change.allFinite() ? count : 0;
-    }
-
-private:
-    // The cotangent system; only its lower half is stored.
-    void balance(std::vector<Vec2>& uv) {
-        Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(unknowns_);
-        Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(unknowns_, 2);
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(3 * problem_.faces.size() + at(unknowns_));
-        for (std::size_t f = 0; f < problem_.faces.size(); ++f)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double w = problem_.cotangent[f][k];
-                const Vertex v = problem_.faces[f][k];
-                const Vertex u = problem_.faces[f][(k + 1) % 3];
-                const Index i = slot_[v];
-                const Index j = slot_[u];
-                for (const Index own : {i, j})
-                    if (own >= 0)
-                        diagonal[own] += w;
-                if (i >= 0 && j >= 0)
-                    entries.emplace_back(std::max(i, j), std::min(i, j), -w);
-                else if (i >= 0 || j >= 0)
-                    rhs.row(std::max(i, j)) += w * uv[i >= 0 ? u : v].transpose();
-            }
-        for (Index i = 0; i < unknowns_; ++i)
-            entries.emplace_back(i, i, diagonal[i]);
-        Eigen::SparseMatrix<double> matrix(unknowns_, unknowns_);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        solver_.compute(matrix);
-        if (solver_.info() == Eigen::Success)
-            rhs = Eigen::MatrixX2d(solver_.solve(rhs));
-        if (solver_.info() != Eigen::Success || !rhs.allFinite())
-            throw NumericalFailure("expected solvable equations for the inside of a chart, found a "
-                                   "singular system");
-        for (std::size_t v = 0; v < uv.size(); ++v)
-            if (slot_[v] >= 0)
-                uv[v] = rhs.row(slot_[v]).transpose();
-    }
-
-    const FlatteningProblem& problem_;
-    std::vector<Index> slot_; // #v: number of the unknown, −1 on the boundary
-    Index unknowns_ = 0;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-};
 
 } // namespace
 
@@ -253,17 +150,17 @@ std::vector<double> boundary_angles(const FlatteningProblem& problem,
     for (std::size_t i = 0; i < problem.boundary.size(); ++i)
         place[problem.boundary[i]] = static_cast<Index>(i);
     std::vector<double> angles(problem.boundary.size(), 0.0);
-    for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto corner = [&](std::size_t k) {
-                return map.empty() ? rest_corner(problem, f, k) : map[problem.faces[f][k]];
+    for (Face f = 0; f < static_cast<Index>(problem.faces.size()); ++f)
+        for (Index c = 0; c < 3; ++c) {
+            const auto corner = [&](Index k) {
+                return map.empty() ? problem.corner(f, k) : map[problem.faces[f][k]];
             };
             const Index i = place[problem.faces[f][c]];
             if (i < 0)
                 continue;
             const Vec2 p = corner((c + 1) % 3) - corner(c);
             const Vec2 q = corner((c + 2) % 3) - corner(c);
-            angles[i] += std::atan2(p.x() * q.y() - p.y() * q.x(), p.dot(q));
+            angles[i] += std::atan2(plane::cross(p, q), p.dot(q));
         }
     return angles;
 }
@@ -276,7 +173,7 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<doub
     for (std::size_t i = 0; i < problem.boundary.size(); ++i)
         result.uv[problem.boundary[i]] = result.boundary.points[i];
     progress.check();
-    const Interior interior(problem, result.uv);
+    const HarmonicMap interior(problem, result.uv);
     result.flips = count_flips(problem, result.uv);
     progress.check();
     std::vector<Vec2> uv = result.uv;
@@ -293,6 +190,73 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<doub
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& options,
                         const Progress& progress) {
     return flatten_lpfb(problem, boundary_angles(problem), options, progress);
+}
+
+std::optional<std::vector<Vec2>> restore_lengths(std::vector<Vec2> points,
+                                                 const std::vector<double>& lengths,
+                                                 const Progress& progress) {
+    const auto count = static_cast<Index>(points.size());
+    const auto next = [&](Index i) { return i + 1 < count ? i + 1 : 0; };
+    std::vector<Vec2> direction(points.size());
+    Eigen::VectorXd excess(count);
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    for (int step = 0; step < LpfbOptions{}.max_rounds; ++step) {
+        progress.check();
+        bool is_settled = true;
+        for (Index i = 0; i < count; ++i) {
+            const Vec2 edge = points[next(i)] - points[i];
+            if (!(edge.norm() > 0.0))
+                return std::nullopt;
+            direction[i] = edge.normalized();
+            excess[i] = edge.norm() - lengths[i];
+            is_settled = is_settled && std::abs(excess[i]) <= constraint_met * lengths[i];
+        }
+        if (is_settled)
+            return points;
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Index i = 0; i < count; ++i) {
+            const double turn = -direction[i].dot(direction[next(i)]);
+            entries.emplace_back(i, i, 2.0 + tuning.pull_shift);
+            entries.emplace_back(i, next(i), turn);
+            entries.emplace_back(next(i), i, turn);
+        }
+        Eigen::SparseMatrix<double> matrix(count, count);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        if (step == 0)
+            solver.analyzePattern(matrix);
+        solver.factorize(matrix);
+        const Eigen::VectorXd pull = solver.solve(excess);
+        if (solver.info() != Eigen::Success || !pull.allFinite())
+            return std::nullopt;
+        for (Index i = 0; i < count; ++i) {
+            points[i] += pull[i] * direction[i];
+            points[next(i)] -= pull[i] * direction[i];
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& problem,
+                                                      const std::vector<Vec2>& uv,
+                                                      const Progress& progress) {
+    std::vector<Vec2> boundary;
+    for (const Vertex v : problem.boundary)
+        boundary.push_back(uv[v]);
+    const auto restored = restore_lengths(boundary, problem.boundary_edge, progress);
+    if (!restored)
+        return std::nullopt;
+    std::vector<Vec2> moves(uv.size(), Vec2::Zero());
+    for (std::size_t i = 0; i < boundary.size(); ++i)
+        moves[problem.boundary[i]] = (*restored)[i] - boundary[i];
+    HarmonicMap(problem, moves,
+                [](double cotangent) { return std::max(tuning.least_inner_weight, cotangent); });
+    std::vector<Vec2> result = uv;
+    for (std::size_t v = 0; v < result.size(); ++v)
+        result[v] += moves[v];
+    // Exactly, not through the rounding of a difference.
+    for (std::size_t i = 0; i < boundary.size(); ++i)
+        result[problem.boundary[i]] = (*restored)[i];
+    return result;
 }
 
 } // namespace devseg::flatten

@@ -1,7 +1,13 @@
 // Length-preserved free boundary: flattening that keeps every boundary edge at its length, so that
 // both sides of a seam stay equally long.
+//
+// References
+//   R. Goldenthal, D. Harmon, R. Fattal, M. Bercovier, E. Grinspun: Efficient Simulation of
+//   Inextensible Cloth. ACM Transactions on Graphics 26(3), 2007. doi:10.1145/1276377.1276438 (the
+//   fast projection of restore_lengths)
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "devseg/base/progress.h"
@@ -59,5 +65,18 @@ LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& opt
 /// give the map's seams their lengths back, where the angles on the surface cross the boundary.
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<double>& targets,
                         const LpfbOptions& options, const Progress& progress);
+
+/// The closed polygon near `points` with edge i of length lengths[i], from point i to i + 1, by
+/// Newton steps on the lengths, each the shortest move of the points. Nothing where the steps do
+/// not converge.
+std::optional<std::vector<Vec2>> restore_lengths(std::vector<Vec2> points,
+                                                 const std::vector<double>& lengths,
+                                                 const Progress& progress);
+
+/// The map near `uv` (#v) with boundary edges of their lengths on the surface: the boundary's
+/// displacement is harmonic inside. It may have flips. Nothing where there is no such boundary.
+std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& problem,
+                                                      const std::vector<Vec2>& uv,
+                                                      const Progress& progress);
 
 } // namespace devseg::flatten

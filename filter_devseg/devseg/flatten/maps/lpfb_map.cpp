@@ -3,44 +3,42 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/base/errors.h"
 #include "devseg/flatten/energy/area_balance.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/arap.h"
-#include "devseg/flatten/maps/lscm.h"
-#include "devseg/flatten/maps/seam_lengths.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-constexpr double most_stretch = 2.0;
-// Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
-constexpr double harmonic_is_enough = 1.02;
-constexpr int isometric_steps = 12; // a start: a few are enough
+struct Tuning {
+    double most_l2_stretch = 2.0; // [Wan08, section 5]
+    // Symmetric Dirichlet energy below which the harmonic inside of an LPFB map stays as it is.
+    double harmonic_is_enough = 1.02;
+    int isometric_steps = 12; // a start: a few are enough
+};
+constexpr Tuning tuning;
 
 double polygon_area(const std::vector<Vec2>& points) {
     double twice = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec2& p = points[i];
-        const Vec2& q = points[i + 1 < points.size() ? i + 1 : 0];
-        twice += p.x() * q.y() - p.y() * q.x();
-    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+        twice += plane::cross(points[i], points[i + 1 < points.size() ? i + 1 : 0]);
     return 0.5 * twice;
 }
 
 bool keeps_area(const FlatteningProblem& problem, double area) {
-    return std::abs(area / problem.total_area - 1.0) <= lpfb_area_change;
+    return std::abs(area / problem.total_area - 1.0) <= usual_area_change;
 }
 
 // The map, if it keeps the conditions.
 std::optional<LpfbMap> keeping(const atlas::ChartSurface& surface, std::optional<LpfbMap> map,
                                double tolerance) {
-    if (map &&
-        (map->l2_stretch > most_stretch || !overlapping_pairs(surface, map->uv, tolerance).empty()))
+    if (map && (map->l2_stretch > tuning.most_l2_stretch ||
+                !overlapping_pairs(surface, map->uv, tolerance).empty()))
         map.reset();
     return map;
 }
@@ -84,18 +82,33 @@ std::optional<LpfbMap> map_beside(const FlatteningProblem& problem,
     return keeping(surface, settle_lpfb(problem, std::move(lpfb), progress), tolerance);
 }
 
+// The map beside a nearly isometric one whose areas were evened out while its boundary bends.
+std::optional<LpfbMap> bent_map(const FlatteningProblem& problem,
+                                const atlas::ChartSurface& surface, double tolerance,
+                                const SewingMapOptions& options, const Progress& progress) {
+    const auto overlaps = [&](const std::vector<Vec2>& uv, double share) {
+        return options.give_up_overlap && overlapping_share(surface, uv, tolerance) > share;
+    };
+    const std::vector<Vec2> isometric =
+        nearly_isometric_map(problem, options.give_up_energy, progress);
+    if (isometric.empty() || overlaps(isometric, options.give_up_overlap.value_or(0.0)))
+        return std::nullopt;
+    const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
+    if (overlaps(even, 0.0))
+        return std::nullopt;
+    return map_beside(problem, surface, even, tolerance, progress);
+}
+
 } // namespace
 
 std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
                                        const Progress& progress) {
-    std::vector<Vec2> start = flatten_lscm(problem);
-    if (count_flips(problem, start) > 0)
-        start = flatten_tutte(problem);
+    std::vector<Vec2> start = simple_map(problem);
     if (count_flips(problem, start) > 0)
         return {};
     scale_to_area(problem, start);
     ArapOptions options;
-    options.max_rounds = isometric_steps;
+    options.max_rounds = tuning.isometric_steps;
     ArapResult map = minimise_arap(problem, start, options, progress);
     if (map.energy > give_up_energy || map.flips > 0)
         return {};
@@ -108,7 +121,7 @@ std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult 
         return std::nullopt;
     LpfbMap map;
     map.uv = std::move(lpfb.uv);
-    if (symmetric_dirichlet_energy(problem, map.uv) > harmonic_is_enough) {
+    if (symmetric_dirichlet_energy(problem, map.uv) > tuning.harmonic_is_enough) {
         SymmetricDirichletOptions options;
         options.fixed.assign(map.uv.size(), 0);
         for (const Vertex v : problem.boundary)
@@ -124,36 +137,17 @@ std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult 
 std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
                                   const atlas::ChartSurface& surface, double tolerance,
                                   const SewingMapOptions& options, const Progress& progress) {
-    std::optional<LpfbMap> best;
-    try {
-        best = map_near(problem, surface, boundary_angles(problem), tolerance, progress);
-    } catch (const NumericalFailure&) { // the other angles may have a solution
-    }
     const auto is_enough = [&](const std::optional<LpfbMap>& map) {
         return map && map->area_change <= options.enough &&
                map->l2_stretch <= options.enough_stretch;
     };
-    if (is_enough(best))
-        return best;
-    try {
-        const std::vector<Vec2> isometric =
-            nearly_isometric_map(problem, options.give_up_energy, progress);
-        const bool checks_overlap = options.give_up_overlap.has_value();
-        if (checks_overlap && !isometric.empty() &&
-            overlapping_share(surface, isometric, tolerance) > *options.give_up_overlap)
-            return best;
-        if (!isometric.empty()) {
-            const std::vector<Vec2> even = balance_with_boundary(problem, isometric, progress);
-            if (checks_overlap && overlapping_share(surface, even, tolerance) > 0.0)
-                return best;
-            auto bent = map_beside(problem, surface, even, tolerance, progress);
-            if (is_enough(bent))
-                return bent;
-            best = smaller_change(std::move(best), std::move(bent));
-        }
-    } catch (const NumericalFailure&) { // then the first one has to do
-    }
-    return best;
+    // Either pair of angles may have a solution where the other one has none.
+    auto own = attempt(
+        [&] { return map_near(problem, surface, boundary_angles(problem), tolerance, progress); });
+    if (is_enough(own))
+        return own;
+    auto bent = attempt([&] { return bent_map(problem, surface, tolerance, options, progress); });
+    return is_enough(bent) ? bent : smaller_change(std::move(own), std::move(bent));
 }
 
 } // namespace devseg::flatten

@@ -21,9 +21,6 @@ struct LpfbMap {
     double l2_stretch = 0.0;  // of the map as it is
 };
 
-/// Largest share by which the area of a map may change [Wan08, section 5].
-constexpr double lpfb_area_change = 0.1;
-
 struct SewingMapOptions {
     // A map in which no face changes its area by more, with at most so much L2 stretch, is good
     // enough: no other one is tried.

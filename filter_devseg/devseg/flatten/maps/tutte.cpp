@@ -7,19 +7,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
-
-#include "devseg/base/errors.h"
+#include "devseg/flatten/energy/harmonic.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/maps/lscm.h"
 
 namespace devseg::flatten {
 
 namespace {
 
-// Cotangents outside of this range come from angles below 3 or above 177 degrees; as they are, they
-// could be negative, and so break the guarantee, or drown all other weights.
-constexpr double smallest_weight = 0.05;
-constexpr double largest_weight = 20.0;
+// Cotangents below this, or above its inverse, come from angles above 87 or below 3 degrees: as
+// they are, they could be negative, and so break the guarantee, or drown all other weights.
+constexpr double least_cotangent = 0.05;
 
 std::vector<Vec2> place_boundary(const FlatteningProblem& problem) {
     std::vector<Vec2> uv(at(problem.vertex_count), Vec2::Zero());
@@ -44,59 +42,25 @@ std::vector<Vec2> place_boundary(const FlatteningProblem& problem) {
     return uv;
 }
 
-template <class Weight>
-std::vector<Vec2> balance(const FlatteningProblem& problem, Weight weight) {
-    std::vector<Vec2> uv = place_boundary(problem);
-    std::vector<Index> slot(at(problem.vertex_count), 0);
-    for (const Vertex v : problem.boundary)
-        slot[v] = -1;
-    Index unknowns = 0;
-    for (Index& s : slot)
-        if (s >= 0)
-            s = unknowns++;
-    if (unknowns == 0)
-        return uv;
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(unknowns, 2);
-    const auto pull = [&](Index i, Index j, double w) {
-        if (slot[i] < 0)
-            return;
-        entries.emplace_back(slot[i], slot[i], w);
-        if (slot[j] < 0)
-            rhs.row(slot[i]) += w * uv[j].transpose();
-        else
-            entries.emplace_back(slot[i], slot[j], -w);
-    };
-    for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        for (Index k = 0; k < 3; ++k) {
-            const Index i = problem.faces[f][k];
-            const Index j = problem.faces[f][(k + 1) % 3];
-            const double w = weight(problem.cotangent[f][k]);
-            pull(i, j, w);
-            pull(j, i, w);
-        }
-    Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    const Eigen::MatrixX2d solution = solver.solve(rhs);
-    if (solver.info() != Eigen::Success || !solution.allFinite())
-        throw NumericalFailure("expected a solvable Tutte embedding, found a singular system");
-    for (std::size_t v = 0; v < slot.size(); ++v)
-        if (slot[v] >= 0)
-            uv[v] = solution.row(slot[v]).transpose();
-    return uv;
-}
-
 } // namespace
 
 std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem) {
-    std::vector<Vec2> uv = balance(problem, [](double cotangent) {
-        return std::clamp(cotangent, smallest_weight, largest_weight);
+    const std::vector<Vec2> circle = place_boundary(problem);
+    std::vector<Vec2> uv = circle;
+    HarmonicMap(problem, uv, [](double cotangent) {
+        return std::clamp(cotangent, least_cotangent, 1.0 / least_cotangent);
     });
-    if (count_flips(problem, uv) > 0)
-        uv = balance(problem, [](double) { return 1.0; });
+    if (count_flips(problem, uv) > 0) {
+        uv = circle;
+        HarmonicMap(problem, uv, [](double) { return 1.0; });
+    }
     scale_to_area(problem, uv);
     return uv;
+}
+
+std::vector<Vec2> simple_map(const FlatteningProblem& problem) {
+    std::vector<Vec2> uv = flatten_lscm(problem);
+    return count_flips(problem, uv) > 0 ? flatten_tutte(problem) : uv;
 }
 
 } // namespace devseg::flatten

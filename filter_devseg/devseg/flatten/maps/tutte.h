@@ -13,4 +13,8 @@ namespace devseg::flatten {
 /// equal weights are tried as well. The caller checks the result with count_flips.
 std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem);
 
+/// The least squares conformal map, or Tutte's embedding where that has flips. Throws
+/// NumericalFailure.
+std::vector<Vec2> simple_map(const FlatteningProblem& problem);
+
 } // namespace devseg::flatten

@@ -12,7 +12,6 @@ namespace devseg::flatten {
 /// paper unfolds. Returns the positions (#v, internal units) where that is an isometry: every edge
 /// keeps its length to within `tolerance` times the root of the chart's area, and no face is turned
 /// over. Nothing for charts that are not developable.
-std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem,
-                                        const std::vector<HalfEdge>& twin, double tolerance = 1e-6);
+std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double tolerance = 1e-6);
 
 } // namespace devseg::flatten

@@ -1,15 +1,28 @@
 #include "devseg/flatten/repair/overlaps.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <queue>
+#include <set>
 
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/graph/min_cut.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::flatten {
 
 namespace {
+
+struct Tuning {
+    int push_rounds = 10;           // each twice as stiff as the one before
+    double first_stiffness = 100.0; // in units of the energy per chart area
+    // Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a
+    // cut keeps the pattern truer than a deformation.
+    double push_cost = 0.01;
+};
+constexpr Tuning tuning;
 
 struct Segment {
     Vec2 a, b;
@@ -74,8 +87,7 @@ bool any_crossing(std::vector<Segment> segments) {
 
 // Faces that take part in an overlap, split between the two faces of the first pair: each goes to
 // the one from which it is reached first through such faces.
-std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface,
-                                      const std::vector<std::pair<Index, Index>>& pairs) {
+std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface, const Pairs& pairs) {
     std::vector<graph::CutSide> side(surface.face.size(), graph::CutSide::open);
     std::vector<std::uint8_t> takes_part(surface.face.size(), 0);
     for (const auto& [f, g] : pairs)
@@ -90,13 +102,162 @@ std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface,
         queue.pop();
         for (const HalfEdge h : half_edges_of(f)) {
             const HalfEdge twin = surface.twin[h];
-            if (twin >= 0 && takes_part[twin / 3] != 0 && side[twin / 3] == graph::CutSide::open) {
-                side[twin / 3] = side[f];
-                queue.push(twin / 3);
+            if (twin < 0)
+                continue;
+            const Face g = face_of(twin);
+            if (takes_part[g] != 0 && side[g] == graph::CutSide::open) {
+                side[g] = side[f];
+                queue.push(g);
             }
         }
     }
     return side;
+}
+
+// Where the point of the segment nearest to p lies: 0 at a, 1 at b.
+double nearest_parameter(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 ab = b - a;
+    const double length2 = ab.squaredNorm();
+    return length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+}
+
+double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    return (p - a - nearest_parameter(p, a, b) * (b - a)).norm();
+}
+
+Index next_on_boundary(const atlas::ChartSurface& surface, HalfEdge h) {
+    h = Mesh::next(h);
+    while (surface.twin[h] >= 0)
+        h = Mesh::next(surface.twin[h]);
+    return h;
+}
+
+Index previous_on_boundary(const atlas::ChartSurface& surface, HalfEdge h) {
+    h = Mesh::previous(h);
+    while (surface.twin[h] >= 0)
+        h = Mesh::previous(surface.twin[h]);
+    return h;
+}
+
+bool inside(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+    return orientation(a, b, p) > 0.0 && orientation(b, c, p) > 0.0 && orientation(c, a, p) > 0.0;
+}
+
+// The boundary edge nearest to the vertex that is reached from `start` over faces: other parts of
+// the chart may have nearer edges, but the vertex is not on those.
+Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv, Vertex vertex,
+                   Index start) {
+    const Vec2& p = uv[vertex];
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    std::set<Index> seen{start};
+    queue.emplace(0.0, start);
+    Index best = -1;
+    double best_distance = std::numeric_limits<double>::max();
+    while (!queue.empty() && queue.top().first < best_distance) {
+        const Face f = queue.top().second;
+        queue.pop();
+        for (const HalfEdge h : half_edges_of(f)) {
+            const double d = distance_to_segment(p, uv[surface.origin(h)], uv[surface.target(h)]);
+            const HalfEdge twin = surface.twin[h];
+            if (twin >= 0) {
+                if (seen.insert(face_of(twin)).second)
+                    queue.emplace(d, face_of(twin));
+            } else if (d < best_distance && surface.origin(h) != vertex &&
+                       surface.target(h) != vertex) {
+                best_distance = d;
+                best = h;
+            }
+        }
+    }
+    return best;
+}
+
+// Finds the contacts of overlapping pairs of faces.
+class ContactFinder {
+public:
+    ContactFinder(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv)
+        : s_(surface), uv_(uv), leaving_(surface.vertex.size(), -1),
+          settled_(surface.vertex.size(), 0) {
+        for (const std::vector<Index>& loop : surface.loops)
+            for (const HalfEdge h : loop)
+                leaving_[surface.origin(h)] = h;
+    }
+
+    // Faces that overlap around a common boundary vertex: the surface turns by more than 360
+    // degrees there. Each neighbour on the boundary must get outside of the other one's edge.
+    void find_full_turn(Face f, Face g) {
+        for (const Vertex v : s_.corners[f]) {
+            const Triangle& t = s_.corners[g];
+            if (leaving_[v] < 0 || (v != t[0] && v != t[1] && v != t[2]))
+                continue;
+            const Index out = leaving_[v];
+            const Index in = previous_on_boundary(s_, out);
+            settled_[s_.origin(in)] = settled_[s_.target(out)] = 1;
+            add(s_.origin(in), out);
+            add(s_.target(out), in);
+        }
+    }
+
+    // Boundary vertices of f that lie on g leave across the nearest boundary edge.
+    void find_inside(Face f, Face g) {
+        const Triangle& t = s_.corners[g];
+        for (const Vertex v : s_.corners[f]) {
+            if (leaving_[v] < 0 || settled_[v] != 0 || v == t[0] || v == t[1] || v == t[2] ||
+                !tested_.emplace(v, g).second || !inside(uv_[v], uv_[t[0]], uv_[t[1]], uv_[t[2]]))
+                continue;
+            const Index exit = nearest_exit(s_, uv_, v, g);
+            if (exit < 0)
+                continue;
+            add(v, exit);
+            // Past a corner that points inwards, the vertex must get outside of both its edges.
+            const double along =
+                nearest_parameter(uv_[v], uv_[s_.origin(exit)], uv_[s_.target(exit)]);
+            if (along <= 0.0)
+                add(v, previous_on_boundary(s_, exit));
+            if (along >= 1.0)
+                add(v, next_on_boundary(s_, exit));
+        }
+    }
+
+    std::vector<Contact> contacts() const { return {contacts_.begin(), contacts_.end()}; }
+
+private:
+    void add(Vertex v, HalfEdge h) {
+        if (s_.origin(h) != v && s_.target(h) != v)
+            contacts_.insert({v, s_.origin(h), s_.target(h)});
+    }
+
+    const atlas::ChartSurface& s_;
+    const std::vector<Vec2>& uv_;
+    std::vector<Index> leaving_;        // #v: boundary half-edge from the vertex, −1 = inside
+    std::vector<std::uint8_t> settled_; // #v: 1 where a full turn says which way to go
+    std::set<std::pair<Index, Index>> tested_;
+    std::set<Contact> contacts_;
+};
+
+std::vector<Contact> find_contacts(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                                   const Pairs& pairs) {
+    ContactFinder finder(surface, uv);
+    for (const auto& [f, g] : pairs)
+        finder.find_full_turn(f, g);
+    for (const auto& [f, g] : pairs) {
+        finder.find_inside(f, g);
+        finder.find_inside(g, f);
+    }
+    return finder.contacts();
+}
+
+// Contacts of earlier rounds stay, because parts that were pushed apart must not come back, except
+// where a vertex has new ones.
+std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
+                                    std::vector<Contact> contacts) {
+    const std::size_t found = contacts.size();
+    for (const Contact& contact : old)
+        if (std::none_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(found),
+                         [&](const Contact& c) { return c.vertex == contact.vertex; }))
+            contacts.push_back(contact);
+    return contacts;
 }
 
 } // namespace
@@ -105,9 +266,8 @@ bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vect
     return any_crossing(boundary_segments(surface, uv));
 }
 
-std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface& surface,
-                                                       const std::vector<Vec2>& uv,
-                                                       double tolerance) {
+Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                        double tolerance) {
     if (!boundary_crosses_itself(surface, uv))
         return {};
     CornerUv corners;
@@ -119,21 +279,49 @@ std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface
 }
 
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
-                                   const std::vector<std::pair<Index, Index>>& pairs,
-                                   const Progress& progress) {
+                                   const Pairs& pairs, const Progress& progress) {
     // In a disk, the least border between two connected sets of faces is one path from boundary to
     // boundary: the cut makes two disks.
     graph::MinCut cut(two_sides(surface, pairs));
     for (const HalfEdge h : surface.all_half_edges())
         if (surface.twin[h] > h)
-            cut.link(h / 3, surface.twin[h] / 3, mesh.edge_length(surface.mesh_half_edge(h)));
+            cut.link(face_of(h), face_of(surface.twin[h]),
+                     mesh.edge_length(surface.mesh_half_edge(h)));
     const std::vector<graph::CutSide> side = cut.solve(progress);
     std::vector<Index> path;
     for (const HalfEdge h : surface.all_half_edges())
-        if (surface.twin[h] >= 0 && side[h / 3] == graph::CutSide::source &&
-            side[surface.twin[h] / 3] == graph::CutSide::sink)
+        if (surface.twin[h] >= 0 && side[face_of(h)] == graph::CutSide::source &&
+            side[face_of(surface.twin[h])] == graph::CutSide::sink)
             path.push_back(h);
     return path;
+}
+
+std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
+                                            const atlas::ChartSurface& surface,
+                                            std::vector<Vec2> uv, Pairs pairs, double tolerance,
+                                            const Progress& progress, double gap_share) {
+    const double before = symmetric_dirichlet_energy(problem, uv);
+    ContactPenalty penalty;
+    penalty.stiffness = tuning.first_stiffness / problem.total_area;
+    penalty.gap = gap_share * std::sqrt(problem.total_area);
+    SymmetricDirichletOptions options;
+    options.max_iterations = 30;
+    for (int round = 0; round < tuning.push_rounds; ++round) {
+        penalty.contacts = merge_contacts(penalty.contacts, find_contacts(surface, uv, pairs));
+        uv = attempt([&] {
+            return minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
+        });
+        if (uv.empty()) // needles: a cut is left
+            return std::nullopt;
+        scale_to_area(problem, uv);
+        if (symmetric_dirichlet_energy(problem, uv) > before + tuning.push_cost)
+            return std::nullopt;
+        pairs = overlapping_pairs(surface, uv, tolerance);
+        if (pairs.empty())
+            return uv;
+        penalty.stiffness *= 2.0;
+    }
+    return std::nullopt;
 }
 
 } // namespace devseg::flatten

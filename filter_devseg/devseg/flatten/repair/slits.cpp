@@ -36,7 +36,7 @@ public:
         : s_(surface), gap_(gap), uv_(uv), home_(uv), done_(surface.vertex.size(), 0) {}
 
     // Vertices v and w are the same point of the surface on the sides h and g of a slit.
-    void part(Vertex v, Index w, HalfEdge h, Index g) {
+    void part(Vertex v, Vertex w, HalfEdge h, HalfEdge g) {
         if (v == w || (home_[v] - home_[w]).norm() >= gap_)
             return;
         move(v, h);
@@ -53,25 +53,9 @@ private:
             return;
         uv_[v] = home_[v] + 0.5 * gap_ / length * Vec2(-edge.y(), edge.x());
         done_[v] = 1;
-        if (flips_around(h, v))
+        const HalfEdge leaving = s_.origin(h) == v ? h : Mesh::next(h);
+        if (!is_positive_around(s_.corners, s_.twin, uv_, leaving))
             uv_[v] = home_[v];
-    }
-
-    // Looks at all faces around v, which form one fan, starting at the face of h.
-    bool flips_around(HalfEdge h, Vertex v) const {
-        Index corner = s_.origin(h) == v ? h : Mesh::next(h); // half-edge that leaves v
-        for (HalfEdge at_corner = corner; at_corner >= 0;
-             at_corner = s_.twin[Mesh::previous(at_corner)])
-            if (!positive(at_corner / 3))
-                return true;
-        for (Index back = s_.twin[corner]; back >= 0; back = s_.twin[Mesh::next(back)])
-            if (!positive(back / 3))
-                return true;
-        return false;
-    }
-    bool positive(Face f) const {
-        const Triangle& t = s_.corners[f];
-        return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]) > 0.0;
     }
 
     const atlas::ChartSurface& s_;

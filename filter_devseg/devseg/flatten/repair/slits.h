@@ -11,11 +11,14 @@ namespace devseg::flatten {
 /// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
 /// person or a cutter sees (0.015 mm on a sheet of 300 mm).
 constexpr double slit_gap = 5e-5;
+/// What such readers certainly see.
+constexpr double visible_gap = 0.1 * slit_gap;
 
-/// Where the two sides of a cut inside the chart come to lie closer than `gap` (a length in the
-/// plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture coordinates
-/// tell a cut only by a difference: without one, readers would see a chart with a hole instead of
-/// the disk that was flattened. A vertex stays where it is if moving it would flip a face.
+/// Where the two sides of a cut inside the chart are closer in the plane than `gap` (a length in
+/// the plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture
+/// coordinates tell a cut only by a difference: without one, readers would see a chart with a hole
+/// instead of the disk that was flattened. A vertex stays where it is if moving it would flip a
+/// face.
 void open_closed_slits(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                        std::vector<Vec2>& uv);
 

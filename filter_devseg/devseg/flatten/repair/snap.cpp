@@ -11,19 +11,17 @@ namespace devseg::flatten {
 
 namespace {
 
-constexpr int rounds = 8; // sweeps over the flipped faces
-constexpr int reach = 4;  // step sizes tried for a vertex: 1, 2, 4, 8 units in the last place
-// Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
-// moved to another place on the grid nearby, which has places for nearly every area.
-constexpr double kept_area = 0.02;
-constexpr int grid_reach = 8; // units in the last place
-// On the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
-constexpr int boundary_reach = 2;
-
-bool positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Face f) {
-    const Triangle& t = faces[f];
-    return orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0;
-}
+struct Tuning {
+    int snap_rounds = 8; // sweeps over the flipped faces
+    // Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
+    // moved to another place on the grid nearby, which has places for nearly every area.
+    double kept_area = 0.02;
+    int grid_reach = 8; // units in the last place that a vertex is moved by at most,
+    // and on the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
+    int boundary_reach = 2;
+    double widened = 1.02; // area of a needle as flattened over that on the surface
+};
+constexpr Tuning tuning;
 
 double rounded(double x) {
     // Volatile, because GCC 12 at -O3 drops the two conversions for the last element of an odd
@@ -80,7 +78,7 @@ public:
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
             double least = std::abs(twice_area(face) - area);
-            const int most = is_inside(v) ? grid_reach : boundary_reach;
+            const int most = is_inside(v) ? tuning.grid_reach : tuning.boundary_reach;
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
@@ -92,7 +90,7 @@ public:
                     }
                 }
             uv_[v] = best;
-            if (least <= kept_area * area)
+            if (least <= tuning.kept_area * area)
                 return;
         }
     }
@@ -118,7 +116,7 @@ private:
     int flipped_around(Vertex v) const {
         int count = 0;
         for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i)
-            count += positive(faces_, uv_, stars_.faces[i]) ? 0 : 1;
+            count += is_positive(faces_, uv_, stars_.faces[i]) ? 0 : 1;
         return count;
     }
     bool move(Vertex v) {
@@ -127,7 +125,7 @@ private:
         Vec2 best = home;
         int fewest = flipped_around(v);
         const int before = fewest;
-        for (int step = 1; step < 1 << reach && fewest > 0; step *= 2)
+        for (int step = 1; step <= tuning.grid_reach && fewest > 0; step *= 2)
             for (int direction = 0; direction < 9; ++direction) {
                 const Vec2 offset(direction % 3 - 1, direction / 3 - 1);
                 const Vec2 moved = home + unit * step * offset;
@@ -161,29 +159,54 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     std::vector<Index> thin;
     for (Face f = 0; f < static_cast<Index>(faces.size()); ++f) {
         const double area = twice_area(exact, f);
-        if (!positive(faces, uv, f))
+        if (!is_positive(faces, uv, f))
             flipped.push_back(f);
-        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > kept_area * area)
+        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > tuning.kept_area * area)
             thin.push_back(f);
     }
     if (flipped.empty() && thin.empty())
         return 0;
     Repair repair(faces, uv);
-    for (int round = 0; round < rounds && !flipped.empty(); ++round) {
+    for (int round = 0; round < tuning.snap_rounds && !flipped.empty(); ++round) {
         for (const Face f : flipped)
-            if (!positive(faces, uv, f))
+            if (!is_positive(faces, uv, f))
                 repair.mend(f);
         // A mended face may have cost a neighbour: look at all of them again.
         flipped.clear();
         for (Face f = 0; f < static_cast<Index>(faces.size()); ++f)
-            if (!positive(faces, uv, f))
+            if (!is_positive(faces, uv, f))
                 flipped.push_back(f);
     }
     for (const Face f : thin)
         repair.restore_area(f, twice_area(exact, f));
     const auto lost = std::count_if(flipped.begin(), flipped.end(),
-                                    [&](Face f) { return !positive(faces, uv, f); });
+                                    [&](Face f) { return !is_positive(faces, uv, f); });
     return static_cast<Index>(lost);
+}
+
+void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
+    for (Face f = 0; f < static_cast<Index>(problem.faces.size()); ++f) {
+        const double area = problem.given_area[f];
+        if (!(area > 0.0) || problem.area[f] < tuning.widened * area)
+            continue;
+        const Triangle& t = problem.faces[f];
+        Index longest = 0; // edge k → k + 1
+        const auto length = [&](Index k) { return (uv[t[(k + 1) % 3]] - uv[t[k]]).norm(); };
+        for (Index k = 1; k < 3; ++k)
+            if (length(k) > length(longest))
+                longest = k;
+        const Vec2& p = uv[t[longest]];
+        const Vec2& q = uv[t[(longest + 1) % 3]];
+        const HalfEdge leaving = half_edge_of(f, (longest + 2) % 3);
+        Vec2& apex = uv[t[corner_of(leaving)]];
+        const Vec2 home = apex;
+        const Vec2 along = (q - p) / length(longest);
+        const Vec2 inwards(-along.y(), along.x());
+        const double height = inwards.dot(home - p);
+        apex = home + (2.0 * area / length(longest) - height) * inwards;
+        if (!is_positive_around(problem.faces, problem.twin, uv, leaving))
+            apex = home;
+    }
 }
 
 } // namespace devseg::flatten

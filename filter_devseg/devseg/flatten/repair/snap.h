@@ -1,9 +1,10 @@
-// Rounding a map to the precision of texture coordinates (32 bit) without turning a face over.
+// Thin faces, which a small move of a vertex turns over: rounding a map to the precision of texture
+// coordinates (32 bit), and giving needles their height.
 #pragma once
 
 #include <vector>
 
-#include "devseg/mesh/mesh.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
 
@@ -12,5 +13,10 @@ namespace devseg::flatten {
 /// around it are positively oriented again. Returns the number of faces that could not be kept
 /// positive.
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv);
+
+/// Gives faces that were widened to be flattened (see make_flattening_problem) the height that they
+/// have on the surface, by moving the corner opposite to their longest edge, where no face around
+/// it is flipped by that.
+void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv);
 
 } // namespace devseg::flatten

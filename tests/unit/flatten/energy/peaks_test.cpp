@@ -1,4 +1,4 @@
-#include "devseg/flatten/energy/peaks.h"
+#include "devseg/flatten/energy/vertex_relaxation.h"
 
 #include <algorithm>
 
@@ -39,7 +39,7 @@ TEST(Peaks, TheWorstFaceIsRelievedAtLittleCost) {
     const std::vector<Vec2> before = isometric(disk.problem);
     std::vector<Vec2> after = before;
     Progress progress;
-    relieve_peaks(disk.problem, disk.surface.twin, false, after, progress);
+    relieve_peaks(disk.problem, false, after, progress);
     EXPECT_LT(worst(disk.problem, after), worst(disk.problem, before) - 0.02);
     EXPECT_EQ(checks::count_flips(disk.problem.faces, after), 0);
     const double excess = symmetric_dirichlet_energy(disk.problem, before) - 1.0;
@@ -63,7 +63,7 @@ TEST(Peaks, LowPeaksOfNearlyIsometricMapsAreRelieved) {
     ASSERT_LT(worst(disk.problem, before), 1.1);
     std::vector<Vec2> after = before;
     Progress progress;
-    relieve_peaks(disk.problem, disk.surface.twin, false, after, progress);
+    relieve_peaks(disk.problem, false, after, progress);
     EXPECT_LT(worst(disk.problem, after) - 1.0, 0.92 * (worst(disk.problem, before) - 1.0));
     EXPECT_EQ(checks::count_flips(disk.problem.faces, after), 0);
     const double excess = symmetric_dirichlet_energy(disk.problem, before) - 1.0;
@@ -75,7 +75,7 @@ TEST(Peaks, TheOutlineStaysWhereAsked) {
     const std::vector<Vec2> before = isometric(disk.problem);
     std::vector<Vec2> after = before;
     Progress progress;
-    relieve_peaks(disk.problem, disk.surface.twin, true, after, progress);
+    relieve_peaks(disk.problem, true, after, progress);
     EXPECT_NE(after, before);
     for (const Index v : disk.problem.boundary)
         EXPECT_EQ(after[v], before[v]);
@@ -86,7 +86,7 @@ TEST(Peaks, AnIsometryStaysAsItIs) {
     const std::vector<Vec2> before = isometric(disk.problem);
     std::vector<Vec2> after = before;
     Progress progress;
-    relieve_peaks(disk.problem, disk.surface.twin, false, after, progress);
+    relieve_peaks(disk.problem, false, after, progress);
     EXPECT_EQ(after, before);
 }
 
@@ -108,7 +108,7 @@ TEST(Peaks, NeedlesAreSettledTogether) {
     ASSERT_EQ(checks::count_flips(disk.problem.faces, before), 0);
     ASSERT_GT(worst(disk.problem, before), 20.0);
     std::vector<Vec2> after = before;
-    settle_peaks(disk.problem, disk.surface.twin, after, Progress());
+    settle_peaks(disk.problem, after, Progress());
     EXPECT_EQ(checks::count_flips(disk.problem.faces, after), 0);
     EXPECT_LT(worst(disk.problem, after), 1.01);
     EXPECT_LT(symmetric_dirichlet_energy(disk.problem, after),
@@ -123,7 +123,7 @@ TEST(Peaks, EvenStretchIsNothingToSettle) {
     for (Vec2& p : before)
         p.x() *= 1.5;
     std::vector<Vec2> after = before;
-    settle_peaks(disk.problem, disk.surface.twin, after, Progress());
+    settle_peaks(disk.problem, after, Progress());
     EXPECT_EQ(after, before);
 }
 

@@ -8,7 +8,6 @@
 
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/maps/abf.h"
-#include "devseg/flatten/maps/seam_lengths.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
