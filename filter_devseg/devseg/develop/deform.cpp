@@ -21,8 +21,7 @@ struct Tuning {
     // more.
     double polished = 1e-6;
     int gainless_rounds = 4; // at most
-    int relaxed_after = 3;   // rounds in which a place was blocked,
-    int cut_after = relaxed_after + gainless_rounds;
+    int relaxed_after = 3; // rounds in which a place was blocked; it is cut so many gainless later
     std::size_t most_slits_at_once = 3;
     double late = 0.75;     // share of the rounds
     double late_gain = 0.3; // what the residual has to fall to in `gainless_rounds` then
@@ -164,6 +163,7 @@ private:
     // Rounds until all defects are as small as rounding lets them be. What is stuck is relaxed, and
     // then cut open if that is allowed.
     void project(Progress& progress) {
+        const int cut_after = tuning.relaxed_after + tuning.gainless_rounds;
         int failed = 0;
         int idle = 0;
         int focused_rounds = 0;
@@ -197,8 +197,8 @@ private:
             const int block = projection_.longest_block();
             if (block == tuning.relaxed_after)
                 projection_.relax_blocked(tuning.relaxed_after);
-            else if (block >= tuning.cut_after && options_.adjust_slits &&
-                     add_slits(tuning.cut_after, options_.tolerance, tuning.most_slits_at_once))
+            else if (block >= cut_after && options_.adjust_slits &&
+                     add_slits(cut_after, options_.tolerance, tuning.most_slits_at_once))
                 continue;
             // Slits cost parts: they are few as long as there is time, and then as many as it
             // takes.

@@ -15,7 +15,6 @@ struct Tuning {
     int chords = 4;           // steps with one factorization
     double free_defect = 0.1; // radians that a defect may grow to in a step
     double least_damping = 1e-13;
-    double most_damping = 1e3;
 };
 constexpr Tuning tuning;
 
@@ -235,7 +234,7 @@ bool Projection::step() {
     solver_.factorize(matrix);
     const bool done = solver_.info() == Eigen::Success && chord_steps();
     if (!done)
-        damping_ = std::min(tuning.most_damping, 8.0 * damping_);
+        damping_ *= 8.0;
     return done;
 }
 

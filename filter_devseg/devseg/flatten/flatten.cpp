@@ -81,8 +81,12 @@ std::vector<Index> cut_apart(const Mesh& mesh, const Cuts& cuts, FlattenResult& 
         for (const HalfEdge h : cut)
             seam[h] = seam[mesh.twin[h]] = 1;
     }
-    const atlas::ChartMap parts = atlas::make_chart_map(mesh, result.charts.chart, seam, true);
-    return take_over(mesh, atlas::cut_charts_to_disks(mesh, parts, progress).charts, cuts, result);
+    return take_over(
+        mesh,
+        atlas::cut_charts_to_disks(
+            mesh, atlas::make_chart_map(mesh, result.charts.chart, seam, true), progress)
+            .charts,
+        cuts, result);
 }
 
 // Joins charts. Labels of charts that are joined to others fall out of use until `renumber`.

@@ -246,9 +246,11 @@ bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& char
         return false;
     chart.uv = std::move(*development);
     scale_to_area(problem, chart.uv);
-    // Slits are opened only where the chart would not be seen as a disk.
-    if (closed_slits_hide_disk(mesh, chart.surface, visible_gap * problem.model_size, chart.uv))
-        open_closed_slits(mesh, chart.surface, slit_gap * problem.model_size, chart.uv);
+    // Slits are opened only where the chart would not be seen as a disk by readers that take a
+    // tenth of the gap for rounding.
+    const double gap = slit_gap * problem.model_size;
+    if (closed_slits_hide_disk(mesh, chart.surface, 0.1 * gap, chart.uv))
+        open_closed_slits(mesh, chart.surface, gap, chart.uv);
     chart.developed = true;
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     return true;

@@ -21,9 +21,6 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
-// Halvings of the way to the middle of the kernel, which is valid: more of them end there.
-constexpr int bisections = std::numeric_limits<double>::digits;
-
 class Refinement {
 public:
     Refinement(const Mesh& mesh, mesh::CoarseSurface coarse, std::vector<Vec2> uv)
@@ -81,8 +78,9 @@ private:
         Vec2 p = affine_guess();
         if (!has_room(p)) {
             const Vec2 middle = kernel_point(star_, p);
-            int i = 0;
-            for (; i < bisections && !std::isfinite(star_.energy(p)); ++i)
+            // The middle of the kernel is valid: so many halvings of the way end there.
+            const int halvings = std::numeric_limits<double>::digits;
+            for (int i = 0; i < halvings && !std::isfinite(star_.energy(p)); ++i)
                 p = 0.5 * (p + middle);
             if (!(star_.energy(p) <= star_.energy(middle)))
                 p = middle;
@@ -218,7 +216,7 @@ std::vector<Vec2> flatten_multilevel(
     const Progress& progress) {
     const Mesh local = atlas::mesh_of(mesh, surface);
     mesh::CoarseSurface coarse =
-        mesh::coarsen(local.points, local.faces, local.twin, coarse_chart_faces, progress);
+        mesh::coarsen(local.points, local.faces, local.twin, multilevel_threshold / 3, progress);
     const mesh::CoarseMesh small = mesh::extract_coarse_mesh(local, coarse);
     std::vector<Index> all(small.mesh.faces.size());
     std::iota(all.begin(), all.end(), 0);

@@ -13,9 +13,8 @@
 
 namespace devseg::flatten {
 
-/// Of the coarse version. Charts with less than three times as many are flattened at once.
-constexpr Index coarse_chart_faces = 2000;
-constexpr Index multilevel_threshold = 3 * coarse_chart_faces;
+/// Charts with fewer faces are flattened at once; the coarse version of others has a third as many.
+constexpr Index multilevel_threshold = 6000;
 
 /// Finds a map of a coarse version of the chart with `solve`, puts the removed vertices back one
 /// by one into the kernels of their neighbourhoods, which never flips a face, and relaxes all

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -28,7 +29,6 @@ struct Tuning {
     int wide_rings = 8;
     int many_sweeps = 100;
     double most_moves = 4e5; // of vertices: less than that in all sweeps
-    int fewest_sweeps = 10;
 
     // Faces that solvers of single vertices leave behind: needles, whose vertices must move
     // together.
@@ -55,11 +55,9 @@ struct Relief {
 
 double usual_stretch(const FlatteningProblem& problem, const std::vector<double>& stretches) {
     std::vector<std::size_t> order(stretches.size());
-    for (std::size_t f = 0; f < order.size(); ++f)
-        order[f] = f;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return stretches[a] != stretches[b] ? stretches[a] < stretches[b] : a < b;
-    });
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return stretches[a] < stretches[b]; });
     double area = 0.0;
     for (const std::size_t f : order) {
         area += problem.area[f];
@@ -72,7 +70,7 @@ double usual_stretch(const FlatteningProblem& problem, const std::vector<double>
 Relief choose_relief(double peak, double usual) {
     Relief relief;
     if (peak > tuning.low_peak) {
-        relief.limit = std::max(tuning.harmless, tuning.above_usual * usual);
+        relief.limit = tuning.above_usual * usual;
         return relief;
     }
     const double density = 0.25 * (peak * peak + 1.0 / (peak * peak)) + 0.5; // ψ of a strip
@@ -294,9 +292,7 @@ void relieve_peaks(const FlatteningProblem& problem, bool hold_boundary, std::ve
     if (vertices.empty())
         return;
     relief.sweeps = std::min(
-        relief.sweeps,
-        std::max(tuning.fewest_sweeps,
-                 static_cast<int>(tuning.most_moves / static_cast<double>(vertices.size()))));
+        relief.sweeps, static_cast<int>(tuning.most_moves / static_cast<double>(vertices.size())));
     const double before = symmetric_dirichlet_energy(problem, uv) - 1.0;
     VertexStar star;
     for (const double softer : {1.0, 0.5, 0.25}) {

@@ -22,11 +22,11 @@ namespace devseg::flatten {
 
 namespace {
 
-constexpr double safe_step = 0.9; // share of the way to the first angle of 0 or π
-constexpr double shrunk = 0.25;   // share of its target below which an angle is in danger
-// Violation at which constraints count as met: far below what could flip a triangle, far above
-// rounding.
-constexpr double met = 1e-8;
+struct Tuning {
+    double way_to_flat = 0.9; // share of the way to the first angle of 0 or π that a step goes
+    double shrunk = 0.25;     // share of its target below which an angle is in danger
+};
+constexpr Tuning tuning;
 
 double cotangent(double angle) {
     return std::cos(angle) / std::sin(angle);
@@ -81,8 +81,8 @@ double step_length(const Eigen::VectorXd& angles, const Eigen::VectorXd& change)
     double step = 1.0;
     for (Eigen::Index i = 0; i < angles.size(); ++i) {
         const double room = change[i] < 0.0 ? angles[i] : pi - angles[i];
-        if (std::abs(change[i]) * step > safe_step * room)
-            step = safe_step * room / std::abs(change[i]);
+        if (std::abs(change[i]) * step > tuning.way_to_flat * room)
+            step = tuning.way_to_flat * room / std::abs(change[i]);
     }
     return step;
 }
@@ -183,7 +183,7 @@ Eigen::VectorXd AngleSystem::constraints(const Eigen::VectorXd& angles) const {
 
 void AngleSystem::stiffen(const Eigen::VectorXd& angles) {
     for (Eigen::Index i = 0; i < angles.size(); ++i)
-        if (angles[i] < shrunk * target_[i])
+        if (angles[i] < tuning.shrunk * target_[i])
             inverse_[i] = std::min(inverse_[i], 0.5 * angles[i] * angles[i]);
 }
 
@@ -277,7 +277,7 @@ AbfResult flatten_abf(const FlatteningProblem& problem, const AbfOptions& option
             system.stiffen(angles);
         ++result.iterations;
         result.residual = system.constraints(angles).lpNorm<Eigen::Infinity>();
-        result.converged = length == 1.0 && result.residual <= met &&
+        result.converged = length == 1.0 && result.residual <= constraint_met &&
                            change.lpNorm<Eigen::Infinity>() <= options.tolerance;
     }
     result.energy = system.energy(angles);

@@ -21,8 +21,6 @@ namespace {
 
 struct Tuning {
     double gap = 1e-12;               // share of a boundary's length that may be left open
-    double gap_of_edge = 1e-15;       // and what each edge may add to it
-    double shortest_step = 1e-6;      // of the line search
     double pull_shift = 1e-12;        // keeps straight polygons solvable
     double least_inner_weight = 0.02; // blunt triangles would turn others over
 };
@@ -62,9 +60,8 @@ Eigen::VectorXd least_norm(const Eigen::Matrix3Xd& gradient, const Eigen::Vector
 // violated, which a small enough one achieves wherever their gradients are independent.
 bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta, int max_rounds,
                          int& rounds, const Progress& progress) {
-    const double enough = tuning.gap + tuning.gap_of_edge * static_cast<double>(theta.size());
     Closure closure = closure_of(lengths, theta);
-    for (int k = 0; k < max_rounds && closure.value.norm() > enough; ++k, ++rounds) {
+    for (int k = 0; k < max_rounds && closure.value.norm() > tuning.gap; ++k, ++rounds) {
         progress.check();
         const double violation = closure.value.norm();
         const Eigen::VectorXd from = theta;
@@ -74,12 +71,11 @@ bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta,
             share *= 0.5;
             theta = from + share * step;
             closure = closure_of(lengths, theta);
-        } while (share > tuning.shortest_step &&
-                 !(closure.value.norm() < (1.0 - 0.5 * share) * violation));
-        if (share <= tuning.shortest_step)
+        } while (theta != from && !(closure.value.norm() < (1.0 - 0.5 * share) * violation));
+        if (theta == from)
             return false;
     }
-    return closure.value.norm() <= enough;
+    return closure.value.norm() <= tuning.gap;
 }
 
 // [Wan08]: Newton steps without second derivatives. The multipliers do not matter for the steps,

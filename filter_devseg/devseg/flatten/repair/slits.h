@@ -11,8 +11,6 @@ namespace devseg::flatten {
 /// what readers of texture coordinates take for rounding (1e-6 of the layout), and far below what a
 /// person or a cutter sees (0.015 mm on a sheet of 300 mm).
 constexpr double slit_gap = 5e-5;
-/// What such readers certainly see.
-constexpr double visible_gap = 0.1 * slit_gap;
 
 /// Where the two sides of a cut inside the chart are closer in the plane than `gap` (a length in
 /// the plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture

@@ -12,7 +12,6 @@ namespace devseg::flatten {
 namespace {
 
 struct Tuning {
-    int snap_rounds = 8; // sweeps over the flipped faces
     // Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
     // moved to another place on the grid nearby, which has places for nearly every area.
     double kept_area = 0.02;
@@ -167,11 +166,13 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     if (flipped.empty() && thin.empty())
         return 0;
     Repair repair(faces, uv);
-    for (int round = 0; round < tuning.snap_rounds && !flipped.empty(); ++round) {
+    // A mended face may have cost a neighbour, and a move have made room: again, until nothing
+    // helps.
+    for (bool mended = true; mended && !flipped.empty();) {
+        mended = false;
         for (const Face f : flipped)
             if (!is_positive(faces, uv, f))
-                repair.mend(f);
-        // A mended face may have cost a neighbour: look at all of them again.
+                mended = repair.mend(f) || mended;
         flipped.clear();
         for (Face f = 0; f < static_cast<Index>(faces.size()); ++f)
             if (!is_positive(faces, uv, f))
