@@ -5,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/multilevel.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -21,6 +19,7 @@
 #include "devseg/flatten/repair/slits.h"
 #include "devseg/flatten/repair/snap.h"
 #include "devseg/plane/overlap.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
@@ -232,10 +231,8 @@ bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) 
     double boundary = 0.0;
     for (const double length : problem.boundary_edge)
         boundary += length;
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : uv)
-        box.extend(p);
-    return !(box.diagonal().norm() <= tuning.blown_up * (boundary + std::sqrt(problem.total_area)));
+    return !(plane::box_of(uv).diagonal().norm() <=
+             tuning.blown_up * (boundary + std::sqrt(problem.total_area)));
 }
 
 } // namespace

@@ -8,9 +8,9 @@
 
 #include <Eigen/LU>
 
-#include "devseg/flatten/energy/map_tools.h"
 #include "devseg/metrics/segmentation.h"
 #include "devseg/plane/overlap.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::metrics {
 
@@ -92,13 +92,6 @@ ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
     return areas;
 }
 
-double bounding_box_area(const CornerUv& uv) {
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : uv)
-        box.extend(p);
-    return box.sizes().prod();
-}
-
 // Sums over faces, for the whole layout and for one chart.
 struct Sums {
     double weight = 0.0;
@@ -156,7 +149,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         const std::size_t c = at(charts.chart[f]);
         const double sign = areas.balance[c] < 0.0 ? -1.0 : 1.0;
         const bool flipped =
-            !(sign * flatten::orientation(uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]) > 0.0);
+            !(sign * plane::orientation(uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]) > 0.0);
         result.flipped_faces_number += flipped ? 1 : 0;
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(plane::uv_area(uv, f));
@@ -177,7 +170,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         result.overlapping_faces_number += overlapping;
     result.seam_length = seam_length(mesh, charts);
     result.seams = measure_seams(mesh, charts, uv);
-    const double box = bounding_box_area(uv);
+    const double box = plane::box_of(uv).sizes().prod();
     result.packing_efficiency = box > 0.0 ? covered / box : 0.0;
     return result;
 }

@@ -13,6 +13,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
@@ -39,7 +40,7 @@ SignedDistance signed_distance(const Contact& contact, const Positions& x) {
     const Vec2 a = x.row(contact.from).transpose();
     const Vec2 b = x.row(contact.to).transpose();
     const Vec2 direction = (b - a).normalized();
-    const Vec2 left(-direction.y(), direction.x());
+    const Vec2 left = plane::left_of(direction);
     const double length = (b - a).norm();
     const double along = (p - a).dot(direction) / length; // 0 at `from`, 1 at `to`
     SignedDistance d;

@@ -21,6 +21,7 @@ namespace {
 
 struct Tuning {
     double gap = 1e-12;               // share of a boundary's length that may be left open
+    double gap_of_edge = 1e-15;       // and what each edge may add to it
     double pull_shift = 1e-12;        // keeps straight polygons solvable
     double least_inner_weight = 0.02; // blunt triangles would turn others over
 };
@@ -60,8 +61,9 @@ Eigen::VectorXd least_norm(const Eigen::Matrix3Xd& gradient, const Eigen::Vector
 // violated, which a small enough one achieves wherever their gradients are independent.
 bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta, int max_rounds,
                          int& rounds, const Progress& progress) {
+    const double enough = tuning.gap + tuning.gap_of_edge * static_cast<double>(theta.size());
     Closure closure = closure_of(lengths, theta);
-    for (int k = 0; k < max_rounds && closure.value.norm() > tuning.gap; ++k, ++rounds) {
+    for (int k = 0; k < max_rounds && closure.value.norm() > enough; ++k, ++rounds) {
         progress.check();
         const double violation = closure.value.norm();
         const Eigen::VectorXd from = theta;
@@ -75,7 +77,7 @@ bool close_by_least_norm(const Eigen::VectorXd& lengths, Eigen::VectorXd& theta,
         if (theta == from)
             return false;
     }
-    return closure.value.norm() <= tuning.gap;
+    return closure.value.norm() <= enough;
 }
 
 // [Wan08]: Newton steps without second derivatives. The multipliers do not matter for the steps,
@@ -156,7 +158,7 @@ std::vector<double> boundary_angles(const FlatteningProblem& problem,
                 continue;
             const Vec2 p = corner((c + 1) % 3) - corner(c);
             const Vec2 q = corner((c + 2) % 3) - corner(c);
-            angles[i] += std::atan2(plane::cross(p, q), p.dot(q));
+            angles[i] += plane::signed_angle(p, q);
         }
     return angles;
 }

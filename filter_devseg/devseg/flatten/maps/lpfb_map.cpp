@@ -23,13 +23,6 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
-double polygon_area(const std::vector<Vec2>& points) {
-    double twice = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        twice += plane::cross(points[i], points[i + 1 < points.size() ? i + 1 : 0]);
-    return 0.5 * twice;
-}
-
 bool keeps_area(const FlatteningProblem& problem, double area) {
     return std::abs(area / problem.total_area - 1.0) <= usual_area_change;
 }
@@ -51,7 +44,7 @@ std::optional<LpfbMap> map_near(const FlatteningProblem& problem,
     const LpfbOptions options;
     const ClosedBoundary boundary =
         close_boundary(problem.boundary_edge, targets, options, progress);
-    if (!keeps_area(problem, polygon_area(boundary.points)))
+    if (!keeps_area(problem, plane::signed_area(boundary.points)))
         return std::nullopt;
     return keeping(
         surface, settle_lpfb(problem, flatten_lpfb(problem, targets, options, progress), progress),

@@ -10,6 +10,7 @@
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/graph/min_cut.h"
 #include "devseg/plane/overlap.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
 
@@ -39,10 +40,6 @@ std::vector<Segment> boundary_segments(const atlas::ChartSurface& surface,
     return segments;
 }
 
-int sign(double x) {
-    return x > 0.0 ? 1 : x < 0.0 ? -1 : 0;
-}
-
 // Segments that cross in a point inside both, or that touch with an end: anything but apart.
 bool cross(const Segment& s, const Segment& t) {
     if (s.from == t.from || s.from == t.to || s.to == t.from || s.to == t.to) {
@@ -52,16 +49,7 @@ bool cross(const Segment& s, const Segment& t) {
         const Vec2& q = t.from == s.to || t.from == s.from ? t.b : t.a;
         return orientation(common, p, q) == 0.0 && (p - common).dot(q - common) > 0.0;
     }
-    const int s1 = sign(orientation(s.a, s.b, t.a));
-    const int s2 = sign(orientation(s.a, s.b, t.b));
-    const int t1 = sign(orientation(t.a, t.b, s.a));
-    const int t2 = sign(orientation(t.a, t.b, s.b));
-    if (s1 == 0 && s2 == 0) { // on one line: do the boxes overlap?
-        const Vec2 low = s.a.cwiseMin(s.b).cwiseMax(t.a.cwiseMin(t.b));
-        const Vec2 high = s.a.cwiseMax(s.b).cwiseMin(t.a.cwiseMax(t.b));
-        return (high - low).minCoeff() >= 0.0;
-    }
-    return s1 * s2 <= 0 && t1 * t2 <= 0;
+    return plane::segments_touch(s.a, s.b, t.a, t.b);
 }
 
 // Sweep over x with the segments that are active; boundaries are short compared with their charts.
@@ -114,17 +102,6 @@ std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface, const 
     return side;
 }
 
-// Where the point of the segment nearest to p lies: 0 at a, 1 at b.
-double nearest_parameter(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 ab = b - a;
-    const double length2 = ab.squaredNorm();
-    return length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-}
-
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    return (p - a - nearest_parameter(p, a, b) * (b - a)).norm();
-}
-
 Index next_on_boundary(const atlas::ChartSurface& surface, HalfEdge h) {
     h = Mesh::next(h);
     while (surface.twin[h] >= 0)
@@ -158,7 +135,7 @@ Index nearest_exit(const atlas::ChartSurface& surface, const std::vector<Vec2>& 
         const Face f = queue.top().second;
         queue.pop();
         for (const HalfEdge h : half_edges_of(f)) {
-            const double d = distance_to_segment(p, uv[surface.origin(h)], uv[surface.target(h)]);
+            const double d = plane::distance(p, uv[surface.origin(h)], uv[surface.target(h)]);
             const HalfEdge twin = surface.twin[h];
             if (twin >= 0) {
                 if (seen.insert(face_of(twin)).second)
@@ -212,7 +189,7 @@ public:
             add(v, exit);
             // Past a corner that points inwards, the vertex must get outside of both its edges.
             const double along =
-                nearest_parameter(uv_[v], uv_[s_.origin(exit)], uv_[s_.target(exit)]);
+                plane::nearest_share(uv_[v], uv_[s_.origin(exit)], uv_[s_.target(exit)]);
             if (along <= 0.0)
                 add(v, previous_on_boundary(s_, exit));
             if (along >= 1.0)

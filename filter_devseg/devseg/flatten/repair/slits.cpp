@@ -51,7 +51,7 @@ private:
         const double length = edge.norm();
         if (!(length > 0.0))
             return;
-        uv_[v] = home_[v] + 0.5 * gap_ / length * Vec2(-edge.y(), edge.x());
+        uv_[v] = home_[v] + 0.5 * gap_ / length * plane::left_of(edge);
         done_[v] = 1;
         const HalfEdge leaving = s_.origin(h) == v ? h : Mesh::next(h);
         if (!is_positive_around(s_.corners, s_.twin, uv_, leaving))

@@ -202,7 +202,7 @@ void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
         Vec2& apex = uv[t[corner_of(leaving)]];
         const Vec2 home = apex;
         const Vec2 along = (q - p) / length(longest);
-        const Vec2 inwards(-along.y(), along.x());
+        const Vec2 inwards = plane::left_of(along);
         const double height = inwards.dot(home - p);
         apex = home + (2.0 * area / length(longest) - height) * inwards;
         if (!is_positive_around(problem.faces, problem.twin, uv, leaving))
