@@ -18,7 +18,7 @@ namespace {
 struct Tuning {
     // Rounds stop when ten of them gain less than this share of the excess that is compared with,
     // and never before they gain less than this share of the energy.
-    double precision = 1e-3;
+    double share_of_excess = 1e-3;
     double coarsest = 1e-5;
     int few_rounds = 40;
     int many_rounds = 200;
@@ -32,9 +32,9 @@ std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const Tria
                            const Progress& progress) {
     flatten::SymmetricDirichletOptions options;
     const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
-    options.relative_tolerance = std::min(tuning.precision * excess, tuning.coarsest);
+    options.relative_tolerance = std::min(tuning.share_of_excess * excess, tuning.coarsest);
     options.max_iterations =
-        tuning.precision * excess < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
+        tuning.share_of_excess * excess < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
     if (effort.give_up)
         options.give_up_energy = 1.0 + excess;
     std::vector<Vec2> uv = flatten::minimise_symmetric_dirichlet(

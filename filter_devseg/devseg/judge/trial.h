@@ -13,7 +13,7 @@ namespace devseg::judge {
 /// Stretch of one chart's map [Sander et al. 2001], as in measure_parametrization.
 struct TrialMap {
     bool flat = false;       // a map without flips was found
-    bool overlaps = false;   // parts of it lie on each other
+    bool overlaps = false;   // parts of it overlap in the plane
     double area = 0.0;       // on the surface, internal units squared
     double l2_squared = 1.0; // mean of (Γ² + γ²) / 2 over the area, at the chart's own area
     double linf = 1.0;       // max Γ

@@ -17,7 +17,7 @@ namespace devseg::metrics {
 namespace {
 
 struct Tuning {
-    double no_area = 1e-12;       // of the longest edge squared: a thinner face has no shape
+    double shapeless = 1e-12;     // of the longest edge squared: a thinner face has no shape
     double collapsed_face = 1e-6; // of its area: a face that covers less has collapsed in the plane
 };
 constexpr Tuning tuning;
@@ -27,7 +27,7 @@ bool has_area(const Mesh& mesh, Face f) {
     for (const HalfEdge h : half_edges_of(f))
         longest = std::max(
             longest, (mesh.points[mesh.target(h)] - mesh.points[mesh.origin(h)]).squaredNorm());
-    return mesh.face_areas[f] > tuning.no_area * longest;
+    return mesh.face_areas[f] > tuning.shapeless * longest;
 }
 
 // Singular values of the affine map from the plane to the surface on one face, Γ first.

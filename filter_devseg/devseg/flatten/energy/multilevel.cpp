@@ -16,8 +16,8 @@ namespace devseg::flatten {
 namespace {
 
 struct Tuning {
-    int sweeps = 3;           // over all vertices at the end of a level
-    double least_room = 1e-2; // area of a new face over that of its rest triangle
+    int sweeps = 3;               // over all vertices at the end of a level
+    double least_new_area = 1e-2; // area of a new face over that of its rest triangle
 };
 constexpr Tuning tuning;
 
@@ -92,7 +92,7 @@ private:
 
     bool has_room(const Vec2& p) const {
         for (const VertexStar::Face& f : star_.faces) {
-            if (!(plane::cross(f.from - p, f.to - p) > 2.0 * tuning.least_room * f.area))
+            if (!(plane::cross(f.from - p, f.to - p) > 2.0 * tuning.least_new_area * f.area))
                 return false;
         }
         return true;

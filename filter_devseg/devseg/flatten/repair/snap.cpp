@@ -14,7 +14,7 @@ namespace {
 struct Tuning {
     // Share of a face's area that rounding may change. Thin faces lose more: a corner of theirs is
     // moved to another place on the grid nearby, which has places for nearly every area.
-    double kept_area = 0.02;
+    double kept_face_area = 0.02;
     int grid_reach = 8; // units in the last place that a vertex is moved by at most,
     // and on the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
     int boundary_reach = 2;
@@ -89,7 +89,7 @@ public:
                     }
                 }
             uv_[v] = best;
-            if (least <= tuning.kept_area * area)
+            if (least <= tuning.kept_face_area * area)
                 return;
         }
     }
@@ -160,7 +160,7 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
         const double area = twice_area(exact, f);
         if (!is_positive(faces, uv, f))
             flipped.push_back(f);
-        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > tuning.kept_area * area)
+        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > tuning.kept_face_area * area)
             thin.push_back(f);
     }
     if (flipped.empty() && thin.empty())
