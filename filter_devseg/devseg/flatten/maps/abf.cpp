@@ -11,9 +11,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
-
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/maps/lscm.h"
@@ -89,17 +86,8 @@ double step_length(const Eigen::VectorXd& angles, const Eigen::VectorXd& change)
 
 } // namespace
 
-// M y = r for the multipliers y of the vertices' constraints, in the order of elimination.
-struct AngleSystem::Reduced {
-    Eigen::SparseMatrix<double> matrix; // lower half
-    Eigen::VectorXd rhs;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-        solver;
-    bool analysed = false;
-};
-
 AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& options)
-    : problem_(problem), options_(options), reduced_(std::make_unique<Reduced>()) {
+    : problem_(problem), options_(options) {
     inner_.assign(at(problem.vertex_count), 0);
     for (const Vertex v : problem.boundary)
         inner_[v] = -1;
@@ -121,8 +109,6 @@ AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& opt
     inverse_ = 0.5 * target_.cwiseAbs2();
     order_unknowns();
 }
-
-AngleSystem::~AngleSystem() = default;
 
 // Both unknowns of a vertex couple with the same others: ordering vertices instead is faster.
 void AngleSystem::order_unknowns() {
@@ -194,12 +180,11 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());
     step = {Eigen::VectorXd(3 * faces), Eigen::VectorXd(faces + inner_count_ + inner_count_)};
     const Eigen::VectorXd values = constraints(angles);
-    Eigen::VectorXd& rhs = reduced_->rhs;
-    rhs.resize(inner_count_ + inner_count_);
+    rhs_.resize(inner_count_ + inner_count_);
     for (std::size_t v = 0; v < place_.size(); ++v)
         if (place_[v] >= 0) {
-            rhs[place_[v]] = values[faces + inner_[v]];
-            rhs[place_[v] + 1] = values[faces + inner_count_ + inner_[v]];
+            rhs_[place_[v]] = values[faces + inner_[v]];
+            rhs_[place_[v] + 1] = values[faces + inner_count_ + inner_[v]];
         }
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(21 * problem_.faces.size());
@@ -217,14 +202,14 @@ void AngleSystem::assemble(const Eigen::VectorXd& angles, Step& step) {
         for (int i = 0; i < 6; ++i) {
             if (unknowns[i] < 0)
                 continue;
-            rhs[unknowns[i]] += push[i];
+            rhs_[unknowns[i]] += push[i];
             for (int j = 0; j < 6; ++j)
                 if (unknowns[j] >= 0 && unknowns[j] <= unknowns[i])
                     entries.emplace_back(unknowns[i], unknowns[j], block(i, j));
         }
     }
-    reduced_->matrix.resize(rhs.size(), rhs.size());
-    reduced_->matrix.setFromTriplets(entries.begin(), entries.end());
+    matrix_.resize(rhs_.size(), rhs_.size());
+    matrix_.setFromTriplets(entries.begin(), entries.end());
 }
 
 // The multipliers of the last step are left out: constraints enter by their gradients only, so the
@@ -234,14 +219,14 @@ AngleSystem::Step AngleSystem::newton_step(const Eigen::VectorXd& angles) {
     assemble(angles, step);
     if (inner_count_ == 0)
         return step;
-    if (!reduced_->analysed)
-        reduced_->solver.analyzePattern(reduced_->matrix);
-    reduced_->analysed = true;
-    reduced_->solver.factorize(reduced_->matrix);
+    if (!analysed_)
+        solver_.analyzePattern(matrix_);
+    analysed_ = true;
+    solver_.factorize(matrix_);
     Eigen::VectorXd solution;
-    if (reduced_->solver.info() == Eigen::Success)
-        solution = reduced_->solver.solve(reduced_->rhs);
-    if (reduced_->solver.info() != Eigen::Success || !solution.allFinite())
+    if (solver_.info() == Eigen::Success)
+        solution = solver_.solve(rhs_);
+    if (solver_.info() != Eigen::Success || !solution.allFinite())
         throw NumericalFailure("expected solvable equations for the angles of a chart, found a "
                                "singular system");
     const auto faces = static_cast<Eigen::Index>(problem_.faces.size());

@@ -2,8 +2,10 @@
 // then coordinates from the angles.
 #pragma once
 
-#include <memory>
 #include <vector>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCholesky>
 
 #include "devseg/base/progress.h"
 #include "devseg/flatten/energy/rest_shape.h"
@@ -42,7 +44,6 @@ AbfResult flatten_abf(const FlatteningProblem& problem, const AbfOptions& option
 class AngleSystem {
 public:
     AngleSystem(const FlatteningProblem& problem, const AbfOptions& options);
-    ~AngleSystem();
 
     /// A Newton step: the change of the angles, and the multipliers of all constraints after it.
     struct Step {
@@ -61,7 +62,6 @@ public:
     void stiffen(const Eigen::VectorXd& angles);
 
 private:
-    struct Reduced;
     void order_unknowns();
     void assemble(const Eigen::VectorXd& angles, Step& step);
 
@@ -72,7 +72,12 @@ private:
     std::vector<Index> inner_; // #v: number among the inner vertices, −1 on the boundary
     std::vector<Index> place_; // #v: its first unknown in the reduced system, −1 on the boundary
     Index inner_count_ = 0;
-    std::unique_ptr<Reduced> reduced_;
+    // M y = r for the multipliers y of the vertices' constraints, in the order of elimination.
+    Eigen::SparseMatrix<double> matrix_; // lower half of M
+    Eigen::VectorXd rhs_;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
+        solver_;
+    bool analysed_ = false;
 };
 
 } // namespace devseg::flatten

@@ -17,12 +17,15 @@ namespace devseg::flatten {
 
 namespace {
 
-// The rotation (cos, sin) nearest to a Jacobian, mirrored ones included: the signed singular value
+// The rotation nearest to a Jacobian, mirrored ones included: the signed singular value
 // decomposition in closed form.
-Vec2 nearest_rotation(const Eigen::Matrix2d& j) {
-    const Vec2 turn(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
+Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& j) {
+    Vec2 turn(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
     const double length = turn.norm();
-    return length > 0.0 ? Vec2(turn / length) : Vec2(1.0, 0.0);
+    turn = length > 0.0 ? Vec2(turn / length) : Vec2(1.0, 0.0);
+    Eigen::Matrix2d rotation;
+    rotation << turn.x(), -turn.y(), turn.y(), turn.x();
+    return rotation;
 }
 
 // The cotangent Laplacian with vertex 0 held at its place, factorized once.
@@ -54,10 +57,8 @@ public:
     std::vector<Vec2> operator()(const std::vector<Vec2>& uv) const {
         Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(problem_.vertex_count, 2);
         for (std::size_t f = 0; f < problem_.faces.size(); ++f) {
-            const Vec2 turn = nearest_rotation(jacobian(problem_, uv, f));
-            Eigen::Matrix2d rotation;
-            rotation << turn.x(), -turn.y(), turn.y(), turn.x();
-            const Eigen::Matrix2d wanted = rotation * problem_.edges[f];
+            const Eigen::Matrix2d wanted =
+                nearest_rotation(jacobian(problem_, uv, f)) * problem_.edges[f];
             const std::array<Vec2, 3> edge = {wanted.col(0), wanted.col(1) - wanted.col(0),
                                               -wanted.col(1)};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -86,10 +87,7 @@ double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv
     double sum = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
         const Eigen::Matrix2d j = jacobian(problem, uv, f);
-        const Vec2 turn = nearest_rotation(j);
-        Eigen::Matrix2d rotation;
-        rotation << turn.x(), -turn.y(), turn.y(), turn.x();
-        sum += problem.area[f] * (j - rotation).squaredNorm();
+        sum += problem.area[f] * (j - nearest_rotation(j)).squaredNorm();
     }
     return sum / problem.total_area;
 }
