@@ -8,8 +8,7 @@
 #include <cmath>
 
 #include "writers/dxf_text.h"
-#include "writers/number_text.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::sheet {
 

@@ -5,8 +5,7 @@
 #include <cctype>
 #include <limits>
 
-#include "writers/number_text.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::writers {
 

@@ -7,7 +7,7 @@
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
 #include "devseg/pattern/pieces.h"
-#include "devseg/pattern/strain.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::filters {

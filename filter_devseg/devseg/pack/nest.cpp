@@ -24,7 +24,7 @@ constexpr Index supersampling = 4;    // cells that decide on one coarse cell, t
 constexpr int orientations = 32;
 constexpr int few_orientations = 8;           // of very many charts
 constexpr std::size_t many_charts = 40;       // from here on moves are short
-constexpr std::size_t very_many_charts = 250; // from here on the search begins on shelves
+constexpr std::size_t very_many_charts = 250; // from here on the search begins with a first fit
 constexpr double start_growth = 1.15;         // the first square, in sides of the guess
 constexpr double coarse_growth = 1.05;        // while the first square is too small
 constexpr double coarse_step = 0.04;          // first attempt at shrinking, as a share of the side
@@ -88,15 +88,6 @@ std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
     return order;
 }
 
-std::vector<std::size_t> by_height(const std::vector<ChartPoses>& poses) {
-    std::vector<std::size_t> order(poses.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return poses[a].front().height > poses[b].front().height;
-    });
-    return order;
-}
-
 Frame frame_of(double width, double aspect) {
     return {static_cast<Index>(width), std::max(Index{1}, static_cast<Index>(width * aspect))};
 }
@@ -115,11 +106,11 @@ public:
     void grow(double width, double factor, double work) {
         for (int attempt = 0;; ++attempt, width *= factor) {
             frame = frame_of(width, aspect_);
-            // Shelves are the last resort: they succeed as soon as the frame is large enough.
-            const bool shelves = poses_.size() > very_many_charts && layout.empty();
-            if (shelves || attempt >= patient_attempts) {
-                layout = separation_.fill_shelves(by_height(poses_), frame);
-                factor = shelf_growth;
+            // A first fit is the last resort: it succeeds as soon as the frame is large enough.
+            const bool fit = poses_.size() > very_many_charts && layout.empty();
+            if (fit || attempt >= patient_attempts) {
+                layout = separation_.fit_all(by_size(poses_), frame);
+                factor = fit_growth;
             } else if (layout.empty()) {
                 layout = separation_.insert_all(by_size(poses_), frame, options_);
             }
@@ -148,7 +139,7 @@ public:
 
 private:
     static constexpr int patient_attempts = 8;
-    static constexpr double shelf_growth = 1.05;
+    static constexpr double fit_growth = 1.05;
     static constexpr double most_drift = 0.02; // away from the aspect
 
     // A cell of a coarse grid is a large step already: it is taken from one side only, from the one
@@ -249,13 +240,8 @@ std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLa
             continue;
         fine.shrink(fine_step, fine_work * work_factor(n), fine_failures);
         std::vector<Placement> placements(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Spot& spot = fine.layout[i];
-            const ChartCells& c = poses[i][spot.pose];
-            placements[i].cosine = c.cosine;
-            placements[i].sine = c.sine;
-            placements[i].offset = c.offset + cell * Vec2(spot.x, spot.y);
-        }
+        for (std::size_t i = 0; i < n; ++i)
+            placements[i] = placement_of(poses[i][fine.layout[i].pose], fine.layout[i], cell);
         return compact(problem.outlines, placements, {problem.padding, problem.allow_rotation},
                        progress);
     }

@@ -87,6 +87,17 @@ Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>
     return outline;
 }
 
+Outline outline_of(const std::vector<std::vector<Vec2>>& rings) {
+    Outline outline;
+    for (const std::vector<Vec2>& ring : rings) {
+        outline.area += plane::signed_area(ring);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            outline.edges.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    }
+    outline.hull = convex_hull(rings.front());
+    return outline;
+}
+
 double best_box_angle(const Outline& outline) {
     const std::vector<Vec2>& hull = outline.hull;
     double best = 0.0;

@@ -24,6 +24,9 @@ struct Outline {
 
 Outline find_outline(const std::vector<Triangle>& faces, const std::vector<Vec2>& points);
 
+/// Of closed rings, the outer one first.
+Outline outline_of(const std::vector<std::vector<Vec2>>& rings);
+
 /// Angle in radians to turn the chart by, after which its bounding box has the least area.
 double best_box_angle(const Outline& outline);
 

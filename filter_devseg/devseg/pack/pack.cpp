@@ -10,7 +10,6 @@
 #include "devseg/pack/first_fit.h"
 #include "devseg/pack/nest.h"
 #include "devseg/pack/proximity.h"
-#include "devseg/pack/shelves.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pack {
@@ -20,10 +19,8 @@ namespace {
 constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
 constexpr double least_use = 0.1;         // what padding alone must leave of it
 constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each
-// Above this number of charts a first fit comes before nesting, and often is enough; above the next
-// one its grid would be too coarse.
+// Above this number of charts a first fit comes before nesting, and often is enough.
 constexpr std::size_t few_to_fit = 40;
-constexpr std::size_t most_fitted = 10000;
 constexpr double enough_use = 0.75;        // of the box
 constexpr double enough_use_of_many = 0.6; // where nesting would take seconds
 constexpr std::size_t many_charts = 250;
@@ -140,6 +137,20 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     return badness(box_of(outlines, nested).sizes()) < badness(fitted_box) ? nested : fitted;
 }
 
+// In its least box, the longer side below.
+Placement lay_down(const Outline& outline, bool allow_rotation) {
+    Placement placement;
+    const double least = allow_rotation ? best_box_angle(outline) : 0.0;
+    for (const double angle : {least, least + 0.5 * pi}) {
+        placement = {std::cos(angle), std::sin(angle), Vec2::Zero()};
+        const Eigen::AlignedBox2d box = plane::box_of(outline.hull, placement);
+        placement.offset = -box.min();
+        if (!allow_rotation || box.sizes().x() >= box.sizes().y())
+            break;
+    }
+    return placement;
+}
+
 } // namespace
 
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
@@ -162,8 +173,8 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
         outlining);
     auto placing = progress.part(0.95);
     problem.side = guess_side(problem.outlines, options);
-    if (items.size() == 1 || items.size() > most_fitted)
-        result.placements = pack_on_shelves(problem.outlines, options, problem.side, placing);
+    if (items.size() == 1)
+        result.placements = {lay_down(problem.outlines.front(), options.allow_rotation)};
     else if (items.size() > few_to_fit)
         result.placements = fit_or_nest(problem, options, placing);
     else

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "devseg/pack/outline_raster.h"
+#include "devseg/pack/pack.h"
 
 namespace devseg::pack {
 
@@ -17,6 +18,11 @@ struct Spot {
     Index x = 0;
     Index y = 0;
 };
+
+/// Of a chart whose image lies there, on cells of this size.
+inline Placement placement_of(const ChartCells& cells, const Spot& spot, double cell) {
+    return {cells.cosine, cells.sine, cells.offset + cell * Vec2(spot.x, spot.y)};
+}
 
 /// A range of cells or of places; right and top are the last ones.
 struct Window {

@@ -16,6 +16,8 @@
 #include <limits>
 #include <numeric>
 
+#include "devseg/pack/free_cells.h"
+
 namespace devseg::pack {
 
 namespace {
@@ -99,28 +101,14 @@ Layout Separation::insert_all(const std::vector<std::size_t>& order, const Frame
     return layout_;
 }
 
-Layout Separation::fill_shelves(const std::vector<std::size_t>& order, const Frame& frame) {
+Layout Separation::fit_all(const std::vector<std::size_t>& order, const Frame& frame) {
     layout_.assign(poses_.size(), Spot{});
-    frame_ = frame;
-    if (!fits(frame))
-        return {};
-    clamp_to_frame();
-    Index x = 0;
-    Index y = 0;
-    Index shelf = 0;
+    FreeCells cells(frame.width, frame.width);
     for (const std::size_t i : order) {
-        const ChartCells& c = cells(i);
-        if (x + c.width > frame.width) {
-            x = 0;
-            y += shelf;
-            shelf = 0;
-        }
-        if (y + c.height > frame.height)
+        progress_.check();
+        const std::vector<FitImage> images(poses_[i].begin(), poses_[i].end());
+        if (!cells.put(images, 0, frame.height + 1, layout_[i]))
             return {};
-        layout_[i].x = x;
-        layout_[i].y = y;
-        x += c.width;
-        shelf = std::max(shelf, c.height);
     }
     return layout_;
 }

@@ -39,8 +39,9 @@ public:
     Layout insert_all(const std::vector<std::size_t>& order, const Frame& frame,
                       const SeparationOptions& options);
 
-    /// Lays the charts out in rows, without overlaps; nothing when the frame is too small.
-    Layout fill_shelves(const std::vector<std::size_t>& order, const Frame& frame);
+    /// Lays the charts out one after the other, each at the lowest free place; nothing when the
+    /// frame is too small.
+    Layout fit_all(const std::vector<std::size_t>& order, const Frame& frame);
 
     /// Moves charts until none overlap in the frame; false, and the layout as it was, when that
     /// fails. Effort is counted, never timed: the search gives up when `work`, in cell operations,

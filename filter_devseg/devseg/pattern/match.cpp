@@ -10,9 +10,8 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/maps/lpfb.h"
-#include "devseg/pattern/layout.h"
+#include "devseg/pattern/corners.h"
 #include "devseg/pattern/outlines.h"
-#include "devseg/pattern/simplify.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {

@@ -91,6 +91,13 @@ struct PatternPiece {
     }
     PiecePath& path(Index i) { return i == 0 ? outer : holes[static_cast<std::size_t>(i - 1)]; }
     Index path_count() const { return 1 + static_cast<Index>(holes.size()); }
+    /// The points of all outlines, the outer one first.
+    std::vector<std::vector<Vec2>> rings() const {
+        std::vector<std::vector<Vec2>> result;
+        for (Index i = 0; i < path_count(); ++i)
+            result.push_back(path(i).points);
+        return result;
+    }
 };
 
 /// The pieces as they lie on the sheet: within [0, width] × [0, height], seen from outside the

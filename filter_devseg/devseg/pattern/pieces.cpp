@@ -9,17 +9,11 @@
 #include "devseg/base/errors.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
-#include "devseg/pattern/label_point.h"
-#include "devseg/pattern/layout.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
-#include "devseg/pattern/matched_map.h"
-#include "devseg/pattern/notches.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
-#include "devseg/pattern/simplify.h"
-#include "devseg/pattern/split.h"
-#include "devseg/pattern/strain.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -246,10 +240,7 @@ void place_on_sheet(Pattern& pattern, const char* scale_name) {
 }
 
 void place_label(PatternPiece& piece) {
-    std::vector<const std::vector<Vec2>*> outlines = {&piece.outer.points};
-    for (const PiecePath& hole : piece.holes)
-        outlines.push_back(&hole.points);
-    const LabelPoint point = find_label_point(outlines);
+    const LabelPoint point = find_label_point(piece.rings());
     piece.label_position = point.position;
     piece.label_radius = point.radius;
 }
@@ -321,9 +312,9 @@ void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
-    shelve(pieces, moved);
+    move_above(pieces, moved);
     const std::vector<std::size_t> others = overlapping_pieces(pieces);
-    shelve(pieces, others);
+    move_above(pieces, others);
     if (!others.empty())
         pattern.notes.push_back(std::to_string(others.size()) + " of " +
                                 std::to_string(pieces.size()) +

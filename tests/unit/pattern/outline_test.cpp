@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "devseg/pattern/curves.h"
-#include "devseg/pattern/simplify.h"
+#include "devseg/pattern/corners.h"
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 

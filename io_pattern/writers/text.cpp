@@ -1,8 +1,9 @@
 // References
 //   Adobe Systems: Font metrics for the PDF core 14 fonts, Helvetica.afm. 1997.
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace devseg::writers {
@@ -46,6 +47,19 @@ std::string narrowed(const std::string& utf8, unsigned last) {
 }
 
 } // namespace
+
+std::string number_text(double value, int decimals) {
+    char digits[400]; // the largest double has 309 digits
+    const auto end =
+        std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals);
+    std::string text(digits, end.ptr);
+    if (text.find('.') != std::string::npos) {
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.')
+            text.pop_back();
+    }
+    return text == "-0" ? "0" : text;
+}
 
 double text_width(const std::string& text, double size) {
     int width = 0;

@@ -1,4 +1,5 @@
-// Numbers and points in files: fixed notation that knows no locale.
+// Numbers and texts in files: fixed notation that knows no locale, and how much room text takes by
+// the metrics of Helvetica, which every PDF reader knows and the fonts of other readers resemble.
 #pragma once
 
 #include <string>
@@ -25,5 +26,22 @@ std::vector<std::string> point_texts(const DrawingPolyline& line, Text text) {
         texts.pop_back();
     return texts;
 }
+
+constexpr double degrees_per_radian = 180.0 / pi;
+
+/// Width in mm of UTF-8 text at a font size in mm.
+double text_width(const std::string& text, double size);
+
+/// Where the baseline starts, or has its middle: what file formats call the place of a text.
+Vec2 text_baseline(const DrawingText& text);
+
+/// The same for the left end of the baseline, whatever the anchor.
+Vec2 text_start(const DrawingText& text);
+
+/// UTF-8 → Latin-1; characters beyond it become '?', control characters blanks.
+std::string latin1(const std::string& utf8);
+
+/// Only characters that 7-bit files can hold; others become '?', control characters blanks.
+std::string ascii(const std::string& utf8);
 
 } // namespace devseg::writers
