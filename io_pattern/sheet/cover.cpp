@@ -22,7 +22,7 @@ struct ModelView {
     std::vector<PieceLabel> labels; // where the pieces that can be seen are best seen
 };
 
-constexpr int supersampling = 2;   // pixels in each direction that are averaged
+constexpr int picture_samples = 2; // pixels in each direction that are averaged
 constexpr double elevation = 0.32; // radians
 constexpr double frame = 0.03;     // of the picture's side that stays empty on each side
 constexpr double ambient = 0.55;
@@ -153,7 +153,7 @@ std::vector<PieceLabel> find_labels(const std::vector<Index>& piece_of_pixel, in
 // above; a colour for each piece, dark lines along the seams.
 ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double azimuth,
                      int pixels) {
-    const int side = pixels * supersampling;
+    const int side = pixels * picture_samples;
     const Eigen::Matrix3d rotation = view_rotation(azimuth);
     const DepthBuffer buffer = project(mesh, rotation, side);
     const std::vector<declare::Color> colors = piece_colors(mesh, pattern);
@@ -181,20 +181,20 @@ ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double a
             if (border)
                 shade *= line_shade;
             for (std::size_t k = 0; k < 3; ++k)
-                sums[3 * (at(y / supersampling) * at(pixels) + at(x / supersampling)) + k] +=
+                sums[3 * (at(y / picture_samples) * at(pixels) + at(x / picture_samples)) + k] +=
                     static_cast<int>(std::lround(shade * color[k]));
         }
     for (const int sum : sums)
         view.image.rgb.push_back(
-            static_cast<std::uint8_t>(std::min(255, sum / (supersampling * supersampling))));
+            static_cast<std::uint8_t>(std::min(255, sum / (picture_samples * picture_samples))));
     view.labels = find_labels(pieces, side, pattern.pieces.size());
     return view;
 }
 
 const Vec2 a4(210.0, 297.0);
-constexpr double title_size = 7.0; // mm
-constexpr double text_size = 3.2;
-constexpr double line_pitch = 4.6;
+constexpr double cover_title = 7.0; // mm
+constexpr double cover_text = 3.2;
+constexpr double cover_pitch = 4.6;
 constexpr double picture_share = 0.45; // of the page's height at most
 constexpr int picture_pixels = 480;
 constexpr double largest_label = 4.0;
@@ -294,7 +294,7 @@ std::vector<std::string> wrapped(const std::string& text, double width) {
         const std::size_t blank = text.find(' ', from);
         const std::size_t end = blank == std::string::npos ? text.size() : blank + 1;
         const std::string word = text.substr(from, end - from);
-        if (!lines.back().empty() && writers::text_width(lines.back() + word, text_size) > width)
+        if (!lines.back().empty() && writers::text_width(lines.back() + word, cover_text) > width)
             lines.emplace_back();
         lines.back() += word;
         from = end;
@@ -343,7 +343,7 @@ private:
 
 void add_pictures(const Mesh& mesh, const pattern::Pattern& pattern, Book& book) {
     const double side = std::min(0.5 * book.width(), picture_share * book.height());
-    book.advance(side + 0.5 * line_pitch);
+    book.advance(side + 0.5 * cover_pitch);
     double x = book.left();
     for (const double azimuth : azimuths) {
         ModelView view = draw_model(mesh, pattern, azimuth, picture_pixels);
@@ -365,25 +365,25 @@ void add_table(const std::vector<Row>& rows, Book& book) {
     const auto column = [&](std::size_t i) { return columns[i] * book.width(); };
     const char* const heads[] = {"Piece", "Size in mm", "Page", "Cut",
                                  "Joined pieces: seam numbers"};
-    book.advance(line_pitch);
+    book.advance(cover_pitch);
     for (std::size_t i = 0; i < 5; ++i)
-        book.write(column(i), text_size, heads[i]);
-    const double rule = book.cursor() - 0.5 * line_pitch;
+        book.write(column(i), cover_text, heads[i]);
+    const double rule = book.cursor() - 0.5 * cover_pitch;
     book.marks().paths.push_back(
         {"", {{{Vec2(book.left(), rule), Vec2(book.left() + book.width(), rule)}, false}}});
     for (const Row& row : rows) {
         std::vector<std::vector<std::string>> cells;
         std::size_t lines = 0;
         for (std::size_t i = 0; i < 5; ++i) {
-            const double end = i < 4 ? column(i + 1) - text_size : book.width();
+            const double end = i < 4 ? column(i + 1) - cover_text : book.width();
             cells.push_back(wrapped(i < 4 ? row.cells[i] : row.seams, end - column(i)));
             lines = std::max(lines, cells.back().size());
         }
         for (std::size_t line = 0; line < lines; ++line) {
-            book.advance(line_pitch);
+            book.advance(cover_pitch);
             for (std::size_t i = 0; i < 5; ++i)
                 if (line < cells[i].size())
-                    book.write(column(i), text_size, cells[i][line]);
+                    book.write(column(i), cover_text, cells[i][line]);
         }
     }
 }
@@ -396,10 +396,10 @@ std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::
                                                const std::string& title) {
     Book book(layout.page ? layout.page->size : a4,
               layout.page ? std::max(layout.page->margin, 0.5 * sheet_margin) : sheet_margin);
-    book.advance(title_size);
-    book.write(0.0, title_size, title);
-    book.advance(1.5 * line_pitch);
-    book.write(0.0, text_size,
+    book.advance(cover_title);
+    book.write(0.0, cover_title, title);
+    book.advance(1.5 * cover_pitch);
+    book.write(0.0, cover_text,
                std::to_string(pattern.pieces.size()) + " pieces, " +
                    std::to_string(pattern.seams.size()) +
                    " seams. 1 unit of the model = " + writers::number_text(pattern.mm_per_unit, 4) +
@@ -407,10 +407,10 @@ std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::
     add_pictures(mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
     for (const std::string& text : missing_texts(pattern, layout.left_out)) {
-        book.advance(0.5 * line_pitch);
+        book.advance(0.5 * cover_pitch);
         for (const std::string& line : wrapped(text, book.width())) {
-            book.advance(line_pitch);
-            book.write(0.0, text_size, line);
+            book.advance(cover_pitch);
+            book.write(0.0, cover_text, line);
         }
     }
     return book.take();

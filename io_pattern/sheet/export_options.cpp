@@ -21,7 +21,7 @@ void check(const char* name, double value, double least, const char* expected) {
         (std::isfinite(value) ? writers::number_text(value, 6) : "no finite number"));
 }
 
-constexpr double largest_page = 1e5; // mm
+constexpr double longest_side = 1e5; // mm
 // Two pages share the overlap; what they add to the sheet must be more than a sliver.
 constexpr double least_room = tile_overlap + 20.0; // mm
 
@@ -38,7 +38,7 @@ double side(const std::string& text) {
     const char* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, value);
     const bool whole = read.ec == std::errc() && read.ptr == end;
-    return whole && value > 0.0 && value <= largest_page ? value : 0.0;
+    return whole && value > 0.0 && value <= longest_side ? value : 0.0;
 }
 
 Vec2 page_size(const std::string& given) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
-#include "devseg/pack/free_cells.h"
+#include "devseg/pack/first_fit.h"
 #include "devseg/plane/plane.h"
 #include "sheet/segment_grid.h"
 #include "writers/text.h"
@@ -16,7 +16,6 @@ namespace devseg::sheet {
 
 namespace {
 
-constexpr double cells_across = 320.0; // of a sheet's width
 // The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
 std::vector<pack::FitImage> poses_of(const SheetPiece& piece, const NestingOptions& options,
                                      double cell) {
@@ -49,8 +48,7 @@ double box_area(const SheetPiece& piece) {
 constexpr double most_pages_across = 200.0; // of one piece: more is a wrong scale
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
-constexpr double piece_gap = 3.0;  // mm
-constexpr double gap_share = 0.02; // of the size of the layout
+constexpr double piece_gap = 3.0; // mm
 
 // Nesting by outline covers about this share of a sheet.
 constexpr double covered_share = 0.7;
@@ -112,7 +110,7 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     }
     NestingOptions nesting;
     const double side = std::max(std::sqrt(area / covered_share), widest);
-    nesting.gap = std::min(piece_gap, gap_share * side);
+    nesting.gap = std::min(piece_gap, pattern::gap_share * side);
     nesting.width = side + nesting.gap;
     nesting.keep_grain = keep_grain;
     place(layout.pieces, all, nest_pieces(pointers(layout.pieces, all), nesting, progress), 0, 0.0);
@@ -260,7 +258,7 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
 
 Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingOptions& options,
                     Progress& progress) {
-    const double cell = options.width / cells_across;
+    const double cell = options.width / pack::sheet_cells;
     // Half of the gap around each piece may lie outside of the sheet.
     const auto cells = [&](double length) {
         return static_cast<Index>(std::floor((length + options.gap) / cell));
@@ -282,8 +280,8 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
         progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
         const std::vector<pack::FitImage> poses = poses_of(*pieces[i], options, cell);
         pack::Spot spot;
-        auto sheet = std::find_if(sheets.begin(), sheets.end(), [&](pack::FreeCells& cells) {
-            return cells.put(poses, 0, limit, spot);
+        auto sheet = std::find_if(sheets.begin(), sheets.end(), [&](pack::FreeCells& free) {
+            return free.put(poses, 0, limit, spot);
         });
         if (sheet == sheets.end()) {
             pack::FreeCells fresh(columns, columns);

@@ -13,6 +13,7 @@
 namespace devseg::sheet {
 
 constexpr double sheet_margin = 10.0; // mm, around pieces where no page says otherwise
+constexpr double sheet_gap = 2.0 * sheet_margin;
 
 struct NestingOptions {
     double width = 0.0;      // mm

@@ -11,9 +11,8 @@ namespace devseg::sheet {
 
 namespace {
 
-constexpr double notch_length = 4.0;   // mm, where there is no allowance
+constexpr double mark_length = 4.0;    // mm: of notches where there is no allowance, of arrow heads
 constexpr double notch_share = 0.6;    // of the allowance
-constexpr double arrow_length = 4.0;   // mm
 constexpr double arrow_angle = 0.4;    // radians
 constexpr double shortest_grain = 6.0; // mm: less cannot be laid along a thread
 
@@ -49,16 +48,15 @@ void add_notch(const pattern::PiecePath& path, const pattern::SeamSide& side, do
             return;
         }
     }
-    result.notches.push_back({place.position, place.position - notch_length * outward});
+    result.notches.push_back({place.position, place.position - mark_length * outward});
 }
 
 // Font sizes in mm: the largest that fits. Less than the last cannot be read on paper.
 constexpr double name_sizes[] = {8.0, 6.5, 5.0, 4.0, 3.2, 2.5};
 constexpr double number_sizes[] = {3.5, 3.0, 2.5};
-constexpr double capital_share = 0.72;
 constexpr double clearance = 0.2;    // of the font size, around a text
 constexpr double detail_share = 0.5; // of the name's size
-constexpr double line_pitch = 1.3;   // of the font size
+constexpr double name_pitch = 1.3;   // of the font size
 
 // A name may lie anywhere in its piece: so many places are tried along x and y.
 constexpr int name_places = 14;
@@ -84,7 +82,7 @@ Box text_box(const writers::DrawingText& text) {
     const Vec2 up = plane::left_of(along);
     const Vec2 half =
         (0.5 * writers::text_width(text.text, text.size) + clearance * text.size) * along;
-    const Vec2 rise = (0.5 * capital_share + clearance) * text.size * up;
+    const Vec2 rise = (0.5 * writers::capital_height + clearance) * text.size * up;
     return {text.position - half - rise, text.position + half - rise, text.position + half + rise,
             text.position - half + rise};
 }
@@ -194,7 +192,7 @@ bool add_name(const pattern::PatternPiece& piece, const pattern::Pattern& patter
     const writers::DrawingText name = result.names.back();
     room.take(name);
     const std::string detail = quantity_text(piece, pattern);
-    const writers::DrawingText line{name.position - Vec2(0.0, line_pitch * 0.75 * name.size),
+    const writers::DrawingText line{name.position - Vec2(0.0, name_pitch * 0.75 * name.size),
                                     std::max(detail_share * name.size, name_sizes[5]), detail};
     if (!detail.empty() && room.is_free(line, false)) {
         room.take(line);
@@ -245,8 +243,8 @@ private:
             for (const double share : number_places) {
                 const Place p = place(share);
                 text_.size = size;
-                text_.position =
-                    p.position + side * (0.5 * capital_share + number_gap) * size * p.inward;
+                text_.position = p.position + side * (0.5 * writers::capital_height + number_gap) *
+                                                  size * p.inward;
                 text_.angle = upright(std::atan2(p.along.y(), p.along.x()));
                 if (side > 0.0 ? room_.is_free(text_, over_lines)
                                : room_.is_free_outside(text_, over_lines))
@@ -261,7 +259,7 @@ private:
         text_.size = number_sizes[2];
         const double half =
             0.5 * writers::text_width(text_.text, text_.size) + clearance * text_.size;
-        const double rise = (0.5 * capital_share + clearance) * text_.size;
+        const double rise = (0.5 * writers::capital_height + clearance) * text_.size;
         for (double length = shortest_leader; length <= longest_leader; length *= leader_step)
             for (const double share : leader_places)
                 for (const double angle : leader_angles) {
@@ -335,7 +333,7 @@ void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
         return;
     result.grain_line = piece.grain;
     const Vec2 direction = (to - from) / length;
-    const double head = std::min(arrow_length, 0.3 * length);
+    const double head = std::min(mark_length, 0.3 * length);
     const auto barb = [&](const Vec2& tip, const Vec2& along, double angle) {
         return Vec2(tip - head * (Eigen::Rotation2Dd(angle) * along));
     };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "devseg/plane/plane.h"
 #include "sheet/segment_grid.h"
@@ -11,8 +12,7 @@ namespace devseg::sheet {
 
 namespace {
 
-constexpr double sheet_gap = 2.0 * sheet_margin; // between two sheets
-constexpr double check_text = 8.0;               // mm, font size
+constexpr double check_text = 8.0; // mm, font size
 
 // Importers that scale drawings do it unseen: a ruler on these squares shows it.
 struct CheckSquare {
@@ -32,15 +32,13 @@ constexpr int usual_decimals = 3;
 constexpr double grid_share = 1e-4;
 constexpr double area_tolerance = 2e-4;
 constexpr double negligible_piece = 1e-6;
-// More digits than a double holds next to the margin say nothing.
-constexpr int most_decimals = 15;
 
 constexpr double caption_share = 0.32;  // of the margin: font size
 constexpr double largest_caption = 3.2; // mm
 constexpr double least_caption = 1.2;
 constexpr double cross = 2.5; // mm, half the size of a registration cross
-constexpr double title_size = 6.0;
-constexpr double text_size = 3.5;
+constexpr double page_title = 6.0;
+constexpr double page_text = 3.5;
 
 writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
     return {{low, low + Vec2(size.x(), 0.0), low + size, low + Vec2(0.0, size.y())}, true};
@@ -85,7 +83,8 @@ int decimals_for(const writers::DrawingLayer& cut) {
     };
     const double finest = grid_share * box.sizes().maxCoeff();
     int decimals = usual_decimals;
-    while (decimals < most_decimals &&
+    // More digits than a double holds next to the margin say nothing.
+    while (decimals < std::numeric_limits<double>::digits10 &&
            (std::pow(10.0, -decimals) > finest || !holds(std::pow(10.0, -decimals))))
         ++decimals;
     return decimals;
@@ -359,21 +358,21 @@ writers::DocumentPage overview_page(const PatternLayout& layout, const writers::
     const Vec2 low = Vec2::Constant(format.margin);
     Vec2 room = format.printable();
     const double squares = check_squares[0].side + check_squares[1].side + format.margin;
-    const double foot = check_squares[1].side + 2.0 * text_size;
+    const double foot = check_squares[1].side + 2.0 * page_text;
     const bool has_squares = room.x() >= squares && room.y() >= 2.5 * foot;
     if (has_squares) {
         double x = low.x();
         for (const CheckSquare& square : check_squares) {
             const Vec2 side = Vec2::Constant(square.side);
             marks.paths.push_back({"", {rectangle(Vec2(x, low.y()), side)}});
-            marks.texts.push_back({Vec2(x, low.y()) + 0.5 * side, text_size, square.text});
+            marks.texts.push_back({Vec2(x, low.y()) + 0.5 * side, page_text, square.text});
             x += square.side + format.margin;
         }
         room.y() -= foot;
     }
-    room.y() -= 2.0 * title_size;
+    room.y() -= 2.0 * page_title;
     const double top = format.size.y() - format.margin;
-    marks.texts.push_back({Vec2(low.x(), top - 0.5 * title_size), title_size,
+    marks.texts.push_back({Vec2(low.x(), top - 0.5 * page_title), page_title,
                            title + ": overview, not to scale", 0.0, writers::TextAnchor::left});
     // Sheets in rows and columns, all at one scale.
     const std::size_t count = layout.sheets.size();
@@ -387,7 +386,7 @@ writers::DocumentPage overview_page(const PatternLayout& layout, const writers::
     for (std::size_t s = 0; s < count; ++s) {
         const writers::DrawingSheet& sheet = drawing.sheets[s];
         const Vec2 place(low.x() + cell.x() * static_cast<double>(s % columns),
-                         top - 2.0 * title_size - cell.y() * static_cast<double>(s / columns) -
+                         top - 2.0 * page_title - cell.y() * static_cast<double>(s / columns) -
                              scale * sheet.size.y());
         page.windows.push_back({sheet.low, sheet.size, place, scale});
         places.push_back(place);
@@ -397,7 +396,7 @@ writers::DocumentPage overview_page(const PatternLayout& layout, const writers::
         const Vec2 corner = places[s] + scale * (pages[i].window.low - drawing.sheets[s].low);
         const Vec2 size = scale * format.printable();
         marks.paths.push_back({"", {rectangle(corner, size)}});
-        const double font = std::min(title_size, 0.3 * size.minCoeff());
+        const double font = std::min(page_title, 0.3 * size.minCoeff());
         marks.texts.push_back({corner + Vec2(0.6 * font, size.y() - 0.7 * font), font,
                                std::to_string(i + 1), 0.0, writers::TextAnchor::left});
     }

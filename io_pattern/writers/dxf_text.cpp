@@ -11,9 +11,6 @@ namespace devseg::writers {
 
 namespace {
 
-// Text heights are those of capital letters, not of the font.
-constexpr double capital_height = 0.72;
-
 // The seven colours that all programs show alike, by their number.
 struct IndexedColour {
     int number;

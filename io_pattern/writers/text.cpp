@@ -10,9 +10,6 @@ namespace devseg::writers {
 
 namespace {
 
-// From the middle of capital letters down to the baseline, in font sizes: half of CapHeight 718.
-constexpr double half_capital = 0.36;
-
 // Character widths from the blank (32) to the tilde (126), in thousandths of the font size.
 constexpr std::array<int, 95> widths = {
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
@@ -69,7 +66,7 @@ double text_width(const std::string& text, double size) {
 }
 
 Vec2 text_baseline(const DrawingText& text) {
-    const double drop = half_capital * text.size;
+    const double drop = 0.5 * capital_height * text.size;
     return text.position + drop * Vec2(std::sin(text.angle), -std::cos(text.angle));
 }
 

@@ -28,6 +28,7 @@ std::vector<std::string> point_texts(const DrawingPolyline& line, Text text) {
 }
 
 constexpr double degrees_per_radian = 180.0 / pi;
+constexpr double capital_height = 0.72; // of the font size
 
 /// Width in mm of UTF-8 text at a font size in mm.
 double text_width(const std::string& text, double size);

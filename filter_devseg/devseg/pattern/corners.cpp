@@ -17,8 +17,8 @@ namespace {
 // Lines are fitted to stretches of so many edges of the mesh, within these shares of the outline's
 // size: less shows its staircase, more belongs to the shape of the piece.
 constexpr double reach_edges = 5.0;
-constexpr double least_reach = 0.1;
-constexpr double most_reach = 0.18;
+constexpr double shortest_reach = 0.1;
+constexpr double longest_reach = 0.18;
 
 // A corner turns by this share of its angle within half of the reach as well; a bend that is
 // rounded over the reach turns by half.
@@ -30,7 +30,7 @@ constexpr double least_seam = 0.7;
 
 // Lines are as uncertain as a saw tooth is steep that leaves them as far as the outline does; a
 // corner must turn by so many times that more.
-constexpr double raggedness = 2.0;
+constexpr double line_raggedness = 2.0;
 
 // A line through a stretch of outline: its unit direction (0: there is none), and the slope of a
 // straight line across it that would be off by as much in the mean square.
@@ -95,13 +95,13 @@ public:
         return {step * axis.dot(here) >= 0.0 ? axis : Vec2(-axis), std::sqrt(12.0) * off / weight};
     }
 
-    /// Whether the outline turns at point i by more than the angle and what its raggedness
+    /// Whether the outline turns at point i by more than the angle and what its line_raggedness
     /// explains; `turn` is by how much.
     bool turns(Index i, double reach, double angle, double& turn) const {
         const FittedLine in = fit(i, reach, -1);
         const FittedLine out = fit(i, reach, 1);
         turn = plane::angle_between(in.direction, out.direction);
-        turn -= raggedness * (in.slope + out.slope);
+        turn -= line_raggedness * (in.slope + out.slope);
         return turn > angle;
     }
 
@@ -138,8 +138,9 @@ std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Cha
     const std::vector<std::vector<Vec2>> sides = points_of(pieces, chain);
     const double size = size_of(pieces, chain);
     const double edge = Polyline(sides.front()).length() / static_cast<double>(chain.count());
-    return find_corners(
-        sides, std::clamp(reach_edges * edge, least_reach * size, most_reach * size), corner_angle);
+    return find_corners(sides,
+                        std::clamp(reach_edges * edge, shortest_reach * size, longest_reach * size),
+                        corner_angle);
 }
 
 // The tolerance holds for outlines of this size (the square root of the area, mm) and above, and in

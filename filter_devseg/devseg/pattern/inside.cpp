@@ -17,9 +17,6 @@ namespace {
 
 using Ring = std::vector<Vec2>;
 
-// Moves below this share of the piece's size are rounding.
-constexpr double no_move = 1e-9;
-
 // An outline before it was moved, and how far each of its points was.
 struct MovedRing {
     Ring points;
@@ -61,9 +58,6 @@ Vec2 interpolated(const std::vector<MovedRing>& rings, const Vec2& p) {
     return weights != 0.0 ? Vec2(sum / weights) : Vec2::Zero();
 }
 
-// Thinner faces, as a share of their longest edge squared, have no shape to compare.
-constexpr double no_area = 1e-12;
-
 // Edges 0 → 1 and 0 → 2 of the face, laid into the plane.
 Eigen::Matrix2d rest_edges(const Mesh& mesh, const Triangle& t) {
     const Vec3 p = mesh.points[t[1]] - mesh.points[t[0]];
@@ -77,7 +71,8 @@ Eigen::Matrix2d rest_edges(const Mesh& mesh, const Triangle& t) {
 FaceStrain strain_of(const Eigen::Matrix2d& rest, const Eigen::Matrix2d& paper) {
     const double size = std::max(rest.squaredNorm(), paper.squaredNorm());
     FaceStrain strain;
-    if (!(rest.determinant() > no_area * size) || !(std::abs(paper.determinant()) > no_area * size))
+    if (!(rest.determinant() > vanishing * size) ||
+        !(std::abs(paper.determinant()) > vanishing * size))
         return strain;
     const Eigen::Matrix2d map = paper * rest.inverse();
     // σ₁² + σ₂² and σ₁ σ₂ determine σ₁ ± σ₂.
@@ -99,7 +94,7 @@ std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
     for (Index i = 0; i < piece.path_count(); ++i) {
         moved.push_back(moved_ring(piece.path(i), piece.place, uv));
         for (const Vec2& move : moved.back().moves)
-            any = any || move.norm() > no_move * piece.box.sizes().norm();
+            any = any || move.norm() > no_extent * piece.box.sizes().norm();
     }
     // Corners at one vertex are mostly one place: the last one is remembered.
     std::vector<std::pair<Vec2, Vec2>> known; // before and after

@@ -21,7 +21,7 @@ namespace {
 constexpr double energy_increase = 0.02;
 
 // Both sides of every seam agree to this share where a flattening kept the lengths.
-constexpr double same_length = 1e-3;
+constexpr double kept_length = 1e-3;
 
 // The map of a chart at the scale of the layout, positively oriented.
 flatten::FlatChart read_chart(const CornerUv& uv, double scale, atlas::ChartSurface surface) {
@@ -57,7 +57,7 @@ bool keeps_lengths(const Mesh& mesh, const FlatLayout& layout, const CornerUv& u
         if (layout.charts.seam[h] == 0)
             continue;
         const double length = mesh.edge_length(h);
-        if (std::abs((uv[Mesh::next(h)] - uv[h]).norm() - length) > same_length * length)
+        if (std::abs((uv[Mesh::next(h)] - uv[h]).norm() - length) > kept_length * length)
             return false;
     }
     return true;

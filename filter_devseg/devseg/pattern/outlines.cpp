@@ -8,17 +8,13 @@
 #include <utility>
 
 #include "devseg/graph/min_cut.h"
-#include "devseg/pack/free_cells.h"
+#include "devseg/pack/first_fit.h"
 #include "devseg/pattern/shapes.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
 
 namespace {
-
-// Share of its squared perimeter that a hole must enclose. Less is a cut whose sides coincide,
-// such as the gate makes at edges with three faces: nothing to cut out there.
-constexpr double no_area = 1e-12;
 
 // Corners of the texture coordinates along a boundary loop, brought to paper.
 PiecePath trace(const atlas::ChartSurface& surface, const std::vector<Index>& loop,
@@ -40,7 +36,9 @@ void set_paths(PatternPiece& piece, std::vector<PiecePath> paths) {
     piece.outer = std::move(paths.front());
     for (std::size_t i = 1; i < paths.size(); ++i) {
         const double length = plane::perimeter(paths[i].points);
-        if (std::abs(paths[i].area) > no_area * length * length)
+        // Less is a cut whose sides coincide, such as the gate makes at edges with three faces:
+        // nothing to cut out there.
+        if (std::abs(paths[i].area) > vanishing * length * length)
             piece.holes.push_back(std::move(paths[i]));
     }
     measure_outlines(piece);
@@ -59,10 +57,6 @@ std::vector<std::size_t> not_clear(const std::vector<PatternPiece>& pieces,
             }
     return result;
 }
-
-// Distance of pieces that had to be moved, as a share of the layout's size.
-constexpr double moved_gap = 0.02;
-constexpr double cells_along = 320.0; // the layout's longer side
 
 // Even-odd rule over all outlines.
 bool is_inside(const PatternPiece& piece, const Vec2& p) {
@@ -312,8 +306,8 @@ void move_above(std::vector<PatternPiece>& pieces, std::vector<std::size_t> move
         return pieces[a].box.sizes().y() > pieces[b].box.sizes().y();
     });
     const Eigen::AlignedBox2d layout = bounding_box(pieces);
-    const double gap = moved_gap * layout.sizes().maxCoeff();
-    const double cell = layout.sizes().maxCoeff() / cells_along;
+    const double gap = gap_share * layout.sizes().maxCoeff();
+    const double cell = layout.sizes().maxCoeff() / pack::sheet_cells;
     // No wider than the layout, but for half of the gap around each piece.
     const Index columns = static_cast<Index>((layout.sizes().x() + gap) / cell) + 2;
     pack::FreeCells sheet(columns, columns);

@@ -12,6 +12,10 @@
 
 namespace devseg::pattern {
 
+constexpr double no_extent = 1e-9;  // share of a size below which lengths are rounding
+constexpr double vanishing = 1e-12; // the same for areas
+constexpr double gap_share = 0.02;  // between pieces that are laid out anew, of the layout's size
+
 /// One cubic Bézier curve of an outline; straight lines are curves as well (`is_line`).
 struct OutlineCurve {
     std::array<Vec2, 4> control{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}; // mm

@@ -25,19 +25,12 @@ namespace {
 constexpr double smallest_layout_mm = 1e-10;
 constexpr double largest_layout_mm = 1e12;
 
-// A chart that covers less than this share of its own area has collapsed in the plane.
-constexpr double collapsed = 1e-6;
+// A chart that covers less than this share of its own area has collapsed_chart in the plane.
+constexpr double collapsed_chart = 1e-6;
 
-// A chart with less than this share of all area, on the model and in the plane, is a degenerate
-// face that some atlas gave a chart of its own. On a sheet of a square metre it is 1 µm wide.
-constexpr double crumb = 1e-12;
-
-// Charts that have collapsed are left out up to this share of the model: makers of atlases give
-// faces that they cannot unfold one point.
+// Charts that have collapsed_chart are left out up to this share of the model: makers of atlases
+// give faces that they cannot unfold one point.
 constexpr double left_out_share = 1e-3;
-
-// A model thinner along y than this share of its size has no height to be scaled by.
-constexpr double no_extent = 1e-9;
 
 // A piece may lose this share of its area to folds before that is reported.
 constexpr double fold_tolerance = 1e-3;
@@ -94,11 +87,14 @@ struct ChartAreas {
     std::vector<double> covered; // the same, faces counted without sign
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
-    Index left_out = 0;       // small charts that have collapsed: their area in the plane is 0
+    Index left_out = 0; // small charts that have collapsed_chart: their area in the plane is 0
 
     double scale = 1.0; // internal units for one unit of the texture coordinates
+    // A degenerate face that some atlas gave a chart of its own. On a sheet of a square metre it is
+    // 1 µm wide.
     bool is_crumb(std::size_t c) const {
-        return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
+        return surface[c] <= vanishing * surface_total &&
+               std::abs(plane[c]) <= vanishing * plane_total;
     }
     // Signed areas in the plane, 0 for crumbs.
     std::vector<double> worth_cutting() const {
@@ -140,7 +136,7 @@ void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
     double lost = 0.0;
     for (std::size_t c = 0; c < is_bad.size(); ++c)
         if (!areas.is_crumb(c) &&
-            !(std::abs(areas.plane[c]) * scale * scale >= collapsed * areas.surface[c])) {
+            !(std::abs(areas.plane[c]) * scale * scale >= collapsed_chart * areas.surface[c])) {
             is_bad[c] = 1;
             ++count;
             lost += areas.surface[c];

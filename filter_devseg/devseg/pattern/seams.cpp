@@ -124,8 +124,8 @@ constexpr Index powers = 4;
 // A notch keeps away from bends by moving along the seam, by these shares of the distance to its
 // neighbour: an outline that turns by more than this angle near it is no place for a notch.
 constexpr double shifts[] = {0.0, 0.08, -0.08, 0.16, -0.16, 0.24, -0.24, 0.32, -0.32};
-constexpr double sharp_cosine = 0.87; // 30 degrees
-constexpr double near_by = 2.5;       // mm on both sides
+constexpr double bend_cosine = 0.87; // 30 degrees
+constexpr double near_by = 2.5;      // mm on both sides
 
 // Cosine of the angle by which the sides turn around this share of their length, the sharper one.
 double straightness(const Pattern& pattern, const Seam& seam, double share) {
@@ -150,7 +150,7 @@ double straight_place(const Pattern& pattern, const Seam& seam, double wish, dou
             best = share;
             best_cosine = cosine;
         }
-        if (cosine >= sharp_cosine)
+        if (cosine >= bend_cosine)
             break;
     }
     return best;

@@ -22,13 +22,13 @@ using Complex = std::complex<double>;
 // Places along an outline that are compared at first; afterwards each is brought to the nearest
 // point of the other outline.
 constexpr std::size_t places = 96;
-constexpr int rounds = 12;
+constexpr int motion_rounds = 12;
 
 // Two pieces of one shape differ by less than this share of their size, whatever the tolerance.
 constexpr double size_share = 0.01;
 
 // Outlines of one shape differ in length by less than this share, however ragged they are.
-constexpr double raggedness = 0.1;
+constexpr double length_raggedness = 0.1;
 
 // The grain line leaves this share of its length free at each end.
 constexpr double grain_margin = 0.12;
@@ -139,7 +139,7 @@ bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vec
 // Brings the points to the nearest ones of the other outline, again and again.
 bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
                const std::vector<Vec2>& even, Motion motion, double tolerance) {
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < motion_rounds; ++round) {
         std::vector<Vec2> nearest;
         for (const Vec2& p : even)
             nearest.push_back(nearest_on(b.front(), motion(p)));
@@ -202,7 +202,7 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
            near(of_a.mean_radius, of_b.mean_radius, 2.0 * tolerance) &&
            near(of_a.radius, of_b.radius, 4.0 * tolerance) &&
            near(a.area, b.area, tolerance * std::max(of_a.around, of_b.around)) &&
-           near(of_a.around, of_b.around, raggedness * of_a.around);
+           near(of_a.around, of_b.around, length_raggedness * of_a.around);
 }
 
 // The stretch of the line through `p` around p that lies inside the piece.
@@ -228,7 +228,7 @@ std::array<Vec2, 2> chord_through(const PatternPiece& piece, const Vec2& p, cons
 }
 
 // A name may be off the best place by this share of its room: nobody sees it.
-constexpr double precision = 0.02;
+constexpr double label_precision = 0.02;
 
 // Bounds the time on outlines with thousands of points; a compact piece needs about 50 cells.
 constexpr int cell_limit = 1000;
@@ -364,7 +364,7 @@ LabelPoint find_label_point(const Outlines& outlines) {
         cells.pop();
         if (cell.distance > best.radius)
             best = {cell.centre, cell.distance};
-        if (cell.bound <= (1.0 + precision) * best.radius)
+        if (cell.bound <= (1.0 + label_precision) * best.radius)
             break;
         const double half = 0.5 * cell.half;
         for (const double dx : {-half, half})
