@@ -16,12 +16,35 @@ namespace devseg::sheet {
 
 namespace {
 
+// Turns that are tried for the least box around a piece, within a quarter. The exact box, which
+// lies on an edge of the outline, took more pages.
+constexpr int box_turns = 30;
+
+Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
+    return plane::box_of(points, [&](const Vec2& p) { return Eigen::Rotation2Dd(angle) * p; })
+        .sizes();
+}
+
+double least_box_angle(const std::vector<Vec2>& points) {
+    double best = 0.0;
+    double least = infinite;
+    for (int i = 0; i < box_turns; ++i) {
+        const double angle = 0.5 * pi * i / box_turns;
+        const double area = turned_size(points, angle).prod();
+        if (area < least * (1.0 - 1e-9)) {
+            least = area;
+            best = angle;
+        }
+    }
+    return best;
+}
+
 // The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
 std::vector<pack::FitImage> poses_of(const SheetPiece& piece, const NestingOptions& options,
                                      double cell) {
     const bool grows = options.height <= 0.0;
     const pack::Outline outline = pack::outline_of(piece.cut);
-    double angle = pack::best_box_angle(outline);
+    double angle = least_box_angle(outline.hull);
     int turns = 4;
     const Vec2 grain = piece.grain_line[1] - piece.grain_line[0];
     if (options.keep_grain && grain != Vec2::Zero()) {
@@ -31,9 +54,7 @@ std::vector<pack::FitImage> poses_of(const SheetPiece& piece, const NestingOptio
     std::vector<pack::FitImage> poses;
     for (int i = 0; i < turns; ++i) {
         const double turn = angle + 2.0 * pi * i / turns;
-        const Vec2 size = plane::box_of(outline.hull, [&](const Vec2& p) {
-                              return plane::turned(p, std::cos(turn), std::sin(turn));
-                          }).sizes();
+        const Vec2 size = turned_size(outline.hull, turn);
         if (size.x() > options.width + cell || (!grows && size.y() > options.height + cell))
             continue;
         poses.emplace_back(pack::rasterize(outline, turn, cell, 0.5 * options.gap));

@@ -106,8 +106,10 @@ struct ChartAreas {
     }
 };
 
-ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts) {
+ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
+                          double scale) {
     ChartAreas areas;
+    areas.scale = scale;
     areas.surface.assign(at(charts.count), 0.0);
     areas.plane.assign(at(charts.count), 0.0);
     areas.covered.assign(at(charts.count), 0.0);
@@ -123,7 +125,6 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::Cha
         throw InvalidMesh(
             std::string("expected texture coordinates that cover an area, found ") +
             (areas.plane_total > 0.0 ? "some that are too large to measure" : "none") + remedy);
-    areas.scale = atlas::layout_scale(mesh, charts, uv);
     return areas;
 }
 
@@ -246,14 +247,13 @@ SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOpti
                          double mm, ChartAreas& areas, Progress& progress) {
     SplitCharts result;
     result.charts = atlas::charts_from_uv(mesh, uv);
-    areas = measure_charts(mesh, uv, result.charts);
+    const double scale = atlas::layout_scale(mesh, result.charts, uv);
+    areas = measure_charts(mesh, uv, result.charts, scale);
     check_charts(result.charts, areas);
     if (options.max_piece_mm > 0.0) {
-        const double scale = areas.scale;
         result = split_large_charts(mesh, uv, result.charts, options.max_piece_mm / (scale * mm),
                                     progress);
-        areas = measure_charts(mesh, uv, result.charts);
-        areas.scale = scale;
+        areas = measure_charts(mesh, uv, result.charts, scale);
         check_charts(result.charts, areas);
     }
     return result;
