@@ -16,6 +16,9 @@ namespace devseg::pattern {
 
 namespace {
 
+// Along a layout: parts of split pieces are small there, and half of a cell is lost around each.
+constexpr double layout_cells = 1000.0;
+
 // Corners of the texture coordinates along a boundary loop, brought to paper.
 PiecePath trace(const atlas::ChartSurface& surface, const std::vector<Index>& loop,
                 const CornerUv& uv, const PaperMap& place) {
@@ -307,7 +310,7 @@ void move_above(std::vector<PatternPiece>& pieces, std::vector<std::size_t> move
     });
     const Eigen::AlignedBox2d layout = bounding_box(pieces);
     const double gap = gap_share * layout.sizes().maxCoeff();
-    const double cell = layout.sizes().maxCoeff() / pack::sheet_cells;
+    const double cell = layout.sizes().maxCoeff() / layout_cells;
     // No wider than the layout, but for half of the gap around each piece.
     const Index columns = static_cast<Index>((layout.sizes().x() + gap) / cell) + 2;
     pack::FreeCells sheet(columns, columns);
