@@ -7,7 +7,7 @@
 #include "devseg/base/errors.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
-#include "sheet/pattern_drawing.h"
+#include "sheet/sheet_drawing.h"
 #include "writers/dxf_writer.h"
 #include "writers/pdf_writer.h"
 #include "writers/svg_writer.h"

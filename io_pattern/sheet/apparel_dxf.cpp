@@ -8,16 +8,14 @@
 #include <cmath>
 
 #include "writers/dxf_text.h"
-#include "writers/number_text.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::sheet {
 
 namespace {
 
-constexpr double sheet_gap = 20.0; // mm
-constexpr double text_size = 4.0;  // mm
-constexpr double line_pitch = 6.0; // mm
+constexpr double apparel_text = 4.0;  // mm
+constexpr double apparel_pitch = 6.0; // mm
 constexpr int decimals = 4;
 
 // Block and style names: capital letters, digits, underscores and hyphens.
@@ -63,8 +61,8 @@ void write_notch(writers::DxfText& file, const SheetNotch& notch) {
 void write_texts(writers::DxfText& file, const char* layer, Vec2 place,
                  const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
-        file.text(layer, {place, text_size, line, 0.0, writers::TextAnchor::left});
-        place.y() -= line_pitch;
+        file.text(layer, {place, apparel_text, line, 0.0, writers::TextAnchor::left});
+        place.y() -= apparel_pitch;
     }
 }
 
@@ -119,7 +117,7 @@ void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const 
                                 pattern.pieces[seam.sides[1 - side].piece].name);
     const Vec2 place = piece.names.empty() ? piece.box().center() : piece.names.front().position;
     write_texts(file, "15", place, seams);
-    write_texts(file, "1", place + Vec2(0.0, 6.0 * line_pitch),
+    write_texts(file, "1", place + Vec2(0.0, 6.0 * apparel_pitch),
                 {"Piece Name: " + piece.name, "Size: M", "Quantity: " + quantity(source),
                  "Annotation: " + annotation(source, pattern), "Category: PATTERN",
                  "Fabric: MAIN"});
@@ -150,7 +148,7 @@ std::string apparel_dxf_bytes(const pattern::Pattern& pattern, const PatternLayo
         file.group(2, code(piece.name));
         file.point(Vec2::Zero());
     }
-    write_texts(file, "1", Vec2(0.0, -line_pitch),
+    write_texts(file, "1", Vec2(0.0, -apparel_pitch),
                 {"Style Name: " + code(header.style), "Creation Date: " + header.date,
                  "Author: DEVSEG", "Sample Size: M", "Grading Rule Table: NONE", "Units: METRIC",
                  "ASTM/D13Proposal 1 Version: D 6673-04"});

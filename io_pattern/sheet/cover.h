@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "devseg/mesh/mesh.h"
-#include "sheet/pages.h"
+#include "devseg/pattern/pattern.h"
+#include "sheet/sheet_drawing.h"
+#include "writers/drawing.h"
 
 namespace devseg::sheet {
 

@@ -1,9 +1,10 @@
 #include "sheet/export_options.h"
 
+#include <charconv>
 #include <cmath>
 
 #include "devseg/base/errors.h"
-#include "writers/number_text.h"
+#include "writers/text.h"
 
 namespace devseg::sheet {
 
@@ -18,6 +19,44 @@ void check(const char* name, double value, double least, const char* expected) {
     throw InvalidParameter(
         std::string(name) + ": expected " + expected + ", found " +
         (std::isfinite(value) ? writers::number_text(value, 6) : "no finite number"));
+}
+
+constexpr double longest_side = 1e5; // mm
+// Two pages share the overlap; what they add to the sheet must be more than a sliver.
+constexpr double least_room = tile_overlap + 20.0; // mm
+
+struct NamedPage {
+    const char* name;
+    double width;
+    double height;
+};
+constexpr NamedPage named_pages[] = {
+    {"a4", 210.0, 297.0}, {"letter", 215.9, 279.4}, {"a3", 297.0, 420.0}};
+
+double side(const std::string& text) {
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, value);
+    const bool whole = read.ec == std::errc() && read.ptr == end;
+    return whole && value > 0.0 && value <= longest_side ? value : 0.0;
+}
+
+Vec2 page_size(const std::string& given) {
+    std::string name = given;
+    for (char& c : name)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    for (const NamedPage& page : named_pages)
+        if (name == page.name)
+            return Vec2(page.width, page.height);
+    const std::size_t cross = name.find('x');
+    if (cross != std::string::npos) {
+        const Vec2 size(side(name.substr(0, cross)), side(name.substr(cross + 1)));
+        if (size.x() > 0.0 && size.y() > 0.0)
+            return size;
+    }
+    throw InvalidParameter("page: expected none, a4, letter, a3 or width x height in mm such as "
+                           "600x400, found '" +
+                           given + "'");
 }
 
 } // namespace
@@ -50,6 +89,20 @@ ExportOptions resolved(const ExportOptions& given) {
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
                                "both; set the allowances to 0 or choose another preset");
     return options;
+}
+
+std::optional<PageFormat> page_format(const ExportOptions& options) {
+    if (options.page.empty() || options.page == "none" || options.page == "None")
+        return std::nullopt;
+    const PageFormat format{page_size(options.page), options.page_margin_mm};
+    if (format.printable().minCoeff() < least_room)
+        throw InvalidParameter("page_margin_mm: expected margins that leave " +
+                               writers::number_text(least_room, 0) + " mm of a page of " +
+                               writers::number_text(format.size.x(), 1) + " x " +
+                               writers::number_text(format.size.y(), 1) + " mm, found " +
+                               writers::number_text(options.page_margin_mm, 3) +
+                               " mm; take a larger page or smaller margins");
+    return format;
 }
 
 } // namespace devseg::sheet

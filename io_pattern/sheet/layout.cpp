@@ -2,23 +2,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/pack/first_fit.h"
 #include "devseg/plane/plane.h"
-#include "sheet/nesting.h"
 #include "sheet/segment_grid.h"
-#include "writers/number_text.h"
+#include "writers/text.h"
 
 namespace devseg::sheet {
 
 namespace {
 
+// Turns that are tried for the least box around a piece, within a quarter. The exact box, which
+// lies on an edge of the outline, took more pages.
+constexpr int box_turns = 30;
+
+Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
+    return plane::box_of(points, [&](const Vec2& p) { return Eigen::Rotation2Dd(angle) * p; })
+        .sizes();
+}
+
+double least_box_angle(const std::vector<Vec2>& points) {
+    double best = 0.0;
+    double least = infinite;
+    for (int i = 0; i < box_turns; ++i) {
+        const double angle = 0.5 * pi * i / box_turns;
+        const double area = turned_size(points, angle).prod();
+        if (area < least * (1.0 - 1e-9)) {
+            least = area;
+            best = angle;
+        }
+    }
+    return best;
+}
+
+// The poses that fit on an empty sheet: images of far larger ones would take all memory there is.
+std::vector<pack::FitImage> poses_of(const SheetPiece& piece, const NestingOptions& options,
+                                     double cell) {
+    const bool grows = options.height <= 0.0;
+    const pack::Outline outline = pack::outline_of(piece.cut);
+    double angle = least_box_angle(outline.hull);
+    int turns = 4;
+    const Vec2 grain = piece.grain_line[1] - piece.grain_line[0];
+    if (options.keep_grain && grain != Vec2::Zero()) {
+        angle = 0.5 * pi - std::atan2(grain.y(), grain.x());
+        turns = 2;
+    }
+    std::vector<pack::FitImage> poses;
+    for (int i = 0; i < turns; ++i) {
+        const double turn = angle + 2.0 * pi * i / turns;
+        const Vec2 size = turned_size(outline.hull, turn);
+        if (size.x() > options.width + cell || (!grows && size.y() > options.height + cell))
+            continue;
+        poses.emplace_back(pack::rasterize(outline, turn, cell, 0.5 * options.gap));
+    }
+    return poses;
+}
+
+double box_area(const SheetPiece& piece) {
+    return piece.box().sizes().prod();
+}
+
 constexpr double most_pages_across = 200.0; // of one piece: more is a wrong scale
-constexpr double sheet_margin = 10.0;       // mm around the pieces where no page says otherwise
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
-constexpr double piece_gap = 3.0;  // mm
-constexpr double gap_share = 0.02; // of the size of the layout
+constexpr double piece_gap = 3.0; // mm
 
 // Nesting by outline covers about this share of a sheet.
 constexpr double covered_share = 0.7;
@@ -80,7 +131,7 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     }
     NestingOptions nesting;
     const double side = std::max(std::sqrt(area / covered_share), widest);
-    nesting.gap = std::min(piece_gap, gap_share * side);
+    nesting.gap = std::min(piece_gap, pattern::gap_share * side);
     nesting.width = side + nesting.gap;
     nesting.keep_grain = keep_grain;
     place(layout.pieces, all, nest_pieces(pointers(layout.pieces, all), nesting, progress), 0, 0.0);
@@ -201,7 +252,7 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     note_tabs(tabs, layout);
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
-        drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
+        drawing.check();
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
         if (options.mirror)
@@ -225,6 +276,47 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
 }
 
 } // namespace
+
+Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingOptions& options,
+                    Progress& progress) {
+    const double cell = options.width / pack::sheet_cells;
+    // Half of the gap around each piece may lie outside of the sheet.
+    const auto cells = [&](double length) {
+        return static_cast<Index>(std::floor((length + options.gap) / cell));
+    };
+    std::vector<std::size_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return box_area(*pieces[a]) > box_area(*pieces[b]);
+    });
+    Nesting nesting;
+    nesting.placements.resize(pieces.size());
+    nesting.sheet.assign(pieces.size(), -1);
+    std::vector<pack::FreeCells> sheets;
+    const Index columns = cells(options.width);
+    const Index limit =
+        options.height > 0.0 ? cells(options.height) + 1 : std::numeric_limits<Index>::max();
+    std::size_t done = 0;
+    for (const std::size_t i : order) {
+        progress.update(static_cast<double>(done++) / static_cast<double>(order.size()));
+        const std::vector<pack::FitImage> poses = poses_of(*pieces[i], options, cell);
+        pack::Spot spot;
+        auto sheet = std::find_if(sheets.begin(), sheets.end(), [&](pack::FreeCells& free) {
+            return free.put(poses, 0, limit, spot);
+        });
+        if (sheet == sheets.end()) {
+            pack::FreeCells fresh(columns, columns);
+            if (!fresh.put(poses, 0, limit, spot))
+                continue; // larger than a sheet
+            sheet = sheets.insert(sheets.end(), std::move(fresh));
+        }
+        nesting.sheet[i] = static_cast<Index>(sheet - sheets.begin());
+        nesting.placements[i] = pack::placement_of(poses[spot.pose].cells, spot, cell);
+        nesting.placements[i].offset -= Vec2::Constant(0.5 * options.gap);
+    }
+    nesting.sheet_count = static_cast<Index>(sheets.size());
+    return nesting;
+}
 
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress) {

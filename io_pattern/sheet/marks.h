@@ -1,5 +1,9 @@
-// What is drawn into a piece beside its outlines: notches and the grain line.
+// What is drawn into a piece beside its outlines: notches, the grain line, its name and the numbers
+// of its seams.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "sheet/sheet_piece.h"
 
@@ -20,5 +24,19 @@ void add_notches(const pattern::Pattern& pattern, const ExportOptions& options, 
 
 /// Adds the arrow along the threads, where it is long enough to be of use.
 void add_grain(const pattern::PatternPiece& piece, SheetPiece& result);
+
+/// What could not be written in a size that can be read.
+struct LeftOut {
+    std::vector<Index> seams;  // positions in Pattern::seams
+    std::vector<Index> pieces; // positions in Pattern::pieces
+};
+
+/// Writes names and seam numbers, as the options want them, into pieces that lie in their places.
+/// Texts are upright, 2.5 mm high at least, and touch neither lines nor each other; where there is
+/// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
+/// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
+/// number on both sides or on none.
+LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
+                  std::vector<SheetPiece>& pieces);
 
 } // namespace devseg::sheet

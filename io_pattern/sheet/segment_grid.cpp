@@ -9,13 +9,14 @@ namespace devseg::sheet {
 
 namespace {
 
-constexpr double most_cells = 1 << 18; // what a grid may take in memory
+constexpr double most_grid_cells = 1 << 18; // what a grid may take in memory
 
 } // namespace
 
 SegmentGrid::SegmentGrid(const Eigen::AlignedBox2d& box, double cell) : low_(box.min()) {
     const Vec2 size = box.sizes();
-    cell_ = std::max({cell, std::sqrt(size.prod() / most_cells), size.maxCoeff() / most_cells});
+    cell_ = std::max(
+        {cell, std::sqrt(size.prod() / most_grid_cells), size.maxCoeff() / most_grid_cells});
     columns_ = static_cast<Index>(size.x() / cell_) + 1;
     rows_ = static_cast<Index>(size.y() / cell_) + 1;
     cells_.resize(at(columns_) * at(rows_));

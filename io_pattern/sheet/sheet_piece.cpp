@@ -7,7 +7,7 @@
 #include "devseg/plane/plane.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
-#include "writers/number_text.h"
+#include "writers/text.h"
 
 namespace devseg::sheet {
 

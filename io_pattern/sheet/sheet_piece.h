@@ -7,8 +7,8 @@
 
 #include "devseg/pack/pack.h"
 #include "devseg/pattern/pattern.h"
+#include "sheet/allowance.h"
 #include "sheet/export_options.h"
-#include "sheet/tabs.h"
 #include "writers/drawing.h"
 
 namespace devseg::sheet {

@@ -5,15 +5,11 @@
 #include <cctype>
 #include <limits>
 
-#include "writers/number_text.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::writers {
 
 namespace {
-
-// Text heights are those of capital letters, not of the font.
-constexpr double capital_height = 0.72;
 
 // The seven colours that all programs show alike, by their number.
 struct IndexedColour {

@@ -7,8 +7,7 @@
 #include <QString>
 #include <QXmlStreamWriter>
 
-#include "writers/number_text.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::writers {
 

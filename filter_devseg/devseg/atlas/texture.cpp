@@ -61,4 +61,11 @@ double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv
     return area > 0.0 ? std::sqrt(mesh.total_area / area) : 0.0;
 }
 
+std::vector<Vec2> read_map(const ChartSurface& surface, const CornerUv& uv, const Vec2& scale) {
+    std::vector<Vec2> map(surface.vertex.size());
+    for (const HalfEdge h : surface.all_half_edges())
+        map[surface.origin(h)] = scale.cwiseProduct(uv[surface.mesh_half_edge(h)]);
+    return map;
+}
+
 } // namespace devseg::atlas

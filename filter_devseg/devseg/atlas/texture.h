@@ -17,4 +17,8 @@ ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv);
 /// theirs; otherwise the one that gives the layout the surface's area. 0 for a layout without area.
 double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv);
 
+/// Positions of a chart's vertices in the plane (#v), from the texture coordinates of its corners,
+/// which agree at each vertex, times `scale` along u and v.
+std::vector<Vec2> read_map(const ChartSurface& surface, const CornerUv& uv, const Vec2& scale);
+
 } // namespace devseg::atlas

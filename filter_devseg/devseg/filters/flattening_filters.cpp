@@ -2,6 +2,7 @@
 #include <string>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/texture.h"
 #include "devseg/base/errors.h"
 #include "devseg/declare/declare.h"
 #include "devseg/filters/sheet_layout.h"
@@ -112,11 +113,8 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
 flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
                                    atlas::ChartSurface surface) {
     flatten::FlatChart chart;
-    chart.uv.resize(surface.vertex.size());
     double plane = 0.0;
     double area = 0.0;
-    for (const HalfEdge h : surface.all_half_edges())
-        chart.uv[surface.origin(h)] = uv[surface.mesh_half_edge(h)];
     for (const Face f : surface.face) {
         plane += std::abs(plane::uv_area(uv, f));
         area += mesh.face_areas[f];
@@ -126,9 +124,7 @@ flatten::FlatChart read_flat_chart(const Mesh& mesh, const CornerUv& uv,
                               std::to_string(surface.face.size()) +
                               " faces without; run 'Charts: Flatten' first",
                           surface.face);
-    const double scale = std::sqrt(area / plane);
-    for (Vec2& p : chart.uv)
-        p *= scale;
+    chart.uv = atlas::read_map(surface, uv, Vec2::Constant(std::sqrt(area / plane)));
     chart.surface = std::move(surface);
     return chart;
 }

@@ -4,10 +4,10 @@
 
 #include "devseg/declare/declare.h"
 #include "devseg/filters/sheet_layout.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
 #include "devseg/pattern/pieces.h"
-#include "devseg/pattern/strain.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::filters {

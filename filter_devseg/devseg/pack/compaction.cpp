@@ -11,26 +11,155 @@
 #include <cmath>
 #include <cstdint>
 
-#include "devseg/pack/proximity.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
 namespace {
 
-constexpr double share_of_box = 0.9;      // in the badness
-constexpr double least_distance = 5.0e-4; // that is kept, as a share of the side
-constexpr double distance_slack = 1.0e-4; // kept in addition, as a share of the distance
-constexpr double most_move = 0.45;        // of the least distance: outlines never cross
-constexpr double push = 0.5;              // of the walls, in largest moves
-constexpr double wall_inverse_mass = 0.3; // walls give way less than charts
-constexpr double tolerance = 1.0e-3;      // of the bounds, in largest moves
-constexpr int most_rounds = 120;
+constexpr double share_of_box = 0.9;       // in the badness
+constexpr double least_distance = 5.0e-4;  // that is kept, as a share of the side
+constexpr double distance_slack = 1.0e-4;  // kept in addition, as a share of the distance
+constexpr double most_move = 0.45;         // of the least distance: outlines never cross
+constexpr double push = 0.5;               // of the walls, in largest moves
+constexpr double wall_inverse_mass = 0.3;  // walls give way less than charts
+constexpr double bound_tolerance = 1.0e-3; // of the bounds, in largest moves
+constexpr int compaction_rounds = 120;
 constexpr int most_sweeps = 300;
-constexpr int patience = 15;                   // rounds without progress
+constexpr int idle_rounds = 15;                // rounds without progress
 constexpr double progress_step = 1e-4;         // that counts as progress, as a share
 constexpr std::int64_t most_work = 20'000'000; // bounds and edges to look at
 constexpr std::int64_t edge_work = 10;         // to place one and to find what is near
+
+constexpr double box_cells = 128.0; // along the longer side of the box
+
+// What is close to what in a layout: vertices of an outline and edges of others.
+struct PlacedEdge {
+    Vec2 from;
+    Vec2 to;
+    std::size_t chart;
+};
+
+// A vertex of chart a and the nearest point of chart b.
+struct ClosePair {
+    std::size_t a;
+    std::size_t b;
+    Vec2 at_a;
+    Vec2 at_b;
+    Vec2 normal; // from b to a, of length 1
+    double distance;
+};
+
+class Proximity {
+public:
+    // All pairs at distances below `reach`, at most one for each vertex and other chart. `box`
+    // holds the edges, whose charts are numbers below `charts`; each vertex begins one of them.
+    const std::vector<ClosePair>& find(const std::vector<PlacedEdge>& edges,
+                                       const Eigen::AlignedBox2d& box, std::size_t charts,
+                                       double reach) {
+        reach_ = reach;
+        pairs_.clear();
+        fill(edges, box);
+        nearest_.assign(charts, {});
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            find_near(edges, k);
+        return pairs_;
+    }
+
+private:
+    struct Nearest {
+        double distance = 0.0; // squared
+        std::size_t edge = 0;
+        std::size_t vertex = 0; // of which this is true; from 1 on
+    };
+
+    void fill(const std::vector<PlacedEdge>& edges, const Eigen::AlignedBox2d& box) {
+        low_ = box.min();
+        cell_ = std::max(2.0 * reach_, box.sizes().maxCoeff() / box_cells);
+        columns_ = static_cast<std::size_t>(box.sizes().x() / cell_) + 1;
+        rows_ = static_cast<std::size_t>(box.sizes().y() / cell_) + 1;
+        // Counting leaves room for one more start: filling moves them to the ends of their cells.
+        starts_.assign(columns_ * rows_ + 2, 0);
+        for (const PlacedEdge& e : edges)
+            visit_cells(e, [&](std::size_t c) { ++starts_[c + 2]; });
+        for (std::size_t c = 2; c < starts_.size(); ++c)
+            starts_[c] += starts_[c - 1];
+        listed_.resize(starts_.back());
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            visit_cells(edges[k], [&](std::size_t c) { listed_[starts_[c + 1]++] = k; });
+    }
+
+    // Pairs with the vertex where an edge begins.
+    void find_near(const std::vector<PlacedEdge>& edges, std::size_t vertex) {
+        const Vec2& p = edges[vertex].from;
+        const std::size_t chart = edges[vertex].chart;
+        const std::size_t c = row(p.y()) * columns_ + column(p.x());
+        near_.clear();
+        for (std::size_t k = starts_[c]; k < starts_[c + 1]; ++k) {
+            const PlacedEdge& other = edges[listed_[k]];
+            if (other.chart == chart)
+                continue;
+            const double distance =
+                (p - plane::nearest_point(p, other.from, other.to)).squaredNorm();
+            if (!(distance < reach_ * reach_))
+                continue;
+            Nearest& nearest = nearest_[other.chart];
+            const bool first = nearest.vertex != vertex + 1;
+            if (first)
+                near_.push_back(other.chart);
+            if (first || distance < nearest.distance)
+                nearest = {distance, listed_[k], vertex + 1};
+        }
+        for (const std::size_t b : near_) {
+            const PlacedEdge& other = edges[nearest_[b].edge];
+            const Vec2 q = plane::nearest_point(p, other.from, other.to);
+            const double distance = (p - q).norm();
+            Vec2 normal(0.0, 0.0);
+            if (distance > 0.0) {
+                normal = (p - q) / distance;
+            } else {
+                // They touch; the inside of an edge is on its left.
+                normal = Vec2(other.to.y() - other.from.y(), other.from.x() - other.to.x());
+                normal = normal.squaredNorm() > 0.0 ? Vec2(normal.normalized()) : Vec2(1.0, 0.0);
+            }
+            pairs_.push_back({chart, b, p, q, normal, distance});
+        }
+    }
+
+    std::size_t column(double x) const {
+        return static_cast<std::size_t>(
+            std::clamp((x - low_.x()) / cell_, 0.0, static_cast<double>(columns_ - 1)));
+    }
+
+    std::size_t row(double y) const {
+        return static_cast<std::size_t>(
+            std::clamp((y - low_.y()) / cell_, 0.0, static_cast<double>(rows_ - 1)));
+    }
+
+    // The cells that the box of an edge, grown by the reach, touches.
+    template <typename Visit>
+    void visit_cells(const PlacedEdge& e, Visit visit) const {
+        const Vec2 low = e.from.cwiseMin(e.to) - Vec2::Constant(reach_);
+        const Vec2 high = e.from.cwiseMax(e.to) + Vec2::Constant(reach_);
+        const std::size_t left = column(low.x());
+        const std::size_t right = column(high.x());
+        const std::size_t top = row(high.y());
+        for (std::size_t y = row(low.y()); y <= top; ++y)
+            for (std::size_t x = left; x <= right; ++x)
+                visit(y * columns_ + x);
+    }
+
+    double reach_ = 0.0;
+    Vec2 low_ = Vec2::Zero();
+    double cell_ = 1.0;
+    std::size_t columns_ = 1;
+    std::size_t rows_ = 1;
+    std::vector<std::size_t> starts_; // of the cells' parts of `listed_`
+    std::vector<std::size_t> listed_; // edges
+    std::vector<Nearest> nearest_;    // for each chart
+    std::vector<std::size_t> near_;   // charts close to the present vertex
+    std::vector<ClosePair> pairs_;
+};
 
 // A chart as a rigid body of mass 1.
 struct Body {
@@ -114,7 +243,7 @@ public:
             for (std::size_t wall = 0; wall < 4; ++wall)
                 moves_[n + wall].shift = inward * wall_normal(wall);
         }
-        for (int sweep = 0; sweep < most_sweeps && relax(tolerance * most); ++sweep)
+        for (int sweep = 0; sweep < most_sweeps && relax(bound_tolerance * most); ++sweep)
             ;
         for (std::size_t i = 0; i < n; ++i) {
             Body& body = bodies_[i];
@@ -252,7 +381,8 @@ std::vector<Placement> compact(const std::vector<Outline>& outlines,
     Compaction compaction(outlines, placements, options);
     std::vector<Placement> best = placements;
     double least = badness(compaction.size());
-    for (int round = 0, idle = 0; round < most_rounds && idle < patience; ++round, ++idle) {
+    for (int round = 0, idle = 0; round < compaction_rounds && idle < idle_rounds;
+         ++round, ++idle) {
         progress.check();
         if (compaction.work() > most_work)
             break;

@@ -3,188 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "devseg/base/parallel.h"
 #include "devseg/pack/compaction.h"
-#include "devseg/pack/outline_raster.h"
+#include "devseg/pack/nest.h"
 
 namespace devseg::pack {
 
 namespace {
 
-constexpr double cells_of_chart = 40.0; // along the side of a square as large as a mean chart
-constexpr double most_cells = 2048.0;   // along the square's side
-constexpr int orientations = 8;
+constexpr double cells_of_chart = 40.0;   // along the side of a square as large as a mean chart
+constexpr double most_fit_cells = 2048.0; // along the square's side
 constexpr double near_widths[] = {0.99, 1.01}; // in roots of the area of the first box
 constexpr std::size_t remembered = 48;         // heights of the charts before
 constexpr std::size_t look_below = 2;          // one chart of so many
-constexpr double padding_reserve = 1.02;       // the side that the padding is a share of, at first
-constexpr double padding_step = 1.05;
-
-using Word = std::uint64_t;
-constexpr Index word_bits = 64;
-
-Index log2_floor(Index x) {
-    Index k = 0;
-    while ((x >> (k + 1)) != 0)
-        ++k;
-    return k;
-}
-
-// One orientation of a chart. Rows that are next to each other meet the same obstacles: the runs
-// are looked at in an order that has early ones far apart, which shows soonest that there is no
-// room.
-struct Image {
-    ChartCells cells;
-    std::vector<CellRun> runs;
-};
-
-std::vector<CellRun> spread_out(const std::vector<CellRun>& runs) {
-    std::vector<CellRun> order;
-    std::size_t step = 1;
-    while (2 * step < runs.size())
-        step *= 2;
-    for (std::size_t i = 0; i < runs.size(); i += step)
-        order.push_back(runs[i]);
-    for (; step > 1; step /= 2)
-        for (std::size_t i = step / 2; i < runs.size(); i += step)
-            order.push_back(runs[i]);
-    return order;
-}
-
-// Rows of cells, and for each power of two 2^k whether any of the 2^k cells from one on is taken.
-class Sheet {
-public:
-    Sheet(Index width, Index longest_run)
-        : width_(width), words_(at(width / word_bits) + 2), levels_(log2_floor(longest_run) + 1),
-          blocked_(words_) {}
-
-    // The lowest place of the image from row `from` on that ends below `limit`; x < 0 if there is
-    // none.
-    struct Place {
-        Index x = -1;
-        Index y = 0;
-    };
-    Place find(const Image& image, Index from, Index limit) {
-        if (image.cells.width > width_)
-            return {};
-        for (Index y = from; y + image.cells.height < limit; ++y)
-            if (find_blocked(image, y))
-                return {first_free(), y};
-        return {};
-    }
-
-    void take(const Image& image, const Place& place) {
-        grow(place.y + image.cells.height);
-        for (const CellRun& run : image.cells.runs) {
-            Word* row = level(place.y + run.row, 0);
-            for (Index x = place.x + run.first; x < place.x + run.last; ++x)
-                row[x / word_bits] |= Word{1} << (x % word_bits);
-        }
-        for (Index y = place.y; y < place.y + image.cells.height; ++y)
-            bring_up_to_date(y);
-        height_ = std::max(height_, place.y + image.cells.height);
-    }
-
-    Index height() const { return height_; }
-
-private:
-    Word* level(Index y, Index k) { return bits_.data() + (at(y) * at(levels_) + at(k)) * words_; }
-
-    void grow(Index rows) {
-        if (static_cast<Index>(room_.size()) >= rows)
-            return;
-        bits_.resize(at(rows) * at(levels_) * words_, 0);
-        room_.resize(at(rows), width_);
-    }
-
-    // Ored into `to`: the bits from `shift` on, as many words as `count`.
-    static void add_shifted(const Word* from, Index shift, std::size_t count, Word* to) {
-        from += shift / word_bits;
-        const Index part = shift % word_bits;
-        if (part == 0) {
-            for (std::size_t i = 0; i < count; ++i)
-                to[i] |= from[i];
-            return;
-        }
-        for (std::size_t i = 0; i < count; ++i)
-            to[i] |= from[i] >> part | from[i + 1] << (word_bits - part);
-    }
-
-    void bring_up_to_date(Index y) {
-        for (Index k = 1; k < levels_; ++k) {
-            const Word* finer = level(y, k - 1);
-            std::copy(finer, finer + words_, level(y, k));
-            const Index shift = Index{1} << (k - 1);
-            add_shifted(finer, shift, words_ - 1 - at(shift / word_bits), level(y, k));
-        }
-        const Word* row = level(y, 0);
-        Index longest = 0;
-        Index free = 0;
-        for (Index x = 0; x < width_; ++x) {
-            free = (row[x / word_bits] >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
-            longest = std::max(longest, free);
-        }
-        room_[y] = longest;
-    }
-
-    // Marks the places in row y where the image lies on others; false if none is left.
-    bool find_blocked(const Image& image, Index y) {
-        for (const CellRun& run : image.runs) {
-            const Index row = y + run.row;
-            if (row >= static_cast<Index>(room_.size()))
-                continue;
-            if (run.last - run.first > room_[row])
-                return false;
-        }
-        last_ = width_ - image.cells.width;
-        const std::size_t count = at(last_ / word_bits) + 1;
-        std::fill_n(blocked_.begin(), count, Word{0});
-        blocked_[count - 1] = ~Word{0} << (last_ % word_bits) << 1; // no places there
-        for (const CellRun& run : image.runs) {
-            const Index row = y + run.row;
-            if (row >= static_cast<Index>(room_.size()))
-                continue;
-            const Index k = log2_floor(run.last - run.first);
-            const Index rest = run.last - run.first - (Index{1} << k);
-            add_shifted(level(row, k), run.first, count, blocked_.data());
-            if (rest > 0)
-                add_shifted(level(row, k), run.first + rest, count, blocked_.data());
-            Word all = ~Word{0};
-            for (std::size_t i = 0; i < count; ++i)
-                all &= blocked_[i];
-            if (all == ~Word{0})
-                return false;
-        }
-        return true;
-    }
-
-    Index first_free() const {
-        for (Index x = 0; x <= last_; x += word_bits) {
-            Word open = ~blocked_[x / word_bits];
-            for (Index i = x; open != 0 && i <= last_; ++i, open >>= 1)
-                if ((open & 1) != 0)
-                    return i;
-        }
-        return -1;
-    }
-
-    Index width_;
-    std::size_t words_; // of a row, one more than it needs
-    Index levels_;
-    Index height_ = 0;
-    Index last_ = 0;          // the last place of the image that is looked at
-    std::vector<Word> bits_;  // row by row, level by level
-    std::vector<Index> room_; // #rows: the most free cells in a line
-    std::vector<Word> blocked_;
-};
+constexpr double fit_reserve = 1.02;           // the side that the padding is a share of, at first
+constexpr double fit_step = 1.05;
 
 struct Images {
     double cell = 1.0;
-    std::vector<std::vector<Image>> poses;
+    std::vector<std::vector<FitImage>> poses;
     std::vector<std::size_t> order;
     Index longest_run = 1;
 };
@@ -198,17 +39,13 @@ Images make_images(const std::vector<Outline>& outlines, double cell, double mar
         static_cast<int>(outlines.size()),
         [&](int i) {
             const double base = allow_rotation ? best_box_angle(outlines[i]) : 0.0;
-            for (int k = 0; k < (allow_rotation ? orientations : 1); ++k) {
-                Image image;
-                image.cells =
-                    rasterize(outlines[i], base + 2.0 * pi * k / orientations, cell, margin);
-                image.runs = spread_out(image.cells.runs);
-                images.poses[i].push_back(std::move(image));
-            }
+            for (int k = 0; k < (allow_rotation ? few_orientations : 1); ++k)
+                images.poses[i].emplace_back(
+                    rasterize(outlines[i], base + 2.0 * pi * k / few_orientations, cell, margin));
         },
         progress);
     for (const auto& poses : images.poses)
-        for (const Image& image : poses)
+        for (const FitImage& image : poses)
             for (const CellRun& run : image.runs)
                 images.longest_run = std::max(images.longest_run, run.last - run.first);
     images.order.resize(outlines.size());
@@ -228,11 +65,11 @@ Found fill(const Images& images, double width, const Progress& progress) {
     Index columns = static_cast<Index>(width / images.cell);
     for (const auto& poses : images.poses) { // each chart fits in one orientation at least
         Index narrowest = std::numeric_limits<Index>::max();
-        for (const Image& image : poses)
+        for (const FitImage& image : poses)
             narrowest = std::min(narrowest, image.cells.width);
         columns = std::max(columns, narrowest);
     }
-    Sheet sheet(columns, images.longest_run);
+    FreeCells sheet(columns, images.longest_run);
     Found found;
     found.placements.resize(images.poses.size());
     // Charts of about the same size find room at about the same height: only some look below.
@@ -242,26 +79,26 @@ Found fill(const Images& images, double width, const Progress& progress) {
         progress.check();
         const Index lowest =
             count % look_below == 0 ? 0 : *std::min_element(recent.begin(), recent.end());
-        Sheet::Place best;
-        const Image* chosen = nullptr;
-        Index limit = std::numeric_limits<Index>::max();
-        for (const Image& image : images.poses[i]) {
-            const Sheet::Place place = sheet.find(image, lowest, limit);
-            if (place.x < 0)
-                continue;
-            best = place;
-            chosen = &image;
-            limit = place.y + image.cells.height;
-        }
-        sheet.take(*chosen, best);
-        recent[count++ % remembered] = best.y;
-        Placement& placement = found.placements[i];
-        placement.cosine = chosen->cells.cosine;
-        placement.sine = chosen->cells.sine;
-        placement.offset = chosen->cells.offset + images.cell * Vec2(best.x, best.y);
+        Spot spot;
+        sheet.put(images.poses[i], lowest, std::numeric_limits<Index>::max(), spot);
+        recent[count++ % remembered] = spot.y;
+        found.placements[i] = placement_of(images.poses[i][spot.pose].cells, spot, images.cell);
     }
     found.box = images.cell * Vec2(columns, sheet.height());
     return found;
+}
+
+constexpr Index word_bits = 64;
+
+Index log2_floor(Index x) {
+    Index k = 0;
+    while ((x >> (k + 1)) != 0)
+        ++k;
+    return k;
+}
+
+Index length(const CellRun& run) {
+    return run.last - run.first;
 }
 
 } // namespace
@@ -269,8 +106,8 @@ Found fill(const Images& images, double width, const Progress& progress) {
 std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
                                       const PackOptions& options, double side, Progress& progress) {
     const double count = static_cast<double>(outlines.size());
-    for (double assumed = padding_reserve * side;; assumed *= padding_step) {
-        const double cell = assumed / std::min(most_cells, cells_of_chart * std::sqrt(count));
+    for (double assumed = fit_reserve * side;; assumed *= fit_step) {
+        const double cell = assumed / std::min(most_fit_cells, cells_of_chart * std::sqrt(count));
         auto pass = progress.part(0.7 * progress.left());
         auto drawing = pass.part(0.3);
         const Images images = make_images(outlines, cell, 0.5 * options.padding * assumed,
@@ -293,6 +130,128 @@ std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
         side = best.box.maxCoeff();
         assumed = std::max(assumed, side);
     }
+}
+
+FitImage::FitImage(ChartCells image) : cells(std::move(image)) {
+    std::size_t step = 1;
+    while (2 * step < cells.runs.size())
+        step *= 2;
+    for (std::size_t i = 0; i < cells.runs.size(); i += step)
+        runs.push_back(cells.runs[i]);
+    for (; step > 1; step /= 2)
+        for (std::size_t i = step / 2; i < cells.runs.size(); i += step)
+            runs.push_back(cells.runs[i]);
+}
+
+FreeCells::FreeCells(Index width, Index longest_run)
+    : width_(width), words_(at(width / word_bits) + 2), levels_(log2_floor(longest_run) + 1),
+      blocked_(words_) {}
+
+bool FreeCells::put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot) {
+    bool found = false;
+    for (std::size_t pose = 0; pose < poses.size(); ++pose)
+        if (find(poses[pose], from, limit, spot)) {
+            found = true;
+            spot.pose = pose;
+            limit = spot.y + poses[pose].cells.height;
+        }
+    if (found)
+        take(poses[spot.pose], spot);
+    return found;
+}
+
+bool FreeCells::find(const FitImage& image, Index from, Index limit, Spot& spot) {
+    if (image.cells.width > width_)
+        return false;
+    for (Index y = from; y + image.cells.height < limit; ++y)
+        if (find_blocked(image, y)) {
+            spot.x = first_free();
+            spot.y = y;
+            return true;
+        }
+    return false;
+}
+
+void FreeCells::take(const FitImage& image, const Spot& spot) {
+    const Index top = spot.y + image.cells.height;
+    if (static_cast<Index>(room_.size()) < top) {
+        bits_.resize(at(top) * at(levels_) * words_, 0);
+        room_.resize(at(top), width_);
+    }
+    for (const CellRun& run : image.cells.runs) {
+        Word* row = level(spot.y + run.row, 0);
+        for (Index x = spot.x + run.first; x < spot.x + run.last; ++x)
+            row[x / word_bits] |= Word{1} << (x % word_bits);
+    }
+    for (Index y = spot.y; y < top; ++y)
+        bring_up_to_date(y);
+    height_ = std::max(height_, top);
+}
+
+// Ored into `to`: the bits from `shift` on, as many words as `count`.
+void FreeCells::add_shifted(const Word* from, Index shift, std::size_t count, Word* to) {
+    from += shift / word_bits;
+    const Index part = shift % word_bits;
+    if (part == 0) {
+        for (std::size_t i = 0; i < count; ++i)
+            to[i] |= from[i];
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        to[i] |= from[i] >> part | from[i + 1] << (word_bits - part);
+}
+
+void FreeCells::bring_up_to_date(Index y) {
+    for (Index k = 1; k < levels_; ++k) {
+        const Word* finer = level(y, k - 1);
+        std::copy(finer, finer + words_, level(y, k));
+        const Index shift = Index{1} << (k - 1);
+        add_shifted(finer, shift, words_ - 1 - at(shift / word_bits), level(y, k));
+    }
+    const Word* row = level(y, 0);
+    Index longest = 0;
+    Index free = 0;
+    for (Index x = 0; x < width_; ++x) {
+        free = (row[x / word_bits] >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
+        longest = std::max(longest, free);
+    }
+    room_[y] = longest;
+}
+
+// Marks the places in row y where the image lies on others; false if none is left.
+bool FreeCells::find_blocked(const FitImage& image, Index y) {
+    const auto rows = static_cast<Index>(room_.size());
+    for (const CellRun& run : image.runs)
+        if (y + run.row < rows && length(run) > room_[y + run.row])
+            return false;
+    last_ = width_ - image.cells.width;
+    const std::size_t count = at(last_ / word_bits) + 1;
+    std::fill_n(blocked_.begin(), count, Word{0});
+    blocked_[count - 1] = ~Word{0} << (last_ % word_bits) << 1; // no places there
+    for (const CellRun& run : image.runs) {
+        const Index row = y + run.row;
+        if (row >= rows)
+            continue;
+        const Index k = log2_floor(length(run));
+        const Index rest = length(run) - (Index{1} << k);
+        add_shifted(level(row, k), run.first, count, blocked_.data());
+        if (rest > 0)
+            add_shifted(level(row, k), run.first + rest, count, blocked_.data());
+        if (std::all_of(blocked_.begin(), blocked_.begin() + static_cast<std::ptrdiff_t>(count),
+                        [](Word word) { return word == ~Word{0}; }))
+            return false;
+    }
+    return true;
+}
+
+Index FreeCells::first_free() const {
+    for (Index x = 0; x <= last_; x += word_bits) {
+        Word open = ~blocked_[x / word_bits];
+        for (Index i = x; open != 0 && i <= last_; ++i, open >>= 1)
+            if ((open & 1) != 0)
+                return i;
+    }
+    return -1;
 }
 
 } // namespace devseg::pack

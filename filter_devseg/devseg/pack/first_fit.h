@@ -1,10 +1,12 @@
-// Many charts: each at the lowest free place on a grid, the largest chart first.
+// Many charts, or pieces on sheets: each at the lowest free place on a grid, the largest first.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "devseg/pack/outline.h"
 #include "devseg/pack/pack.h"
+#include "devseg/pack/separation.h"
 
 namespace devseg::pack {
 
@@ -13,5 +15,51 @@ namespace devseg::pack {
 /// not with its square. `side` is a guess of the square's. Throws Cancelled.
 std::vector<Placement> pack_first_fit(const std::vector<Outline>& outlines,
                                       const PackOptions& options, double side, Progress& progress);
+
+/// One orientation of a chart. Rows that are next to each other meet the same obstacles: `runs` are
+/// the image's in an order that has early ones far apart, which shows soonest that there is no
+/// room.
+struct FitImage {
+    explicit FitImage(ChartCells image);
+
+    ChartCells cells;
+    std::vector<CellRun> runs;
+};
+
+constexpr double sheet_cells = 320.0; // along a sheet of pieces: fine enough for hands and scissors
+
+/// Rows of cells, and for each power of two 2^k whether any of the 2^k cells from one on is taken.
+/// As many rows as are needed.
+class FreeCells {
+public:
+    /// `longest_run` of all images, cells.
+    FreeCells(Index width, Index longest_run);
+
+    /// Puts a chart, in the pose that ends lowest, at its lowest place from row `from` on, then the
+    /// leftmost, whose top is below `limit`. False where there is none.
+    bool put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot);
+
+    Index height() const { return height_; }
+
+private:
+    using Word = std::uint64_t;
+
+    Word* level(Index y, Index k) { return bits_.data() + (at(y) * at(levels_) + at(k)) * words_; }
+    static void add_shifted(const Word* from, Index shift, std::size_t count, Word* to);
+    bool find(const FitImage& image, Index from, Index limit, Spot& spot);
+    bool find_blocked(const FitImage& image, Index y);
+    Index first_free() const;
+    void take(const FitImage& image, const Spot& spot);
+    void bring_up_to_date(Index y);
+
+    Index width_;
+    std::size_t words_; // of a row, one more than it needs
+    Index levels_;
+    Index height_ = 0;
+    Index last_ = 0;          // the last place of the image that is looked at
+    std::vector<Word> bits_;  // row by row, level by level
+    std::vector<Index> room_; // #rows: the most free cells in a line
+    std::vector<Word> blocked_;
+};
 
 } // namespace devseg::pack

@@ -22,24 +22,20 @@ constexpr double most_coarse_cells = 512.0;
 constexpr double usual_charts = 20.0; // more charts are given more cells, by the square root
 constexpr Index supersampling = 4;    // cells that decide on one coarse cell, to a side
 constexpr int orientations = 32;
-constexpr int few_orientations = 8;           // of very many charts
-constexpr std::size_t many_charts = 40;       // from here on moves are short
-constexpr std::size_t very_many_charts = 250; // from here on the search begins on shelves
-constexpr double start_growth = 1.15;         // the first square, in sides of the guess
-constexpr double coarse_growth = 1.05;        // while the first square is too small
-constexpr double coarse_step = 0.04;          // first attempt at shrinking, as a share of the side
-constexpr double first_work = 3.0e8;          // operations to separate charts in the first square
-constexpr double begin_work = 0.6e9;          // and in smaller and smaller squares,
-constexpr double next_step = 0.01;            // then again in steps from this one on
-constexpr double next_work = 0.8e9;           // for the layouts that are worth it
-constexpr double most_work_factor = 2.0;      // more for many charts, up to this factor,
-constexpr double many_crowd = 10.0;           // from this multiple of the usual number on
+constexpr double start_growth = 1.15;  // the first square, in sides of the guess
+constexpr double coarse_growth = 1.05; // while the first square is too small
+constexpr double coarse_step = 0.04;   // first attempt at shrinking, as a share of the side
+constexpr double first_work = 3.0e8;   // operations to separate charts in the first square
+constexpr double begin_work = 0.6e9;   // and in smaller and smaller squares,
+constexpr double next_step = 0.01;  // then again in steps from this one on, and on the fine grid,
+constexpr double next_work = 0.8e9; // for the layouts that are worth it
+constexpr double most_work_factor = 2.0; // more for many charts, up to this factor,
+constexpr double many_crowd = 10.0;      // from this multiple of the usual number on
 // Less for few charts, for which fewer places come into question: by the square of their number.
 constexpr double least_work_factor = 0.12;
 constexpr double few_work_factor = 0.1; // few charts are tried in many frames
 constexpr int no_failure_limit = 1000;  // beyond what the work allows
-constexpr SeparationOptions usual_moves{0, 8, 100};
-constexpr SeparationOptions many_moves{12, 4, 100};
+constexpr SeparationOptions many_moves{12, 4};
 
 // The fine grid.
 constexpr double fine_cells = 768.0;
@@ -47,7 +43,6 @@ constexpr double most_fine_cells = 3072.0;
 constexpr double fine_turn = 1.5 * pi / 180.0;
 constexpr int fine_turns = 2; // to each side
 constexpr double fine_growth = 1.005;
-constexpr double fine_step = 0.01;
 constexpr double fine_first_work = 5.0e7;
 constexpr double fine_work = 3.0e8;
 constexpr int fine_failures = 6;
@@ -63,17 +58,17 @@ double crowd_of(std::size_t charts) {
 }
 
 double work_factor(std::size_t charts) {
-    constexpr double share = DEVSEG_NESTING_SHARE;
     if (charts <= few_charts)
-        return share * few_work_factor;
+        return DEVSEG_NESTING_SHARE * few_work_factor;
     const double n = static_cast<double>(charts);
-    return share * (charts <= many_charts
-                        ? std::clamp(std::pow((n - 5.0) / 15.0, 2), least_work_factor, 1.0)
-                        : std::clamp(crowd_of(charts) / many_crowd, 1.0, most_work_factor));
+    return DEVSEG_NESTING_SHARE *
+           (charts <= many_charts
+                ? std::clamp(std::pow((n - 5.0) / 15.0, 2), least_work_factor, 1.0)
+                : std::clamp(crowd_of(charts) / many_crowd, 1.0, most_work_factor));
 }
 
 SeparationOptions coarse_moves(std::size_t charts) {
-    return charts > many_charts ? many_moves : usual_moves;
+    return charts > many_charts ? many_moves : SeparationOptions{};
 }
 
 // Charts from the largest box to the smallest.
@@ -84,15 +79,6 @@ std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
         const ChartCells& p = poses[a].front();
         const ChartCells& q = poses[b].front();
         return p.width * p.height > q.width * q.height;
-    });
-    return order;
-}
-
-std::vector<std::size_t> by_height(const std::vector<ChartPoses>& poses) {
-    std::vector<std::size_t> order(poses.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return poses[a].front().height > poses[b].front().height;
     });
     return order;
 }
@@ -115,11 +101,11 @@ public:
     void grow(double width, double factor, double work) {
         for (int attempt = 0;; ++attempt, width *= factor) {
             frame = frame_of(width, aspect_);
-            // Shelves are the last resort: they succeed as soon as the frame is large enough.
-            const bool shelves = poses_.size() > very_many_charts && layout.empty();
-            if (shelves || attempt >= patient_attempts) {
-                layout = separation_.fill_shelves(by_height(poses_), frame);
-                factor = shelf_growth;
+            // A first fit is the last resort: it succeeds as soon as the frame is large enough.
+            const bool fit = poses_.size() > very_many_charts && layout.empty();
+            if (fit || attempt >= patient_attempts) {
+                layout = separation_.fit_all(by_size(poses_), frame);
+                factor = coarse_growth;
             } else if (layout.empty()) {
                 layout = separation_.insert_all(by_size(poses_), frame, options_);
             }
@@ -148,7 +134,6 @@ public:
 
 private:
     static constexpr int patient_attempts = 8;
-    static constexpr double shelf_growth = 1.05;
     static constexpr double most_drift = 0.02; // away from the aspect
 
     // A cell of a coarse grid is a large step already: it is taken from one side only, from the one
@@ -247,15 +232,10 @@ std::vector<Placement> finish_nesting(const NestProblem& problem, const CoarseLa
         fine.grow(cells, fine_growth, fine_first_work * crowd);
         if (cell * std::max(fine.frame.width, fine.frame.height) > assumed)
             continue;
-        fine.shrink(fine_step, fine_work * work_factor(n), fine_failures);
+        fine.shrink(next_step, fine_work * work_factor(n), fine_failures);
         std::vector<Placement> placements(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            const Spot& spot = fine.layout[i];
-            const ChartCells& c = poses[i][spot.pose];
-            placements[i].cosine = c.cosine;
-            placements[i].sine = c.sine;
-            placements[i].offset = c.offset + cell * Vec2(spot.x, spot.y);
-        }
+        for (std::size_t i = 0; i < n; ++i)
+            placements[i] = placement_of(poses[i][fine.layout[i].pose], fine.layout[i], cell);
         return compact(problem.outlines, placements, {problem.padding, problem.allow_rotation},
                        progress);
     }

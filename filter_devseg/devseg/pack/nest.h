@@ -15,7 +15,10 @@
 
 namespace devseg::pack {
 
-constexpr std::size_t few_charts = 5; // that cannot fill a square
+constexpr std::size_t few_charts = 5;         // that cannot fill a square
+constexpr std::size_t many_charts = 40;       // from here on a first fit is tried, moves are short
+constexpr std::size_t very_many_charts = 250; // from here on nesting takes seconds
+constexpr int few_orientations = 8;           // of very many charts, and in a first fit
 
 struct NestProblem {
     std::vector<Outline> outlines;

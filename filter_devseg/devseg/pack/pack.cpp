@@ -9,24 +9,17 @@
 #include "devseg/pack/compaction.h"
 #include "devseg/pack/first_fit.h"
 #include "devseg/pack/nest.h"
-#include "devseg/pack/proximity.h"
-#include "devseg/pack/shelves.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pack {
 
 namespace {
 
-constexpr double expected_use = 0.75;     // of the square, by charts with half of the padding
-constexpr double least_use = 0.1;         // what padding alone must leave of it
-constexpr std::size_t most_nested = 1000; // charts; nesting compares each with each
-// Above this number of charts a first fit comes before nesting, and often is enough; above the next
-// one its grid would be too coarse.
-constexpr std::size_t few_to_fit = 40;
-constexpr std::size_t most_fitted = 10000;
+constexpr double expected_use = 0.75;      // of the square, by charts with half of the padding
+constexpr double least_use = 0.1;          // what padding alone must leave of it
+constexpr std::size_t most_nested = 1000;  // charts; nesting compares each with each
 constexpr double enough_use = 0.75;        // of the box
 constexpr double enough_use_of_many = 0.6; // where nesting would take seconds
-constexpr std::size_t many_charts = 250;
 // Independent searches, and how many of them are not given up halfway. An even number keeps two
 // threads busy; it is the same whatever the threads.
 constexpr std::size_t chains = 4;
@@ -82,7 +75,7 @@ double taken_area(const std::vector<Outline>& outlines, double padding, double s
 
 std::vector<Placement> find_placements(const NestProblem& problem, Progress& progress) {
     const bool few = problem.outlines.size() <= few_charts;
-    const bool many = problem.outlines.size() > few_to_fit; // whose work is enough for two chains
+    const bool many = problem.outlines.size() > many_charts; // whose work is enough for two chains
     std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : many ? finished_chains : chains);
     auto beginning = progress.part(0.5);
     parallel_for(
@@ -130,7 +123,7 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
         1, [&](int) { fitted = compact(outlines, fitted, options, compacting); }, compacting);
     const Vec2 fitted_box = box_of(outlines, fitted).sizes();
     // Room that the padding takes is no reason to look for a better layout for seconds.
-    const bool many = outlines.size() > many_charts;
+    const bool many = outlines.size() > very_many_charts;
     const double area = taken_area(outlines, many ? options.padding : 0.0, fitted_box.maxCoeff());
     if (outlines.size() > most_nested ||
         area >= (many ? enough_use_of_many : enough_use) * fitted_box.prod())
@@ -138,6 +131,20 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     auto nesting = progress.part(0.6);
     std::vector<Placement> nested = nest(problem, nesting);
     return badness(box_of(outlines, nested).sizes()) < badness(fitted_box) ? nested : fitted;
+}
+
+// In its least box, the longer side below.
+Placement lay_down(const Outline& outline, bool allow_rotation) {
+    Placement placement;
+    const double least = allow_rotation ? best_box_angle(outline) : 0.0;
+    for (const double angle : {least, least + 0.5 * pi}) {
+        placement = {std::cos(angle), std::sin(angle), Vec2::Zero()};
+        const Eigen::AlignedBox2d box = plane::box_of(outline.hull, placement);
+        placement.offset = -box.min();
+        if (!allow_rotation || box.sizes().x() >= box.sizes().y())
+            break;
+    }
+    return placement;
 }
 
 } // namespace
@@ -162,9 +169,9 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
         outlining);
     auto placing = progress.part(0.95);
     problem.side = guess_side(problem.outlines, options);
-    if (items.size() == 1 || items.size() > most_fitted)
-        result.placements = pack_on_shelves(problem.outlines, options, problem.side, placing);
-    else if (items.size() > few_to_fit)
+    if (items.size() == 1)
+        result.placements = {lay_down(problem.outlines.front(), options.allow_rotation)};
+    else if (items.size() > many_charts)
         result.placements = fit_or_nest(problem, options, placing);
     else
         result.placements = nest(problem, placing);

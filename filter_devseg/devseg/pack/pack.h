@@ -40,9 +40,9 @@ struct PackResult {
 /// up to 4 charts, which cannot fill a square, are tried in flatter and flatter rectangles. Placed
 /// charts are at least `padding` · side apart. More than 40 charts are fitted in one after the
 /// other first (see first_fit.h), and searched for where that leaves much room; more than 1000 are
-/// only fitted in. One chart takes its best box, and more than 10000 lie on shelves. The same bytes
-/// whatever the number of threads. Throws InvalidParameter for a padding outside of [0, 0.1], or
-/// one that leaves no room for so many charts, and Cancelled.
+/// only fitted in. One chart takes its best box. The same bytes whatever the number of threads.
+/// Throws InvalidParameter for a padding outside of [0, 0.1], or one that leaves no room for so
+/// many charts, and Cancelled.
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
                        Progress& progress);
 

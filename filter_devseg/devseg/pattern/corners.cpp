@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <tuple>
 
-#include "devseg/pattern/simplify.h"
+#include "devseg/pattern/outlines.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -13,8 +17,8 @@ namespace {
 // Lines are fitted to stretches of so many edges of the mesh, within these shares of the outline's
 // size: less shows its staircase, more belongs to the shape of the piece.
 constexpr double reach_edges = 5.0;
-constexpr double least_reach = 0.1;
-constexpr double most_reach = 0.18;
+constexpr double shortest_reach = 0.1;
+constexpr double longest_reach = 0.18;
 
 // A corner turns by this share of its angle within half of the reach as well; a bend that is
 // rounded over the reach turns by half.
@@ -26,7 +30,7 @@ constexpr double least_seam = 0.7;
 
 // Lines are as uncertain as a saw tooth is steep that leaves them as far as the outline does; a
 // corner must turn by so many times that more.
-constexpr double raggedness = 2.0;
+constexpr double line_raggedness = 2.0;
 
 // A line through a stretch of outline: its unit direction (0: there is none), and the slope of a
 // straight line across it that would be off by as much in the mean square.
@@ -91,13 +95,13 @@ public:
         return {step * axis.dot(here) >= 0.0 ? axis : Vec2(-axis), std::sqrt(12.0) * off / weight};
     }
 
-    /// Whether the outline turns at point i by more than the angle and what its raggedness
+    /// Whether the outline turns at point i by more than the angle and what its line_raggedness
     /// explains; `turn` is by how much.
     bool turns(Index i, double reach, double angle, double& turn) const {
         const FittedLine in = fit(i, reach, -1);
         const FittedLine out = fit(i, reach, 1);
         turn = plane::angle_between(in.direction, out.direction);
-        turn -= raggedness * (in.slope + out.slope);
+        turn -= line_raggedness * (in.slope + out.slope);
         return turn > angle;
     }
 
@@ -108,13 +112,151 @@ private:
     std::vector<double> arc_;
 };
 
+// The points of a chain, from its start: one polyline for each of its sides. Closed chains repeat
+// their first point.
+std::vector<std::vector<Vec2>> points_of(const std::vector<PatternPiece>& pieces,
+                                         const Chain& chain) {
+    std::vector<std::vector<Vec2>> sides(at(chain.side_count));
+    for (std::size_t s = 0; s < sides.size(); ++s)
+        for (Index k = 0; k <= chain.count(); ++k)
+            sides[s].push_back(side_point(pieces, chain.sides[s], k));
+    return sides;
+}
+
+// Size of the smaller outline that the chain lies on, mm.
+double size_of(const std::vector<PatternPiece>& pieces, const Chain& chain) {
+    double area = infinite;
+    for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+        const SeamSide& side = chain.sides[s];
+        area = std::min(area, std::abs(pieces[side.piece].path(side.path).area));
+    }
+    return std::sqrt(area);
+}
+
 std::vector<Index> corners_of(const std::vector<PatternPiece>& pieces, const Chain& chain,
                               double corner_angle) {
     const std::vector<std::vector<Vec2>> sides = points_of(pieces, chain);
     const double size = size_of(pieces, chain);
     const double edge = Polyline(sides.front()).length() / static_cast<double>(chain.count());
-    return find_corners(
-        sides, std::clamp(reach_edges * edge, least_reach * size, most_reach * size), corner_angle);
+    return find_corners(sides,
+                        std::clamp(reach_edges * edge, shortest_reach * size, longest_reach * size),
+                        corner_angle);
+}
+
+// The tolerance holds for outlines of this size (the square root of the area, mm) and above, and in
+// proportion for smaller ones: at 0.1 mm the areas of all pieces stay true to half a percent.
+constexpr double full_size = 100.0;
+
+// Cuts that were made to split a piece are straightened: along them, what one part loses the other
+// gains, within this share of their size.
+constexpr double cut_share = 0.05;
+
+// The polylines while their vertices collapse.
+class Collapse {
+public:
+    Collapse(const std::vector<std::vector<Vec2>>& sides, double tolerance)
+        : sides_(sides), tolerance_(tolerance), size_(sides.front().size()), left_(size_),
+          before_(size_), after_(size_), stamp_(size_, 0), inherited_(size_, 0.0), gone_(size_, 0) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            before_[i] = i - 1;
+            after_[i] = i + 1;
+        }
+        closed_ = sides.front().front() == sides.front().back();
+    }
+
+    std::vector<Index> run() {
+        for (std::size_t i = 1; i + 1 < size_; ++i)
+            push(i);
+        const std::size_t least = closed_ ? 4 : 2;
+        while (!queue_.empty() && left_ > least) {
+            const auto [cost, i, stamp] = queue_.top();
+            queue_.pop();
+            if (gone_[i] != 0 || stamp != stamp_[i] || !may_go(i))
+                continue;
+            gone_[i] = 1;
+            --left_;
+            const std::size_t a = before_[i];
+            const std::size_t b = after_[i];
+            after_[a] = b;
+            before_[b] = a;
+            for (const std::size_t j : {a, b}) {
+                inherited_[j] += 0.5 * cost;
+                if (j > 0 && j + 1 < size_)
+                    push(j);
+            }
+        }
+        std::vector<Index> kept;
+        for (std::size_t i = 0; i < size_; ++i)
+            if (gone_[i] == 0)
+                kept.push_back(static_cast<Index>(i));
+        return kept;
+    }
+
+private:
+    void push(std::size_t i) {
+        double cost = inherited_[i];
+        for (const std::vector<Vec2>& points : sides_)
+            cost += plane::triangle_area(points[before_[i]], points[i], points[after_[i]]);
+        queue_.emplace(cost, i, ++stamp_[i]);
+    }
+
+    bool may_go(std::size_t i) const {
+        for (const std::vector<Vec2>& points : sides_)
+            for (std::size_t k = before_[i] + 1; k < after_[i]; ++k)
+                if (plane::distance(points[k], points[before_[i]], points[after_[i]]) > tolerance_)
+                    return false;
+        return true;
+    }
+
+    using Entry = std::tuple<double, std::size_t, int>; // cost, vertex, stamp
+
+    const std::vector<std::vector<Vec2>>& sides_;
+    double tolerance_;
+    std::size_t size_;
+    std::size_t left_;
+    bool closed_ = false;
+    std::vector<std::size_t> before_;
+    std::vector<std::size_t> after_;
+    std::vector<int> stamp_; // of the vertex's entry that counts
+    std::vector<double> inherited_;
+    std::vector<std::uint8_t> gone_;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
+};
+
+// Edges of all outlines of a piece, from the left to the right.
+struct OutlineSegment {
+    Vec2 from;
+    Vec2 to;
+    double left;
+    double right;
+};
+
+std::vector<OutlineSegment> segments_of(const PatternPiece& piece) {
+    std::vector<OutlineSegment> segments;
+    for (Index l = 0; l < piece.path_count(); ++l) {
+        const std::vector<Vec2>& points = piece.path(l).points;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Vec2& a = points[i];
+            const Vec2& b = points[(i + 1) % points.size()];
+            segments.push_back({a, b, std::min(a.x(), b.x()), std::max(a.x(), b.x())});
+        }
+    }
+    std::stable_sort(
+        segments.begin(), segments.end(),
+        [](const OutlineSegment& a, const OutlineSegment& b) { return a.left < b.left; });
+    return segments;
+}
+
+double distance_to_line(const Vec2& p, const OutlineSegment& s) {
+    const Vec2 along = s.to - s.from;
+    return std::abs(plane::cross(along, p - s.from)) / along.norm();
+}
+
+// Two edges that cross.
+bool is_deep(const OutlineSegment& a, const OutlineSegment& b, double depth) {
+    return depth == 0.0 ||
+           std::min({distance_to_line(a.from, b), distance_to_line(a.to, b),
+                     distance_to_line(b.from, a), distance_to_line(b.to, a)}) > depth;
 }
 
 } // namespace
@@ -171,6 +313,79 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
             result.push_back(part_of(pieces, chain, ends[i - 1], ends[i]));
     }
     return result;
+}
+
+std::vector<Index> collapse_vertices(const std::vector<std::vector<Vec2>>& sides,
+                                     double tolerance) {
+    return Collapse(sides, tolerance).run();
+}
+
+void mark_corners(std::vector<PatternPiece>& pieces, const std::vector<Chain>& chains,
+                  double corner_angle) {
+    for (PatternPiece& piece : pieces)
+        for (Index l = 0; l < piece.path_count(); ++l)
+            piece.path(l).corner.assign(piece.path(l).points.size(), 0);
+    // Every end of a chain is the start of an edge of one: its own first, or the next one's.
+    for (const Chain& chain : chains)
+        for (std::size_t s = 0; s < at(chain.side_count); ++s) {
+            const SeamSide& side = chain.sides[s];
+            PiecePath& path = pieces[side.piece].path(side.path);
+            const std::size_t size = path.points.size();
+            const std::size_t i = at(side.first);
+            if (!chain.is_closed && side.count > 0 &&
+                plane::turn(path.points[(i + size - 1) % size], path.points[i],
+                            path.points[(i + 1) % size]) > corner_angle)
+                path.corner[i] = 1;
+        }
+}
+
+void simplify_outlines(std::vector<PatternPiece>& pieces, std::vector<Chain>& chains,
+                       double tolerance) {
+    std::vector<std::vector<Index>> kept;
+    for (const Chain& chain : chains) {
+        const double size = size_of(pieces, chain);
+        const double own =
+            chain.is_cut ? cut_share * size : tolerance * std::min(1.0, size / full_size);
+        kept.push_back(collapse_vertices(points_of(pieces, chain), own));
+    }
+    // Every round keeps all vertices of further pieces: this ends.
+    std::vector<std::uint8_t> whole(pieces.size(), 0);
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        whole[p] = crosses_itself(pieces[p]) ? 1 : 0; // as it is, it is no better than simplified
+    for (bool again = true; again;) {
+        std::vector<PatternPiece> simple = pieces;
+        std::vector<Chain> moved = chains;
+        keep_points(simple, moved, kept);
+        again = false;
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            if (whole[p] != 0 || !crosses_itself(simple[p]))
+                continue;
+            whole[p] = 1;
+            again = true;
+            for (std::size_t c = 0; c < chains.size(); ++c)
+                for (std::size_t s = 0; s < at(chains[c].side_count); ++s)
+                    if (at(chains[c].sides[s].piece) == p) {
+                        kept[c].resize(at(chains[c].count()) + 1);
+                        std::iota(kept[c].begin(), kept[c].end(), 0);
+                    }
+        }
+        if (!again) {
+            pieces = std::move(simple);
+            chains = std::move(moved);
+        }
+    }
+}
+
+bool crosses_itself(const PatternPiece& piece, double depth) {
+    const std::vector<OutlineSegment> segments = segments_of(piece);
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        for (std::size_t j = i + 1; j < segments.size() && segments[j].left <= segments[i].right;
+             ++j)
+            if (plane::segments_cross(segments[i].from, segments[i].to, segments[j].from,
+                                      segments[j].to) &&
+                is_deep(segments[i], segments[j], depth))
+                return true;
+    return false;
 }
 
 } // namespace devseg::pattern

@@ -19,7 +19,7 @@ constexpr int least_samples = 4;
 // Samples of a stretch between two joints: enough to see every bend of a cubic.
 constexpr double usual_samples = 48.0;
 // Rounds in which the parameters of the samples are improved.
-constexpr int rounds = 4;
+constexpr int fit_rounds = 4;
 // A curve's handles are at most so long, as a share of the stretch: longer ones make loops.
 constexpr double longest_handle = 1.5;
 
@@ -222,7 +222,7 @@ void fit_part(const std::vector<Vec2>& points, std::size_t first, std::size_t la
         last + 1 == points.size() ? end_direction(points, false) : Vec2(-direction(points, last));
     Samples samples = sample(points, first, last);
     Control curve = fit(samples, start, end);
-    for (int round = 0; round < rounds && error_of(curve, samples) > tolerance; ++round) {
+    for (int round = 0; round < fit_rounds && error_of(curve, samples) > tolerance; ++round) {
         improve_parameters(curve, samples);
         curve = fit(samples, start, end);
     }

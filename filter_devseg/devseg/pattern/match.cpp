@@ -10,9 +10,8 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/maps/lpfb.h"
-#include "devseg/pattern/layout.h"
+#include "devseg/pattern/corners.h"
 #include "devseg/pattern/outlines.h"
-#include "devseg/pattern/simplify.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -27,14 +26,12 @@ constexpr double largest_mm = 0.5;
 // Seams that are better than this share of it are left alone.
 constexpr double good_enough = 0.5;
 // Every round takes freedom from one more piece; what is still mismatched then is reported.
-constexpr int most_rounds = 8;
+constexpr int match_rounds = 8;
 // Newton steps for positions, the share of the outline's length that edges may be off, and what
 // keeps the equations solvable on straight outlines.
-constexpr int most_steps = 60;
-constexpr double closed_share = 1e-9;
+constexpr int match_steps = 60;
 constexpr double softness = 1e-9;
 // Rounds of pushing crossing edges apart, to this share of the outline's length.
-constexpr int most_pushes = 60;
 constexpr double push_share = 2e-5;
 
 double edge_length(const std::vector<PatternPiece>& pieces, const SeamSide& side, Index k) {
@@ -172,8 +169,8 @@ bool close_by_angles(std::vector<Vec2>& points, const std::vector<double>& lengt
 // least norm that fulfil the linearised conditions |x[i + 1] − x[i]| = lengths[i].
 bool close_by_positions(std::vector<Vec2>& points, const std::vector<double>& lengths) {
     const std::size_t n = points.size();
-    const double enough = closed_share * std::accumulate(lengths.begin(), lengths.end(), 0.0);
-    for (int step = 0; step < most_steps; ++step) {
+    const double enough = no_extent * std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    for (int step = 0; step < match_steps; ++step) {
         std::vector<Vec2> along(n);
         Eigen::VectorXd missing(static_cast<Eigen::Index>(n));
         for (std::size_t i = 0; i < n; ++i) {
@@ -241,7 +238,7 @@ bool close_without_crossing(std::vector<Vec2>& points, const std::vector<double>
                             const Progress& progress) {
     const std::size_t n = points.size();
     const double gap = push_share * std::accumulate(lengths.begin(), lengths.end(), 0.0);
-    for (int round = 0; round < most_pushes; ++round) {
+    for (int round = 0; round < match_steps; ++round) {
         progress.check();
         if (!close_by_positions(points, lengths))
             return false;
@@ -330,7 +327,7 @@ Index match_with(std::vector<PatternPiece>& pieces, const std::vector<Chain>& ch
             else if (failed == pieces.size() || pieces[p].area > pieces[failed].area)
                 failed = p;
         }
-        if (failed == pieces.size() || round == most_rounds) {
+        if (failed == pieces.size() || round == match_rounds) {
             pieces = std::move(changed);
             return count;
         }

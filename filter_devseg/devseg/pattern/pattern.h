@@ -12,6 +12,10 @@
 
 namespace devseg::pattern {
 
+constexpr double no_extent = 1e-9;  // share of a size below which lengths are rounding
+constexpr double vanishing = 1e-12; // the same for areas
+constexpr double gap_share = 0.02;  // between pieces that are laid out anew, of the layout's size
+
 /// One cubic Bézier curve of an outline; straight lines are curves as well (`is_line`).
 struct OutlineCurve {
     std::array<Vec2, 4> control{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}; // mm
@@ -91,6 +95,13 @@ struct PatternPiece {
     }
     PiecePath& path(Index i) { return i == 0 ? outer : holes[static_cast<std::size_t>(i - 1)]; }
     Index path_count() const { return 1 + static_cast<Index>(holes.size()); }
+    /// The points of all outlines, the outer one first.
+    std::vector<std::vector<Vec2>> rings() const {
+        std::vector<std::vector<Vec2>> result;
+        for (Index i = 0; i < path_count(); ++i)
+            result.push_back(path(i).points);
+        return result;
+    }
 };
 
 /// The pieces as they lie on the sheet: within [0, width] × [0, height], seen from outside the

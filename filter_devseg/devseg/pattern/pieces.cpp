@@ -9,17 +9,11 @@
 #include "devseg/base/errors.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
-#include "devseg/pattern/label_point.h"
-#include "devseg/pattern/layout.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
-#include "devseg/pattern/matched_map.h"
-#include "devseg/pattern/notches.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
-#include "devseg/pattern/simplify.h"
-#include "devseg/pattern/split.h"
-#include "devseg/pattern/strain.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -31,19 +25,12 @@ namespace {
 constexpr double smallest_layout_mm = 1e-10;
 constexpr double largest_layout_mm = 1e12;
 
-// A chart that covers less than this share of its own area has collapsed in the plane.
-constexpr double collapsed = 1e-6;
+// A chart that covers less than this share of its own area has collapsed_chart in the plane.
+constexpr double collapsed_chart = 1e-6;
 
-// A chart with less than this share of all area, on the model and in the plane, is a degenerate
-// face that some atlas gave a chart of its own. On a sheet of a square metre it is 1 µm wide.
-constexpr double crumb = 1e-12;
-
-// Charts that have collapsed are left out up to this share of the model: makers of atlases give
-// faces that they cannot unfold one point.
+// Charts that have collapsed_chart are left out up to this share of the model: makers of atlases
+// give faces that they cannot unfold one point.
 constexpr double left_out_share = 1e-3;
-
-// A model thinner along y than this share of its size has no height to be scaled by.
-constexpr double no_extent = 1e-9;
 
 // A piece may lose this share of its area to folds before that is reported.
 constexpr double fold_tolerance = 1e-3;
@@ -100,11 +87,14 @@ struct ChartAreas {
     std::vector<double> covered; // the same, faces counted without sign
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
-    Index left_out = 0;       // small charts that have collapsed: their area in the plane is 0
+    Index left_out = 0; // small charts that have collapsed_chart: their area in the plane is 0
 
     double scale = 1.0; // internal units for one unit of the texture coordinates
+    // A degenerate face that some atlas gave a chart of its own. On a sheet of a square metre it is
+    // 1 µm wide.
     bool is_crumb(std::size_t c) const {
-        return surface[c] <= crumb * surface_total && std::abs(plane[c]) <= crumb * plane_total;
+        return surface[c] <= vanishing * surface_total &&
+               std::abs(plane[c]) <= vanishing * plane_total;
     }
     // Signed areas in the plane, 0 for crumbs.
     std::vector<double> worth_cutting() const {
@@ -116,8 +106,10 @@ struct ChartAreas {
     }
 };
 
-ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts) {
+ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
+                          double scale) {
     ChartAreas areas;
+    areas.scale = scale;
     areas.surface.assign(at(charts.count), 0.0);
     areas.plane.assign(at(charts.count), 0.0);
     areas.covered.assign(at(charts.count), 0.0);
@@ -133,7 +125,6 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::Cha
         throw InvalidMesh(
             std::string("expected texture coordinates that cover an area, found ") +
             (areas.plane_total > 0.0 ? "some that are too large to measure" : "none") + remedy);
-    areas.scale = atlas::layout_scale(mesh, charts, uv);
     return areas;
 }
 
@@ -146,7 +137,7 @@ void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
     double lost = 0.0;
     for (std::size_t c = 0; c < is_bad.size(); ++c)
         if (!areas.is_crumb(c) &&
-            !(std::abs(areas.plane[c]) * scale * scale >= collapsed * areas.surface[c])) {
+            !(std::abs(areas.plane[c]) * scale * scale >= collapsed_chart * areas.surface[c])) {
             is_bad[c] = 1;
             ++count;
             lost += areas.surface[c];
@@ -246,10 +237,7 @@ void place_on_sheet(Pattern& pattern, const char* scale_name) {
 }
 
 void place_label(PatternPiece& piece) {
-    std::vector<const std::vector<Vec2>*> outlines = {&piece.outer.points};
-    for (const PiecePath& hole : piece.holes)
-        outlines.push_back(&hole.points);
-    const LabelPoint point = find_label_point(outlines);
+    const LabelPoint point = find_label_point(piece.rings());
     piece.label_position = point.position;
     piece.label_radius = point.radius;
 }
@@ -259,14 +247,13 @@ SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOpti
                          double mm, ChartAreas& areas, Progress& progress) {
     SplitCharts result;
     result.charts = atlas::charts_from_uv(mesh, uv);
-    areas = measure_charts(mesh, uv, result.charts);
+    const double scale = atlas::layout_scale(mesh, result.charts, uv);
+    areas = measure_charts(mesh, uv, result.charts, scale);
     check_charts(result.charts, areas);
     if (options.max_piece_mm > 0.0) {
-        const double scale = areas.scale;
         result = split_large_charts(mesh, uv, result.charts, options.max_piece_mm / (scale * mm),
                                     progress);
-        areas = measure_charts(mesh, uv, result.charts);
-        areas.scale = scale;
+        areas = measure_charts(mesh, uv, result.charts, scale);
         check_charts(result.charts, areas);
     }
     return result;
@@ -321,9 +308,9 @@ void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
-    shelve(pieces, moved);
+    move_above(pieces, moved);
     const std::vector<std::size_t> others = overlapping_pieces(pieces);
-    shelve(pieces, others);
+    move_above(pieces, others);
     if (!others.empty())
         pattern.notes.push_back(std::to_string(others.size()) + " of " +
                                 std::to_string(pieces.size()) +

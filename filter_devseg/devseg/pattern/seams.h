@@ -1,4 +1,5 @@
-// Finding the seams of traced pieces through the mesh, and following their sides.
+// Finding the seams of traced pieces through the mesh, following their sides, and their notches:
+// marks on both sides of a seam that meet when it is sewn.
 #pragma once
 
 #include <cstdint>
@@ -64,5 +65,11 @@ struct SidePoint {
 
 /// The place `mm` along a side, from the seam's start, as the notches are given.
 SidePoint point_on_side(const std::vector<PatternPiece>& pieces, const SeamSide& side, double mm);
+
+/// Places the notches of every seam at the same shares of the length on both sides, about
+/// `spacing_mm` apart and away from the seam's ends, where all corners are. Their distances grow
+/// along the seam: it cannot be sewn the other way round without notice. A notch near a sharp bend
+/// moves to a straighter place close by, on both sides alike. 0 = no notches.
+void set_notches(Pattern& pattern, double spacing_mm);
 
 } // namespace devseg::pattern

@@ -1,9 +1,13 @@
+// References
+//   V. Agafonkin: A new algorithm for finding a visual center of a polygon. 2016 (polylabel):
+//   quadtree refinement of the cells with the highest bound first.
 #include "devseg/pattern/shapes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <queue>
 
 #include "devseg/pack/outline.h"
 #include "devseg/pattern/outlines.h"
@@ -18,13 +22,13 @@ using Complex = std::complex<double>;
 // Places along an outline that are compared at first; afterwards each is brought to the nearest
 // point of the other outline.
 constexpr std::size_t places = 96;
-constexpr int rounds = 12;
+constexpr int motion_rounds = 12;
 
 // Two pieces of one shape differ by less than this share of their size, whatever the tolerance.
 constexpr double size_share = 0.01;
 
 // Outlines of one shape differ in length by less than this share, however ragged they are.
-constexpr double raggedness = 0.1;
+constexpr double length_raggedness = 0.1;
 
 // The grain line leaves this share of its length free at each end.
 constexpr double grain_margin = 0.12;
@@ -135,7 +139,7 @@ bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vec
 // Brings the points to the nearest ones of the other outline, again and again.
 bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
                const std::vector<Vec2>& even, Motion motion, double tolerance) {
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < motion_rounds; ++round) {
         std::vector<Vec2> nearest;
         for (const Vec2& p : even)
             nearest.push_back(nearest_on(b.front(), motion(p)));
@@ -198,7 +202,7 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
            near(of_a.mean_radius, of_b.mean_radius, 2.0 * tolerance) &&
            near(of_a.radius, of_b.radius, 4.0 * tolerance) &&
            near(a.area, b.area, tolerance * std::max(of_a.around, of_b.around)) &&
-           near(of_a.around, of_b.around, raggedness * of_a.around);
+           near(of_a.around, of_b.around, length_raggedness * of_a.around);
 }
 
 // The stretch of the line through `p` around p that lies inside the piece.
@@ -223,13 +227,71 @@ std::array<Vec2, 2> chord_through(const PatternPiece& piece, const Vec2& p, cons
     return {p + (back + margin) * along, p + (ahead - margin) * along};
 }
 
+// A name may be off the best place by this share of its room: nobody sees it.
+constexpr double label_precision = 0.02;
+
+// Bounds the time on outlines with thousands of points; a compact piece needs about 50 cells.
+constexpr int cell_limit = 1000;
+
+using Outlines = std::vector<std::vector<Vec2>>;
+
+// Calls visit(a, b) for every segment.
+template <class Visit>
+void for_each_segment(const Outlines& outlines, Visit visit) {
+    for (const std::vector<Vec2>& points : outlines)
+        for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++)
+            visit(points[j], points[i]);
+}
+
+// Distance from the outlines, negative outside.
+double signed_distance(const Outlines& outlines, const Vec2& p) {
+    double nearest = infinite;
+    bool inside = false;
+    for_each_segment(outlines, [&](const Vec2& a, const Vec2& b) {
+        if (plane::meets_height(a, b, p.y()) && p.x() < plane::x_at_height(a, b, p.y()))
+            inside = !inside;
+        nearest = std::min(nearest, plane::squared_distance(p, a, b));
+    });
+    return inside ? std::sqrt(nearest) : -std::sqrt(nearest);
+}
+
+// The middle of the widest stretch inside on the line at height y: in every piece, however thin.
+LabelPoint widest_on_line(const Outlines& outlines, double y) {
+    std::vector<double> xs;
+    for_each_segment(outlines, [&](const Vec2& a, const Vec2& b) {
+        if (plane::meets_height(a, b, y))
+            xs.push_back(plane::x_at_height(a, b, y));
+    });
+    std::sort(xs.begin(), xs.end());
+    LabelPoint best;
+    double width = -1.0;
+    for (std::size_t i = 0; i + 1 < xs.size(); i += 2)
+        if (xs[i + 1] - xs[i] > width) {
+            width = xs[i + 1] - xs[i];
+            best.position = Vec2(0.5 * (xs[i] + xs[i + 1]), y);
+        }
+    best.radius = signed_distance(outlines, best.position);
+    return best;
+}
+
+struct Cell {
+    Vec2 centre;
+    double half;     // of the side
+    double distance; // signed, of the centre
+    double bound;    // no point of the cell is farther from the outlines
+
+    bool operator<(const Cell& other) const { return bound < other.bound; }
+};
+
+Cell make_cell(const Outlines& outlines, const Vec2& centre, double half) {
+    const double distance = signed_distance(outlines, centre);
+    return {centre, half, distance, distance + half * std::sqrt(2.0)};
+}
+
 } // namespace
 
 PieceBox least_box(const std::vector<Vec2>& points) {
-    std::vector<Triangle> fan;
-    for (std::size_t i = 2; i < points.size(); ++i)
-        fan.push_back({0, static_cast<Index>(i) - 1, static_cast<Index>(i)});
-    const double angle = pack::best_box_angle(pack::find_outline(fan, points));
+    const double angle = pack::best_box_angle(pack::outline_of({points}));
     const Vec2 along(std::cos(angle), -std::sin(angle));
     const Vec2 across = plane::left_of(along);
     const Vec2 size = plane::box_of(points, [&](const Vec2& p) {
@@ -278,6 +340,40 @@ void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm) {
         if (piece.quantity > 0)
             models.push_back(i);
     }
+}
+
+LabelPoint find_label_point(const Outlines& outlines) {
+    const Eigen::AlignedBox2d box = plane::box_of(outlines.front());
+    const Vec2 low = box.min();
+    const Vec2 size = box.sizes();
+    LabelPoint best = widest_on_line(outlines, low.y() + 0.5 * size.y());
+    if (!(size.minCoeff() > 0.0))
+        return {best.position, 0.0};
+
+    // Square cells, at most 16 on the longer side: slivers are left to the refinement.
+    const double side = std::max(size.minCoeff(), size.maxCoeff() / 16.0);
+    const int columns = static_cast<int>(std::ceil(size.x() / side));
+    const int rows = static_cast<int>(std::ceil(size.y() / side));
+    std::priority_queue<Cell> cells;
+    for (int i = 0; i < columns; ++i)
+        for (int j = 0; j < rows; ++j)
+            cells.push(make_cell(outlines, low + side * Vec2(i + 0.5, j + 0.5), 0.5 * side));
+
+    for (int made = 0; made < cell_limit && !cells.empty();) {
+        const Cell cell = cells.top();
+        cells.pop();
+        if (cell.distance > best.radius)
+            best = {cell.centre, cell.distance};
+        if (cell.bound <= (1.0 + label_precision) * best.radius)
+            break;
+        const double half = 0.5 * cell.half;
+        for (const double dx : {-half, half})
+            for (const double dy : {-half, half})
+                cells.push(make_cell(outlines, cell.centre + Vec2(dx, dy), half));
+        made += 4;
+    }
+    best.radius = std::max(best.radius, 0.0);
+    return best;
 }
 
 } // namespace devseg::pattern

@@ -1,6 +1,10 @@
-// The shapes of pieces: their sizes, their grain line, and which of them are the same.
+// What the shape of a piece says: its name's place, its size, its grain, and which pieces are
+// alike.
 #pragma once
 
+#include <vector>
+
+#include "devseg/mesh/mesh.h"
 #include "devseg/pattern/pieces.h"
 
 namespace devseg::pattern {
@@ -21,5 +25,15 @@ void set_sizes(PatternPiece& piece, GrainDirection grain);
 /// evenly along the outlines, and hold where no outline is farther than `tolerance_mm` (and a
 /// hundredth of the piece's size) from the other. Sets model, mirrored and the quantities.
 void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm);
+
+struct LabelPoint {
+    Vec2 position = Vec2::Zero();
+    double radius = 0.0; // distance from the nearest outline, same units; 0 = no inside found
+};
+
+/// The pole of inaccessibility of the area that the closed outlines bound by the even-odd rule,
+/// within 2 % of its radius. The outer outline comes first. Always inside where there is one,
+/// however thin the piece.
+LabelPoint find_label_point(const std::vector<std::vector<Vec2>>& outlines);
 
 } // namespace devseg::pattern

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
-#include "devseg/pattern/simplify.h"
 #include "unit/pattern_samples.h"
 #include "unit/shapes.h"
 

@@ -5,10 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/pattern/layout.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
-#include "devseg/pattern/matched_map.h"
-#include "devseg/pattern/notches.h"
+#include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
 #include "unit/checks.h"

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "devseg/base/errors.h"
-#include "sheet/nesting.h"
-#include "sheet/page_size.h"
+#include "sheet/export_options.h"
+#include "sheet/layout.h"
 #include "unit/checks.h"
 
 namespace devseg::sheet {

@@ -1,4 +1,4 @@
-#include "sheet/tabs.h"
+#include "sheet/allowance.h"
 
 #include <polyclipping/clipper.hpp>
 

@@ -1,5 +1,5 @@
 // Names and numbers in the pieces.
-#include "sheet/texts.h"
+#include "sheet/marks.h"
 
 #include <cmath>
 

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "writers/pdf_objects.h"
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 namespace devseg::writers {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pattern/pieces.h"
-#include "sheet/pattern_drawing.h"
+#include "sheet/sheet_drawing.h"
 #include "unit/temporary_folder.h"
 #include "writers/file.h"
 

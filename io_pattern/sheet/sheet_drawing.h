@@ -1,4 +1,4 @@
-// Sheets → the pages of a document: a cover, an overview and the sheets at true scale.
+// Pieces on their sheets → drawing, with one layer for each operation, and its pages in a document.
 #pragma once
 
 #include <string>
@@ -7,6 +7,12 @@
 #include "writers/drawing.h"
 
 namespace devseg::sheet {
+
+/// Layers: "cut" (one path for each piece, outline and holes; slits are paths of their own),
+/// "mountain", "valley", "sew", "notch", "grain", "numbers" and "text" as the options want them;
+/// "scale" with the frames of the sheets and check squares of 50 mm and 2 inches. A laser gets
+/// "cut", "engrave" and "scale". Sheets lie side by side.
+writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options);
 
 /// A page that shows a part of the drawing at true scale.
 struct PrintedPage {

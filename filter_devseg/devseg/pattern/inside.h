@@ -1,9 +1,19 @@
-// What happens to the material between the paper and the model, face by face.
+// The inside of a piece: where its faces lie on paper, how the material is strained there, folds.
 #pragma once
 
+#include <vector>
+
+#include "devseg/atlas/texture.h"
+#include "devseg/pattern/pattern.h"
 #include "devseg/pattern/pieces.h"
 
 namespace devseg::pattern {
+
+/// The places on paper of all corners of the given faces, in mm: 3 for each. Corners follow the
+/// outlines of the piece, which may have been changed to match its seams: a corner on an outline
+/// moves with it, one inside by a mean of all moves.
+std::vector<Vec2> place_corners(const Mesh& mesh, const CornerUv& uv,
+                                const std::vector<Index>& faces, const PatternPiece& piece);
 
 /// The lines in a face that are longest and shortest on paper, compared with the model.
 struct FaceStrain {

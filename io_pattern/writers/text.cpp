@@ -1,16 +1,14 @@
 // References
 //   Adobe Systems: Font metrics for the PDF core 14 fonts, Helvetica.afm. 1997.
-#include "writers/text_metrics.h"
+#include "writers/text.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace devseg::writers {
 
 namespace {
-
-// From the middle of capital letters down to the baseline, in font sizes: half of CapHeight 718.
-constexpr double half_capital = 0.36;
 
 // Character widths from the blank (32) to the tilde (126), in thousandths of the font size.
 constexpr std::array<int, 95> widths = {
@@ -47,6 +45,19 @@ std::string narrowed(const std::string& utf8, unsigned last) {
 
 } // namespace
 
+std::string number_text(double value, int decimals) {
+    char digits[400]; // the largest double has 309 digits
+    const auto end =
+        std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals);
+    std::string text(digits, end.ptr);
+    if (text.find('.') != std::string::npos) {
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.')
+            text.pop_back();
+    }
+    return text == "-0" ? "0" : text;
+}
+
 double text_width(const std::string& text, double size) {
     int width = 0;
     for (const unsigned point : code_points(text))
@@ -55,7 +66,7 @@ double text_width(const std::string& text, double size) {
 }
 
 Vec2 text_baseline(const DrawingText& text) {
-    const double drop = half_capital * text.size;
+    const double drop = 0.5 * capital_height * text.size;
     return text.position + drop * Vec2(std::sin(text.angle), -std::cos(text.angle));
 }
 

@@ -1,0 +1,407 @@
+#include "sheet/sheet_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "devseg/plane/plane.h"
+#include "sheet/segment_grid.h"
+#include "writers/text.h"
+
+namespace devseg::sheet {
+
+namespace {
+
+constexpr double check_text = 8.0; // mm, font size
+
+// Importers that scale drawings do it unseen: a ruler on these squares shows it.
+struct CheckSquare {
+    const char* id;
+    const char* text;
+    double side; // mm
+};
+constexpr CheckSquare check_squares[] = {{"check-square", "50 mm", 50.0},
+                                         {"check-square-inch", "2 inch", 50.8}};
+
+// Three decimals (1 µm) are far below what a blade can follow. Small patterns, such as models in
+// metres exported at 1 mm for a unit, need more. The grid is to be at most this share of the
+// layout's size, and rounding may change the area of no piece by more than the second share
+// (0.1 % is promised). Pieces below a millionth of the whole are measured against that millionth:
+// nobody cuts them.
+constexpr int usual_decimals = 3;
+constexpr double grid_share = 1e-4;
+constexpr double area_tolerance = 2e-4;
+constexpr double negligible_piece = 1e-6;
+
+constexpr double caption_share = 0.32;  // of the margin: font size
+constexpr double largest_caption = 3.2; // mm
+constexpr double least_caption = 1.2;
+constexpr double cross = 2.5; // mm, half the size of a registration cross
+constexpr double page_title = 6.0;
+constexpr double page_text = 3.5;
+
+writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
+    return {{low, low + Vec2(size.x(), 0.0), low + size, low + Vec2(0.0, size.y())}, true};
+}
+
+// Area of a path whose points are rounded to the grid; as they are for a grid of 0.
+double area_of(const writers::DrawingPath& path, double grid) {
+    double twice = 0.0;
+    for (const writers::DrawingPolyline& part : path.parts) {
+        const auto rounded = [&](std::size_t i) {
+            const Vec2& p = part.points[i];
+            return grid > 0.0
+                       ? Vec2(std::round(p.x() / grid) * grid, std::round(p.y() / grid) * grid)
+                       : p;
+        };
+        const Vec2 first = rounded(0);
+        for (std::size_t i = 2; i < part.points.size(); ++i)
+            twice += plane::cross(rounded(i - 1) - first, rounded(i) - first);
+    }
+    return 0.5 * twice;
+}
+
+int decimals_for(const writers::DrawingLayer& cut) {
+    double total = 0.0;
+    Eigen::AlignedBox2d box;
+    std::vector<double> areas;
+    for (const writers::DrawingPath& path : cut.paths) {
+        areas.push_back(path.parts.front().closed ? std::abs(area_of(path, 0.0)) : 0.0);
+        total += areas.back();
+        for (const writers::DrawingPolyline& part : path.parts)
+            for (const Vec2& p : part.points)
+                box.extend(p);
+    }
+    const auto holds = [&](double grid) {
+        for (std::size_t i = 0; i < cut.paths.size(); ++i) {
+            const double allowed = area_tolerance * std::max(areas[i], negligible_piece * total);
+            if (areas[i] > 0.0 &&
+                std::abs(std::abs(area_of(cut.paths[i], grid)) - areas[i]) > allowed)
+                return false;
+        }
+        return true;
+    };
+    const double finest = grid_share * box.sizes().maxCoeff();
+    int decimals = usual_decimals;
+    // More digits than a double holds next to the margin say nothing.
+    while (decimals < std::numeric_limits<double>::digits10 &&
+           (std::pow(10.0, -decimals) > finest || !holds(std::pow(10.0, -decimals))))
+        ++decimals;
+    return decimals;
+}
+
+// The place of the sheets, and of the check squares in a strip beside them or below, whatever
+// takes less paper.
+struct Plan {
+    std::vector<Vec2> sheets; // lower left corners
+    std::vector<Vec2> squares;
+    Vec2 size = Vec2::Zero();
+};
+
+Plan plan_drawing(const PatternLayout& layout) {
+    const double strip = check_squares[1].side + sheet_margin;
+    const double along = check_squares[0].side + check_squares[1].side + 3.0 * sheet_margin;
+    Vec2 sheets(-sheet_gap, 0.0);
+    for (const PatternSheet& sheet : layout.sheets)
+        sheets =
+            Vec2(sheets.x() + sheet_gap + sheet.size.x(), std::max(sheets.y(), sheet.size.y()));
+    const Vec2 below(std::max(sheets.x(), along), sheets.y() + strip);
+    const Vec2 beside(sheets.x() + strip, std::max(sheets.y(), along));
+    const bool is_below = below.prod() <= beside.prod();
+    Plan plan;
+    plan.size = Vec2((is_below ? below : beside).array().ceil());
+    double x = 0.0;
+    for (const PatternSheet& sheet : layout.sheets) {
+        plan.sheets.emplace_back(x, is_below ? std::ceil(strip) : 0.0);
+        x += sheet.size.x() + sheet_gap;
+    }
+    const double step = check_squares[0].side + sheet_margin;
+    const Vec2 first = is_below ? Vec2::Constant(sheet_margin) : Vec2(sheets.x(), sheet_margin);
+    plan.squares = {first, first + (is_below ? Vec2(step, 0.0) : Vec2(0.0, step))};
+    return plan;
+}
+
+// One path, whose parts are the lines.
+void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const std::string& id,
+               writers::DrawingLayer& layer) {
+    writers::DrawingPath path{id, {}};
+    for (const std::vector<Vec2>& line : lines)
+        path.parts.push_back({line, closed});
+    if (!path.parts.empty())
+        layer.paths.push_back(std::move(path));
+}
+
+// The same for closed lines that may be curves.
+void add_rings(const std::vector<std::vector<Vec2>>& rings,
+               const std::vector<std::vector<pattern::OutlineCurve>>& curves, const std::string& id,
+               writers::DrawingLayer& layer) {
+    writers::DrawingPath path{id, {}};
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        path.parts.push_back({rings[i], true});
+        if (i < curves.size())
+            for (const pattern::OutlineCurve& curve : curves[i])
+                path.parts.back().curves.push_back({curve.control, curve.is_line});
+    }
+    if (!path.parts.empty())
+        layer.paths.push_back(std::move(path));
+}
+
+void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
+    std::vector<std::vector<Vec2>> lines;
+    for (const SheetNotch& notch : piece.notches)
+        lines.push_back({notch.outer, notch.inner});
+    add_lines(lines, false, piece.name + "-notch", layer);
+}
+
+writers::DrawingLayer scale_layer(const PatternLayout& layout, const Plan& plan) {
+    writers::DrawingLayer layer{"scale", "Scale check", "#000000", {}, {}, {}};
+    layer.paths.push_back({"frame", {rectangle(Vec2::Zero(), plan.size)}});
+    if (layout.page)
+        for (std::size_t i = 0; i < layout.sheets.size(); ++i)
+            layer.paths.push_back({"sheet-" + std::to_string(i + 1),
+                                   {rectangle(plan.sheets[i], layout.sheets[i].size)}});
+    for (std::size_t i = 0; i < plan.squares.size(); ++i) {
+        const CheckSquare& square = check_squares[i];
+        const Vec2 side = Vec2::Constant(square.side);
+        layer.paths.push_back({square.id, {rectangle(plan.squares[i], side)}});
+        layer.texts.push_back({plan.squares[i] + 0.5 * side, check_text, square.text});
+    }
+    return layer;
+}
+
+writers::DrawingPolyline segment(const Vec2& a, const Vec2& b) {
+    return {{a, b}, false};
+}
+
+bool touches_window(const std::vector<Vec2>& ring, const writers::PageWindow& window) {
+    const Eigen::AlignedBox2d box(window.low, window.low + window.size);
+    const std::vector<Vec2> corners = rectangle(window.low, window.size).points;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec2& a = ring[i];
+        const Vec2& b = ring[(i + 1) % ring.size()];
+        if (!box.intersects(Eigen::AlignedBox2d(a).extend(b)))
+            continue;
+        if (box.contains(a))
+            return true;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (plane::segments_touch(a, b, corners[k], corners[(k + 1) % 4]))
+                return true;
+    }
+    return plane::is_inside(ring, box.center()); // a page within a piece
+}
+
+// Crosses in the middle of the strips that a page shares with its neighbours, in the drawing.
+std::vector<Vec2> cross_places(const PatternSheet& sheet, const PageFormat& page,
+                               const PrintedPage& printed) {
+    const Vec2 half = Vec2::Constant(0.5 * tile_overlap);
+    const Vec2 low = printed.window.low;
+    const Vec2 high = low + printed.window.size;
+    std::vector<Vec2> places;
+    for (const double share : {0.25, 0.75}) {
+        const Vec2 inner = low + share * page.printable();
+        if (printed.column > 0)
+            places.emplace_back(low.x() + half.x(), inner.y());
+        if (printed.column + 1 < sheet.columns)
+            places.emplace_back(high.x() - half.x(), inner.y());
+        if (printed.row + 1 < sheet.rows)
+            places.emplace_back(inner.x(), low.y() + half.y());
+        if (printed.row > 0)
+            places.emplace_back(inner.x(), high.y() - half.y());
+    }
+    return places;
+}
+
+// In the lower margin: a bar to check the scale with, and what page this is.
+void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::size_t number,
+                 std::size_t count, const std::string& title, writers::DrawingLayer& layer) {
+    const PageFormat& page = *layout.page;
+    const double size = std::min(largest_caption, caption_share * page.margin);
+    if (size < least_caption)
+        return;
+    const PatternSheet& sheet = layout.sheets[printed.sheet];
+    const double y = 0.45 * page.margin;
+    const double bar = check_squares[0].side;
+    const Vec2 from(page.size.x() - page.margin - bar, y + 0.6 * size);
+    const Vec2 to = from + Vec2(bar, 0.0);
+    const Vec2 tick(0.0, 0.3 * size);
+    layer.paths.push_back(
+        {"",
+         {segment(from, to), segment(from - tick, from + tick), segment(to - tick, to + tick)}});
+    layer.texts.push_back({from + Vec2(0.5 * bar, -0.8 * size), size, "50 mm, print at 100 %"});
+    std::string caption = "page " + std::to_string(number) + " of " + std::to_string(count);
+    if (sheet.columns * sheet.rows > 1)
+        caption = "row " + std::to_string(printed.row + 1) + " column " +
+                  std::to_string(printed.column + 1) + ", " + caption;
+    // Long titles are cut off in front of the bar.
+    const double room = page.printable().x() - bar - 2.0 * size;
+    std::string name = title;
+    while (!name.empty() && writers::text_width(name + ", " + caption, size) > room)
+        name.pop_back();
+    if (!name.empty())
+        caption = name + ", " + caption;
+    if (writers::text_width(caption, size) <= room)
+        layer.texts.push_back(
+            {Vec2(page.margin, y), size, caption, 0.0, writers::TextAnchor::left});
+}
+
+} // namespace
+
+writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
+    const Plan plan = plan_drawing(layout);
+    const bool laser = options.preset == PatternPreset::laser;
+    writers::DrawingLayer cut{"cut", "Cut", "#ff0000", {}, {}, {}};
+    writers::DrawingLayer mountain{"mountain", "Fold mountain", "#0000ff", {}, {}, {}};
+    writers::DrawingLayer valley{"valley", "Fold valley", "#00aa00", {3.0, 1.5}, {}, {}};
+    writers::DrawingLayer sew{"sew", "Sew line", "#00a000", {3.0, 1.5}, {}, {}};
+    writers::DrawingLayer notch{"notch", "Notches", "#ff00ff", {}, {}, {}};
+    writers::DrawingLayer grain{"grain", "Grain line", "#000000", {}, {}, {}};
+    writers::DrawingLayer numbers{"numbers", "Seam numbers", "#000000", {}, {}, {}};
+    writers::DrawingLayer text{"text", "Text", "#000000", {}, {}, {}};
+    writers::DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
+    for (SheetPiece piece : layout.pieces) {
+        piece.move({1.0, 0.0, plan.sheets[piece.sheet]});
+        add_rings(piece.cut, piece.cut_curves, piece.name + "-cut", cut);
+        add_lines(piece.slits, false, piece.name + "-slit", piece.has_allowance() ? sew : cut);
+        add_rings(piece.sew, piece.sew_curves, piece.name + "-sew", sew);
+        add_lines(piece.mountains, false, piece.name + "-mountain", mountain);
+        add_lines(piece.valleys, false, piece.name + "-valley", valley);
+        add_lines(piece.grain, false, piece.name + "-grain", grain);
+        add_notches(piece, notch);
+        add_lines(piece.leaders, false, piece.name + "-leader", laser ? engrave : numbers);
+        for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
+                                           std::pair(&piece.numbers, laser ? &engrave : &numbers)})
+            layer->texts.insert(layer->texts.end(), texts->begin(), texts->end());
+    }
+    writers::Drawing drawing;
+    drawing.width = plan.size.x();
+    drawing.height = plan.size.y();
+    drawing.decimals = decimals_for(cut);
+    drawing.layers = {cut,     mountain, valley,  sew,
+                      notch,   grain,    engrave, scale_layer(layout, plan),
+                      numbers, text};
+    for (std::size_t i = 0; i < layout.sheets.size() && layout.page; ++i)
+        drawing.sheets.push_back({plan.sheets[i], layout.sheets[i].size});
+    return drawing;
+}
+
+std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
+                                       const writers::Drawing& drawing) {
+    if (!layout.page)
+        return {
+            {{Vec2::Zero(), Vec2(drawing.width, drawing.height), Vec2::Zero(), 1.0}, 0, 0, 0, {}}};
+    const PageFormat& format = *layout.page;
+    std::vector<PrintedPage> pages;
+    for (std::size_t s = 0; s < layout.sheets.size(); ++s) {
+        const PatternSheet& sheet = layout.sheets[s];
+        for (Index row = 0; row < sheet.rows; ++row)
+            for (Index column = 0; column < sheet.columns; ++column) {
+                PrintedPage page;
+                page.sheet = static_cast<Index>(s);
+                page.row = row;
+                page.column = column;
+                const Vec2 low = Vec2::Constant(format.margin) +
+                                 Vec2(column, sheet.rows - 1 - row).cwiseProduct(format.step());
+                page.window = {low, format.printable(), Vec2::Constant(format.margin), 1.0};
+                for (std::size_t p = 0; p < layout.pieces.size(); ++p)
+                    if (layout.pieces[p].sheet == page.sheet &&
+                        touches_window(layout.pieces[p].cut.front(), page.window))
+                        page.pieces.push_back(static_cast<Index>(p));
+                page.window.low += drawing.sheets[s].low;
+                if (!page.pieces.empty())
+                    pages.push_back(page);
+            }
+    }
+    return pages;
+}
+
+std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
+                                               const writers::Drawing& drawing,
+                                               const std::vector<PrintedPage>& pages,
+                                               const std::string& title) {
+    std::vector<writers::DocumentPage> result;
+    for (std::size_t i = 0; i < pages.size(); ++i) {
+        writers::DocumentPage page;
+        page.windows = {pages[i].window};
+        if (!layout.page) {
+            page.width = drawing.width;
+            page.height = drawing.height;
+            result.push_back(std::move(page));
+            continue;
+        }
+        page.width = layout.page->size.x();
+        page.height = layout.page->size.y();
+        writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
+        marks.paths.push_back(
+            {"", {rectangle(pages[i].window.position, layout.page->printable())}});
+        for (const Vec2& place :
+             cross_places(layout.sheets[pages[i].sheet], *layout.page, pages[i])) {
+            const Vec2 p = place - pages[i].window.low + pages[i].window.position;
+            marks.paths.push_back({"",
+                                   {segment(p - Vec2(cross, 0.0), p + Vec2(cross, 0.0)),
+                                    segment(p - Vec2(0.0, cross), p + Vec2(0.0, cross))}});
+        }
+        add_caption(layout, pages[i], i + 1, pages.size(), title, marks);
+        page.marks = {std::move(marks)};
+        result.push_back(std::move(page));
+    }
+    return result;
+}
+
+writers::DocumentPage overview_page(const PatternLayout& layout, const writers::Drawing& drawing,
+                                    const std::vector<PrintedPage>& pages,
+                                    const std::string& title) {
+    const PageFormat& format = *layout.page;
+    writers::DocumentPage page;
+    page.width = format.size.x();
+    page.height = format.size.y();
+    writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
+    const Vec2 low = Vec2::Constant(format.margin);
+    Vec2 room = format.printable();
+    const double squares = check_squares[0].side + check_squares[1].side + format.margin;
+    const double foot = check_squares[1].side + 2.0 * page_text;
+    const bool has_squares = room.x() >= squares && room.y() >= 2.5 * foot;
+    if (has_squares) {
+        double x = low.x();
+        for (const CheckSquare& square : check_squares) {
+            const Vec2 side = Vec2::Constant(square.side);
+            marks.paths.push_back({"", {rectangle(Vec2(x, low.y()), side)}});
+            marks.texts.push_back({Vec2(x, low.y()) + 0.5 * side, page_text, square.text});
+            x += square.side + format.margin;
+        }
+        room.y() -= foot;
+    }
+    room.y() -= 2.0 * page_title;
+    const double top = format.size.y() - format.margin;
+    marks.texts.push_back({Vec2(low.x(), top - 0.5 * page_title), page_title,
+                           title + ": overview, not to scale", 0.0, writers::TextAnchor::left});
+    // Sheets in rows and columns, all at one scale.
+    const std::size_t count = layout.sheets.size();
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+    const std::size_t rows = (count + columns - 1) / columns;
+    const Vec2 cell(room.x() / static_cast<double>(columns), room.y() / static_cast<double>(rows));
+    double scale = 1.0;
+    for (const PatternSheet& sheet : layout.sheets)
+        scale = std::min(scale, 0.95 * cell.cwiseQuotient(sheet.size).minCoeff());
+    std::vector<Vec2> places;
+    for (std::size_t s = 0; s < count; ++s) {
+        const writers::DrawingSheet& sheet = drawing.sheets[s];
+        const Vec2 place(low.x() + cell.x() * static_cast<double>(s % columns),
+                         top - 2.0 * page_title - cell.y() * static_cast<double>(s / columns) -
+                             scale * sheet.size.y());
+        page.windows.push_back({sheet.low, sheet.size, place, scale});
+        places.push_back(place);
+    }
+    for (std::size_t i = 0; i < pages.size(); ++i) {
+        const std::size_t s = at(pages[i].sheet);
+        const Vec2 corner = places[s] + scale * (pages[i].window.low - drawing.sheets[s].low);
+        const Vec2 size = scale * format.printable();
+        marks.paths.push_back({"", {rectangle(corner, size)}});
+        const double font = std::min(page_title, 0.3 * size.minCoeff());
+        marks.texts.push_back({corner + Vec2(0.6 * font, size.y() - 0.7 * font), font,
+                               std::to_string(i + 1), 0.0, writers::TextAnchor::left});
+    }
+    page.marks = {std::move(marks)};
+    return page;
+}
+
+} // namespace devseg::sheet
