@@ -1,8 +1,7 @@
 // The methods that others are compared with.
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
-#include "devseg/methods/baselines/mcgim.h"
-#include "devseg/methods/baselines/vsa.h"
+#include "devseg/methods/baselines/baselines.h"
 
 namespace devseg::baselines {
 

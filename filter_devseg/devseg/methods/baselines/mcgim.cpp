@@ -1,10 +1,9 @@
-#include "devseg/methods/baselines/mcgim.h"
+#include "devseg/methods/baselines/baselines.h"
 
 #include <algorithm>
 #include <set>
 
-#include "devseg/methods/growth/multi_heap.h"
-#include "devseg/methods/growth/reseed.h"
+#include "devseg/methods/growth/growth.h"
 #include "devseg/methods/growth/seeds.h"
 
 namespace devseg::baselines {
@@ -21,7 +20,8 @@ public:
         for (const HalfEdge h : mesh.all_half_edges())
             if (mesh.twin[h] >= 0)
                 distance_[h] = static_cast<float>(
-                    (mesh.face_centers[h / 3] - mesh.face_centers[mesh.twin[h] / 3]).norm());
+                    (mesh.face_centers[face_of(h)] - mesh.face_centers[face_of(mesh.twin[h])])
+                        .norm());
     }
 
     void start_over(std::size_t charts) {
@@ -30,8 +30,8 @@ public:
     }
 
     growth::CandidateHeap::Entry candidate(HalfEdge h, Index c) const {
-        const float cost = cost_[h / 3] + step(h, c);
-        return {cost, cost, mesh_.twin[h] / 3};
+        const float cost = cost_[face_of(h)] + step(h, c);
+        return {cost, cost, face_of(mesh_.twin[h])};
     }
     float key(Index, const growth::CandidateHeap::Entry& entry) const { return entry.key; }
     void take(Face f, Index c, float cost) {
@@ -44,7 +44,7 @@ public:
     }
 
     float step(HalfEdge h, Index c) const {
-        const Vec3& normal = mesh_.face_normals[mesh_.twin[h] / 3];
+        const Vec3& normal = mesh_.face_normals[face_of(mesh_.twin[h])];
         return distance_[h] * static_cast<float>(compactness + 1.0 - normal_[c].dot(normal));
     }
     /// The face that was taken last: the one that costs most.
@@ -97,7 +97,7 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
         seeds = border
                     .farthest_faces(
                         result.chart, seeds,
-                        [&](HalfEdge h) { return cost.step(h, result.chart[h / 3]); }, growing)
+                        [&](HalfEdge h) { return cost.step(h, result.chart[face_of(h)]); }, growing)
                     .face;
         result.converged = !seen.insert(seeds).second;
         if (result.converged)

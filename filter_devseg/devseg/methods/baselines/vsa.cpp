@@ -1,24 +1,29 @@
-#include "devseg/methods/baselines/vsa.h"
+#include "devseg/methods/baselines/baselines.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
-#include "devseg/methods/growth/multi_heap.h"
+#include "devseg/methods/growth/growth.h"
 #include "devseg/methods/growth/seeds.h"
 
 namespace devseg::baselines {
 
 namespace {
 
-// Rounds end when the error falls by less than this share; Lloyd rounds go on for very long with
-// changes of single faces.
-constexpr double least_gain = 1e-3;
-
-// [CSAD04, section 3.5]: a teleport pays if merging costs less than this share of what the worst
-// chart's error is.
-constexpr double teleport_share = 0.5;
+struct VsaTuning {
+    // Rounds end when the error falls by less than this share; Lloyd rounds go on for very long
+    // with changes of single faces.
+    double least_gain = 1e-3;
+    // [CSAD04, section 3.5]: a teleport pays if merging costs less than this share of what the
+    // worst chart's error is.
+    double teleport_share = 0.5;
+    // Faces whose errors differ by no more than the rounding of sums count as equal: the one that
+    // lies first along the axes is taken then, so that the order of faces does not decide.
+    double same_deviation = 1e-12;
+};
+constexpr VsaTuning tuning;
 
 // Area and normal of a face in single precision, side by side: 16 bytes that a step reads at once.
 struct FaceNormal {
@@ -42,7 +47,7 @@ public:
 
     // The error of [CSAD04, section 2.3]: |t| · |n − N|².
     growth::CandidateHeap::Entry candidate(HalfEdge h, Index c) const {
-        const Face f = mesh_.twin[h] / 3;
+        const Face f = face_of(mesh_.twin[h]);
         const FaceNormal& n = faces_[f];
         const Eigen::Vector3f& proxy = proxies_[c];
         const float dx = n.x - proxy.x();
@@ -59,10 +64,6 @@ private:
     std::vector<FaceNormal> faces_; // #F
     std::vector<Eigen::Vector3f> proxies_;
 };
-
-// Faces whose errors differ by no more than the rounding of sums count as equal: the one that lies
-// first along the axes is taken then, so that the order of faces does not decide.
-constexpr double same_deviation = 1e-12;
 
 bool lies_before(const Mesh& mesh, Face f, Index g) {
     const Vec3& a = mesh.face_centers[f];
@@ -117,7 +118,7 @@ public:
             const std::size_t c = at(now_.chart[f]);
             const double deviation =
                 std::sqrt(mesh_.face_areas[f] * squared_deviation(mesh_, f, proxies_[c]));
-            const bool same = std::abs(deviation - least[c]) <= same_deviation;
+            const bool same = std::abs(deviation - least[c]) <= tuning.same_deviation;
             if (same ? lies_before(mesh_, f, seeds_[c]) : deviation < least[c]) {
                 least[c] = deviation;
                 seeds_[c] = f;
@@ -138,7 +139,8 @@ public:
                 continue;
             const double deviation =
                 std::sqrt(mesh_.face_areas[f] * squared_deviation(mesh_, f, normal));
-            const bool same = farthest >= 0 && std::abs(deviation - largest) <= same_deviation;
+            const bool same =
+                farthest >= 0 && std::abs(deviation - largest) <= tuning.same_deviation;
             if (same ? lies_before(mesh_, f, farthest) : deviation > largest) {
                 largest = deviation;
                 farthest = f;
@@ -167,13 +169,14 @@ public:
     // worst chart becomes two. False where that would not pay.
     bool teleport() {
         const std::size_t worst = at(now_.worst());
-        double least = teleport_share * now_.error(worst);
+        double least = tuning.teleport_share * now_.error(worst);
         std::pair<std::size_t, std::size_t> pair(0, 0);
         for (const HalfEdge h : mesh_.all_half_edges()) {
             const HalfEdge twin = mesh_.twin[h];
             if (twin < h)
                 continue;
-            const auto [a, b] = std::minmax({at(now_.chart[h / 3]), at(now_.chart[twin / 3])});
+            const auto [a, b] =
+                std::minmax({at(now_.chart[face_of(h)]), at(now_.chart[face_of(twin)])});
             if (a == b || a == worst || b == worst)
                 continue;
             const double increase = now_.merged_error(a, b) - now_.error(a) - now_.error(b);
@@ -245,10 +248,9 @@ void start(const Mesh& mesh, Index count, int random_seed, Approximation& approx
 // Lloyd rounds until the error settles, then a teleport, and so on while that helps.
 void approximate(const VsaOptions& options, Approximation& approximation, VsaResult& result,
                  Progress& progress) {
-    constexpr double unknown = infinite;
-    double before = unknown;
-    double before_teleport = unknown;
-    result.total_error = unknown;
+    double before = infinite; // not known yet
+    double before_teleport = infinite;
+    result.total_error = infinite;
     while (result.rounds < options.max_iterations) {
         approximation.partition();
         ++result.rounds;
@@ -259,7 +261,7 @@ void approximate(const VsaOptions& options, Approximation& approximation, VsaRes
             result.chart = now.chart;
         }
         approximation.fit();
-        const bool settled = now.total >= (1.0 - least_gain) * before;
+        const bool settled = now.total >= (1.0 - tuning.least_gain) * before;
         before = now.total;
         if (!settled)
             continue;
@@ -269,7 +271,7 @@ void approximate(const VsaOptions& options, Approximation& approximation, VsaRes
             return;
         ++result.teleports;
         before_teleport = result.total_error;
-        before = unknown;
+        before = infinite;
     }
 }
 

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "devseg/methods/dcharts/tuning.h"
-#include "devseg/methods/growth/multi_heap.h"
+#include "devseg/methods/growth/growth.h"
 #include "devseg/methods/growth/seeds.h"
 
 namespace devseg::dcharts {

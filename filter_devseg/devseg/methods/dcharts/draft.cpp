@@ -9,9 +9,9 @@
 #include "devseg/atlas/fragments.h"
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/angle_defects.h"
-#include "devseg/methods/baselines/vsa.h"
+#include "devseg/methods/baselines/baselines.h"
 #include "devseg/methods/dcharts/tuning.h"
-#include "devseg/methods/growth/expansion.h"
+#include "devseg/methods/growth/borders.h"
 
 namespace devseg::dcharts {
 
@@ -171,6 +171,7 @@ void join(const Pair& pair, Draft& draft, JoinedMaps& joined) {
     draft.faces[a] = united(draft, pair);
     draft.faces[b].clear();
     draft.map[a] = joined[pair];
+    ++draft.joins;
     for (auto it = joined.begin(); it != joined.end();) {
         const auto [first, second] = it->first;
         const bool concerned = first == a || second == a || first == b || second == b;
@@ -180,18 +181,17 @@ void join(const Pair& pair, Draft& draft, JoinedMaps& joined) {
 
 } // namespace
 
-Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft,
-                   Progress& progress) {
+void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress) {
     JoinedMaps joined;
-    for (Index joins = 0;; ++joins) {
+    while (true) {
         const Borders borders = measure_borders(mesh, draft.chart);
         auto trying = progress.part(0.0); // joins say how far it is
         try_new_pairs(mesh, options, draft, borders, joined, trying);
         const Pair best = choose_pair(mesh, options, draft, borders, joined, progress);
         if (best.first < 0)
-            return joins;
+            return;
         join(best, draft, joined);
-        progress.update(static_cast<double>(joins + 1) / static_cast<double>(draft.faces.size()));
+        progress.update(static_cast<double>(draft.joins) / static_cast<double>(draft.faces.size()));
     }
 }
 
@@ -249,9 +249,9 @@ bool split_chart(const Mesh& mesh, const DChartsOptions& options, double wanted_
     growth::ExpansionOptions expansion;
     expansion.max_fitting_error = options.max_fitting_error;
     growth::relabel_by_expansion(part, grown.proxies, expansion, label, progress);
-    label = atlas::absorb_fragments(part, label, tuning.least_part);
+    label = atlas::absorb_fragments(part, label, tuning.smallest_part);
     if (count_labels(label) < 2) // the shortest border is none: take the charts as they grew
-        label = atlas::absorb_fragments(part, grown.chart, tuning.least_part);
+        label = atlas::absorb_fragments(part, grown.chart, tuning.smallest_part);
     return take_apart(mesh, label, wanted_l2, chart, draft, progress);
 }
 

@@ -23,6 +23,7 @@ struct Draft {
     std::vector<std::vector<Index>>
         faces;                        // of each chart, ascending; empty for charts that are gone
     std::vector<judge::TrialMap> map; // of each chart
+    Index joins = 0;                  // of two charts each, so far
 
     Index charts_number() const;
     double excess() const; // Σ A (l2² − 1) over the charts, internal units squared
@@ -56,9 +57,8 @@ struct MergeOptions {
 };
 
 /// Joins two neighbouring charts at a time, those first whose common border is long and whose
-/// joined map costs little stretch; neighbours are tried again after each. Returns the number of
-/// joins.
-Index merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
+/// joined map costs little stretch; neighbours are tried again after each.
+void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
 
 /// Grows two D-Charts within the chart, far from each other, and gives the second and what it left
 /// over labels of their own. Cuts inside the chart are healed. Returns whether the chart is in

@@ -26,9 +26,42 @@ struct Tuning {
     // of the area for each √area of border.
     double negligible = 1e-5;
     double small_allowance = 3.0; // of small charts, over the bounds of others
-    double least_part = 0.05;     // of a chart: smaller parts are not worth a chart
+    double smallest_part = 0.05;  // of a chart: smaller parts are not worth a chart
     std::size_t tried_spots = 3;  // of a chart, for each dart
     double worst_spot_gain = 0.1; // share of the excess over the bound that a dart must take
+
+    // Decimation
+
+    Index decimated_faces = 6000;          // enough to decide where borders run
+    Index decimated_creased_faces = 24000; // where they must run along creases
+    Index faces_per_chart = 150;           // of the coarse surface, at least
+    double worth_decimation = 2.0;         // faces over those of the coarse surface
+    double least_chart = 0.002; // of the surface: less are slivers nobody wants to cut out
+
+    // What border is worth against the fitting error of faces.
+    double smooth_length_weight = 0.045;
+
+    // Where creases shape the surface, its parts are cones, cylinders and planes but for the
+    // tessellation: charts must fit them closely, borders belong on creases whatever their length,
+    // and joins must be nearly exact.
+    double creased_fitting_error = 0.008; // F_max at most
+    double creased_length_weight = 0.001;
+    double creased_threshold = 0.02; // factor of η
+    double bent_cosine = 0.866;      // of 30 degrees
+    double sharp_edge_cosine = 0.5;  // of 60 degrees
+    double sharp_share = 0.6;        // of the bent edges
+
+    // The number of charts
+
+    Index few_seeds = 3;        // twice as many are tried where they give more charts than wanted
+    Index automatic_seeds = 10; // where the number of charts is to be found
+    int most_splits = 200;
+    double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
+    int most_attempts = 5;
+    int most_linf_attempts = 2; // then charts are split until the worst spot is within it
+    double first_share = 0.9;   // of the allowed stretch that the coarse surface may use
+    double chart_excess = 4.0;  // of one chart over that of the whole
+    double loose_linf = 8.0;    // worst spots count little where they have no bound
 };
 inline constexpr Tuning tuning;
 

@@ -1,4 +1,4 @@
-#include "devseg/methods/growth/expansion.h"
+#include "devseg/methods/growth/borders.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,15 @@ namespace devseg::growth {
 
 namespace {
 
-// Above F_max a face pays this many times the excess, so that only faces that fit nowhere, and
-// faces enclosed by others, are given to a chart that they do not fit.
-constexpr double excess_weight = 20.0;
-// A chart is offered faces up to this multiple of F_max; beyond it they cannot be worth it.
-constexpr double reach = 1.5;
-constexpr double settled_share = 2e-3; // of the faces: fewer changes in a round end it
+struct ExpansionTuning {
+    // Above F_max a face pays this many times the excess, so that only faces that fit nowhere, and
+    // faces enclosed by others, are given to a chart that they do not fit.
+    double excess_weight = 20.0;
+    // A chart is offered faces up to this multiple of F_max; beyond it they cannot be worth it.
+    double offered = 1.5;
+    double settled_share = 2e-3; // of the faces: fewer changes in a round end it
+};
+constexpr ExpansionTuning tuning;
 
 class Expansion {
 public:
@@ -45,19 +48,19 @@ private:
     double cost(Face f, Index label) const {
         const double error = proxies_[label].fitting_error(mesh_.face_normals[f]);
         const double beyond = std::max(0.0, error - options_.max_fitting_error);
-        return mesh_.face_areas[f] * (error + excess_weight * beyond);
+        return mesh_.face_areas[f] * (error + tuning.excess_weight * beyond);
     }
 
     // Faces of other charts that the chart reaches over faces which it may take.
     void find_candidates(Index label) {
         const auto offer = [&](Face f) {
             for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 || chart_[twin / 3] == label || node_[twin / 3] >= 0)
+                if (mesh_.twin[h] < 0)
                     continue;
-                const Index g = twin / 3;
-                if (proxies_[label].fitting_error(mesh_.face_normals[g]) >=
-                    reach * options_.max_fitting_error)
+                const Face g = face_of(mesh_.twin[h]);
+                if (chart_[g] == label || node_[g] >= 0 ||
+                    proxies_[label].fitting_error(mesh_.face_normals[g]) >=
+                        tuning.offered * options_.max_fitting_error)
                     continue;
                 node_[g] = static_cast<Index>(faces_.size());
                 faces_.push_back(g);
@@ -90,8 +93,8 @@ private:
                 const HalfEdge twin = mesh_.twin[h];
                 if (twin < 0)
                     continue;
-                const Index other = chart_[twin / 3];
-                const Index node = node_[twin / 3];
+                const Index other = chart_[face_of(twin)];
+                const Index node = node_[face_of(twin)];
                 const double w = weight_[h];
                 if (node >= 0 && other == own) {
                     if (h < twin)
@@ -166,7 +169,7 @@ void relabel_by_expansion(const Mesh& mesh, std::vector<metrics::ConicProxy> pro
                             options.max_rounds);
             changed += expansion.expand(static_cast<Index>(c));
         }
-        if (changed < settled_share * static_cast<double>(mesh.faces.size()))
+        if (changed < tuning.settled_share * static_cast<double>(mesh.faces.size()))
             return;
         proxies = metrics::fit_conics(mesh, chart, static_cast<Index>(count));
     }

@@ -9,6 +9,10 @@
 
 namespace devseg::growth {
 
+/// A border or an energy is lower than another if it is below this share of it: rounding does not
+/// explain that.
+constexpr double worthwhile = 1.0 - 1e-9;
+
 /// (face, chart)
 using NewLabels = std::vector<std::pair<Index, Index>>;
 

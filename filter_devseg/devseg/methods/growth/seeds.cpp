@@ -2,8 +2,6 @@
 
 #include <random>
 
-#include "devseg/graph/shortest_paths.h"
-
 namespace devseg::growth {
 
 namespace {

@@ -1,8 +1,6 @@
 #include "devseg/methods/growth/vertex_growth.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <queue>
 #include <tuple>
@@ -11,12 +9,6 @@
 #include "devseg/mesh/angle_defects.h"
 
 namespace devseg::growth {
-
-namespace {
-
-constexpr Index update_every = 4096; // vertices between two looks at the progress object
-
-} // namespace
 
 VertexGrowth::VertexGrowth(const Mesh& mesh, std::vector<double> cost)
     : mesh_(mesh), cost_(std::move(cost)), leaving_(mesh::leaving_half_edges(mesh)),
@@ -36,7 +28,7 @@ bool VertexGrowth::is_free(Vertex v) const {
     bool free = leaving_[v] >= 0;
     if (free)
         mesh::visit_star(mesh_, leaving_[v],
-                         [&](HalfEdge h) { free = free && state_.chart[h / 3] < 0; });
+                         [&](HalfEdge h) { free = free && state_.chart[face_of(h)] < 0; });
     return free;
 }
 
@@ -60,7 +52,7 @@ bool VertexGrowth::can_take(Vertex v, Index c) const {
         before = glued;
     };
     const auto visit = [&](HalfEdge h) {
-        const Index chart = state_.chart[h / 3];
+        const Index chart = state_.chart[face_of(h)];
         const bool from = state_.inside[mesh_.target(h)] == c;
         const bool to = state_.inside[mesh_.origin(Mesh::previous(h))] == c;
         visit_edge(from);
@@ -82,20 +74,21 @@ void VertexGrowth::take(Vertex v, Index c, float distance) {
     state_.inside[v] = c;
     state_.cost[c] += cost_[v];
     mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
-        if (state_.chart[h / 3] < 0) {
-            state_.chart[h / 3] = c;
+        if (state_.chart[face_of(h)] < 0) {
+            state_.chart[face_of(h)] = c;
             ++state_.face_count[c];
         }
     });
-    const auto offer = [&](Index u, double length) {
-        const float d = distance + static_cast<float>(length);
+    const auto offer = [&](Vertex u, HalfEdge along) {
+        const float d = distance + static_cast<float>(mesh_.edge_length(along));
         if (state_.inside[u] < 0)
             heaps_[c].push({static_cast<float>(cost_[u]), d, u});
     };
     mesh::visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
-        offer(mesh_.target(h), mesh_.edge_length(h));
-        if (mesh_.twin[Mesh::previous(h)] < 0)
-            offer(mesh_.origin(Mesh::previous(h)), mesh_.edge_length(Mesh::previous(h)));
+        offer(mesh_.target(h), h);
+        const HalfEdge arriving = Mesh::previous(h);
+        if (mesh_.twin[arriving] < 0)
+            offer(mesh_.origin(arriving), arriving);
     });
 }
 
@@ -108,7 +101,13 @@ Index VertexGrowth::best(Index c) {
     return heap.empty() ? -1 : heap.top().face;
 }
 
-std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress) {
+void VertexGrowth::take_best(Index c) {
+    const Candidate next = heaps_[c].top();
+    heaps_[c].pop();
+    take(next.face, c, next.distance);
+}
+
+std::vector<Index> VertexGrowth::find_seeds(double threshold, const Progress& progress) {
     start(0);
     std::vector<Index> order(mesh_.points.size());
     std::iota(order.begin(), order.end(), 0);
@@ -116,7 +115,7 @@ std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress
         return std::make_tuple(boundary_[a], cost_[a]) < std::make_tuple(boundary_[b], cost_[b]);
     });
     std::vector<Index> seeds;
-    Index taken = 0;
+    Heartbeat beat(progress);
     for (const Index seed : order) {
         if (!is_free(seed))
             continue;
@@ -129,20 +128,15 @@ std::vector<Index> VertexGrowth::find_seeds(double threshold, Progress& progress
         state_.face_count.push_back(0);
         state_.cost.push_back(0.0);
         take(seed, c, 0.0F);
-        for (Vertex v = best(c); v >= 0; v = best(c)) {
-            if (state_.cost[c] + cost_[v] > threshold)
-                break;
-            const float distance = heaps_[c].top().distance;
-            heaps_[c].pop();
-            take(v, c, distance);
-            if (++taken % update_every == 0)
-                progress.update(0.0);
+        for (Vertex v = best(c); v >= 0 && !(state_.cost[c] + cost_[v] > threshold); v = best(c)) {
+            beat();
+            take_best(c);
         }
     }
     return seeds;
 }
 
-VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progress) {
+VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, const Progress& progress) {
     start(seeds.size());
     const Index count = static_cast<Index>(seeds.size());
     for (Index c = 0; c < count; ++c)
@@ -151,16 +145,12 @@ VertexCharts VertexGrowth::grow(const std::vector<Index>& seeds, Progress& progr
     const auto rank = [&](Index c) { tournament.set(c, best(c) < 0 ? infinite : state_.cost[c]); };
     for (Index c = 0; c < count; ++c)
         rank(c);
-    for (Index taken = 0; tournament.key(tournament.winner()) < infinite;) {
+    Heartbeat beat(progress);
+    while (tournament.key(tournament.winner()) < infinite) {
+        beat();
         const Index c = tournament.winner();
-        const Vertex v = best(c); // another chart may have come in between
-        if (v >= 0) {
-            const float distance = heaps_[c].top().distance;
-            heaps_[c].pop();
-            take(v, c, distance);
-            if (++taken % update_every == 0)
-                progress.update(0.0);
-        }
+        if (best(c) >= 0) // another chart may have come in between
+            take_best(c);
         rank(c);
     }
     return state_;
@@ -172,40 +162,40 @@ atlas::ChartMap adopt_orphans(const Mesh& mesh, const VertexCharts& grown) {
     charts.count = static_cast<Index>(grown.face_count.size());
     charts.seam.assign(mesh.twin.size(), 1);
     for (const HalfEdge h : mesh.all_half_edges()) {
-        const Index c = grown.chart[h / 3];
-        if (mesh.twin[h] >= 0 && c >= 0 && c == grown.chart[mesh.twin[h] / 3] &&
+        const Index c = grown.chart[face_of(h)];
+        if (mesh.twin[h] >= 0 && c >= 0 && c == grown.chart[face_of(mesh.twin[h])] &&
             (grown.inside[mesh.origin(h)] == c || grown.inside[mesh.target(h)] == c))
             charts.seam[h] = 0;
     }
     // The face with the longest share of its border to gain goes first; half-edges of taken faces.
-    using Offer = std::pair<double, Index>;
-    std::priority_queue<Offer> offers;
+    std::priority_queue<std::pair<double, Index>> offers;
     const auto offer_across = [&](HalfEdge h) {
         const HalfEdge twin = mesh.twin[h];
-        if (twin < 0 || charts.chart[twin / 3] >= 0)
+        if (twin < 0 || charts.chart[face_of(twin)] >= 0)
             return;
         double shared = 0.0;
         double all = 0.0;
-        for (const HalfEdge k : half_edges_of((twin / 3))) {
+        for (const HalfEdge k : half_edges_of(face_of(twin))) {
             all += mesh.edge_length(k);
-            if (mesh.twin[k] >= 0 && charts.chart[mesh.twin[k] / 3] == charts.chart[h / 3])
+            if (mesh.twin[k] >= 0 &&
+                charts.chart[face_of(mesh.twin[k])] == charts.chart[face_of(h)])
                 shared += mesh.edge_length(k);
         }
         // Among the edges to one chart the longest is the best hinge: it counts a little.
         offers.emplace((shared + 1e-3 * mesh.edge_length(h)) / all, -h);
     };
     for (const HalfEdge h : mesh.all_half_edges())
-        if (charts.chart[h / 3] >= 0)
+        if (charts.chart[face_of(h)] >= 0)
             offer_across(h);
     while (!offers.empty()) {
         const HalfEdge h = -offers.top().second;
         offers.pop();
         const HalfEdge twin = mesh.twin[h];
-        if (charts.chart[twin / 3] >= 0)
+        if (charts.chart[face_of(twin)] >= 0)
             continue;
-        charts.chart[twin / 3] = charts.chart[h / 3];
+        charts.chart[face_of(twin)] = charts.chart[face_of(h)];
         charts.seam[h] = charts.seam[twin] = 0;
-        for (const HalfEdge k : half_edges_of((twin / 3)))
+        for (const HalfEdge k : half_edges_of(face_of(twin)))
             offer_across(k);
     }
     return charts;

@@ -3,8 +3,7 @@
 //
 // References
 //   [TTY15] K. Takahashi, T. Tachi, Y. Yamaguchi: Mesh Approximation for Generating Development
-//   with
-//           Creases and Slits. Journal for Geometry and Graphics 19(1), 2015.
+//           with Creases and Slits. Journal for Geometry and Graphics 19(1), 2015.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +32,10 @@ public:
 
     /// Charts one after the other, each from the vertex of least cost whose faces are all free, and
     /// each up to the cost `threshold`. Returns the seeds; every vertex lies in or on a chart then.
-    std::vector<Index> find_seeds(double threshold, Progress& progress);
+    std::vector<Index> find_seeds(double threshold, const Progress& progress);
 
     /// All charts at the same time, always the one of least cost, until none can grow.
-    VertexCharts grow(const std::vector<Index>& seeds, Progress& progress);
+    VertexCharts grow(const std::vector<Index>& seeds, const Progress& progress);
 
 private:
     void start(std::size_t charts);
@@ -44,6 +43,7 @@ private:
     bool can_take(Vertex v, Index c) const;
     void take(Vertex v, Index c, float distance);
     Index best(Index c);
+    void take_best(Index c);
 
     const Mesh& mesh_;
     std::vector<double> cost_;

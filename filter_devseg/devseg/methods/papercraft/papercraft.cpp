@@ -2,28 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 
 #include "devseg/atlas/slit_closing.h"
+#include "devseg/declare/declare.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/methods/growth/seeds.h"
 #include "devseg/methods/growth/vertex_growth.h"
+#include "devseg/metrics/segmentation.h"
 
 namespace devseg::papercraft {
 
+using namespace declare;
+
 namespace {
 
-// Radians. Paper that takes up more at one point is visibly bent out of shape there.
-constexpr double most_inner_defect = 0.5;
-// Defects of scans cancel out over this distance, as a share of the diagonal.
-constexpr double noise_radius = 0.015;
-constexpr double noise_factor = 3.0; // times the median: larger defects are features
-constexpr int most_averages = 50;
-constexpr int most_halvings = 12;       // of the growth threshold
-constexpr Index share_of_surplus = 8;   // of the charts that are too many, one in so many goes
-constexpr double seed_variation = 0.25; // of the costs, with random seeds
+struct Tuning {
+    double largest_defect = 0.5; // radians: paper that takes up more at one point is visibly bent
+    double noise_radius = 0.015; // of the diagonal: defects of scans cancel out over this distance
+    double noise_factor = 3.0;   // times the median: larger defects are features
+    int most_averages = 50;
+    int most_halvings = 12;       // of the growth threshold
+    Index share_of_surplus = 8;   // of the charts that are too many, one in so many goes
+    double seed_variation = 0.25; // of the costs, with random seeds
+};
+constexpr Tuning tuning;
 
 double diagonal_of(const Mesh& mesh) {
     Vec3 low = mesh.points.front();
@@ -70,16 +75,16 @@ std::vector<double> vertex_costs(const Mesh& mesh, const std::vector<double>& de
         sizes.push_back(std::abs(d));
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
-    const double usual = noise_factor * *middle;
+    const double usual = tuning.noise_factor * *middle;
     std::vector<double> small;
     for (const double d : defect)
         small.push_back(std::clamp(d, -usual, usual));
     const double edge_squared = 4.0 / std::sqrt(3.0) * mesh.total_area / mesh.face_count();
-    const double rounds = std::pow(noise_radius * diagonal, 2) / edge_squared;
-    std::vector<double> cost =
-        spread(mesh, std::move(small), static_cast<int>(std::min<double>(most_averages, rounds)));
+    const double rounds = std::pow(tuning.noise_radius * diagonal, 2) / edge_squared;
+    std::vector<double> cost = spread(
+        mesh, std::move(small), static_cast<int>(std::min<double>(tuning.most_averages, rounds)));
     for (std::size_t v = 0; v < cost.size(); ++v)
-        cost[v] = std::abs(defect[v]) > most_inner_defect
+        cost[v] = std::abs(defect[v]) > tuning.largest_defect
                       ? infinite
                       : std::abs(cost[v]) + std::max(0.0, std::abs(defect[v]) - usual);
     return cost;
@@ -88,7 +93,7 @@ std::vector<double> vertex_costs(const Mesh& mesh, const std::vector<double>& de
 void vary(std::vector<double>& cost, int random_seed) {
     std::mt19937 random(static_cast<std::uint32_t>(random_seed));
     for (double& c : cost)
-        c *= 1.0 + seed_variation * (static_cast<double>(random()) / 4294967296.0 - 0.5);
+        c *= 1.0 + tuning.seed_variation * (static_cast<double>(random()) / 4294967296.0 - 0.5);
 }
 
 // Removes seeds of the smallest charts, but never the last one of a component.
@@ -97,7 +102,7 @@ std::vector<Index> cull(const Mesh& mesh, const std::vector<Index>& seeds,
     const mesh::FaceComponents components = mesh::face_components(mesh, [](Index) { return true; });
     std::vector<Index> component(mesh.points.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
-        component[mesh.origin(h)] = components.label[h / 3];
+        component[mesh.origin(h)] = components.label[face_of(h)];
     std::vector<Index> left(at(components.count), 0);
     for (const Index seed : seeds)
         ++left[component[seed]];
@@ -126,7 +131,7 @@ double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
     double length = 0.0;
     for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.twin[h] > h && charts.seam[h] != 0 &&
-            charts.chart[h / 3] == charts.chart[mesh.twin[h] / 3])
+            charts.chart[face_of(h)] == charts.chart[face_of(mesh.twin[h])])
             length += mesh.edge_length(h);
     return length;
 }
@@ -156,7 +161,7 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     auto seeding = progress.part("placing seeds", 0.05);
     double threshold = options.growth_threshold;
     std::vector<Index> seeds = growth.find_seeds(threshold, seeding);
-    for (int i = 0; i < most_halvings && static_cast<Index>(seeds.size()) < wanted; ++i)
+    for (int i = 0; i < tuning.most_halvings && static_cast<Index>(seeds.size()) < wanted; ++i)
         seeds = growth.find_seeds(threshold *= 0.5, seeding);
     result.initial_charts = static_cast<Index>(seeds.size());
 
@@ -167,7 +172,7 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
         const Index surplus = static_cast<Index>(seeds.size()) - wanted;
         const bool last = result.rounds == options.max_iterations;
         seeds = cull(mesh, seeds, grown,
-                     last ? surplus : std::max<Index>(1, surplus / share_of_surplus));
+                     last ? surplus : std::max<Index>(1, surplus / tuning.share_of_surplus));
         grown = growth.grow(seeds, selecting);
     }
 
@@ -180,8 +185,76 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     const std::vector<Index> valence = valences(mesh);
     result.defect_share.assign(mesh.faces.size(), 0.0);
     for (const HalfEdge h : mesh.all_half_edges())
-        result.defect_share[h / 3] += std::abs(defect[mesh.origin(h)]) / valence[mesh.origin(h)];
+        result.defect_share[face_of(h)] +=
+            std::abs(defect[mesh.origin(h)]) / valence[mesh.origin(h)];
     return result;
+}
+
+// The filter
+namespace {
+
+constexpr const char* help =
+    "Cuts the surface into few charts that paper can take on with <i>creases</i> and <i>slits</i>. "
+    "Charts grow by vertices: a vertex may come inside of a chart if the angles around it sum up to "
+    "nearly 360 degrees, whatever creases run through it. Where a chart meets itself a slit stays "
+    "open, and ends at vertices that are far from developable. The smallest charts are removed and "
+    "the others grown again until the wanted number is left, and slits that matter little are "
+    "closed.<br>"
+    "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
+    "the face's edges that are cut, slits included), the same cuts as selected face-edges, the "
+    "face's share of the angle defects of its vertices (radians) as face quality and a colour for "
+    "each chart. Every chart is a disk. Go on with 'Charts: Deform to Exact Developability'.<br>"
+    "See:<br><i>Kuniko Takahashi, Tomohiro Tachi, Yasushi Yamaguchi</i><br>"
+    "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
+    "Journal for Geometry and Graphics 19(1), 2015, pages 119-129";
+
+FilterOutput run(const FilterInput& input, const PapercraftOptions& options, Progress& progress) {
+    PapercraftResult result = segment_papercraft(input.mesh, options, progress);
+    ResultValues values = {
+        {"charts_number", result.charts.count},
+        {"initial_charts_number", result.initial_charts},
+        {"rounds_number", result.rounds},
+        {"closed_edges_number", result.closed_edges},
+        {"slit_length", result.slit_length * input.mesh.unit_length},
+        {"seam_length", metrics::seam_length(input.mesh, result.charts)},
+    };
+    return chart_output(input.mesh, std::move(result.charts), std::move(result.defect_share),
+                        std::move(values));
+}
+
+} // namespace
+
+std::vector<FilterDeclaration> filters() {
+    using O = PapercraftOptions;
+    return {
+        Declare<O>("Segmentation: Papercraft with Creases and Slits",
+                   "compute_segmentation_papercraft_per_face", FilterCategory::remeshing, help)
+            .integer(&O::charts_number, "Number of charts",
+                     "From 1 to the number of faces. Fewer charts have more and longer slits. A "
+                     "mesh of more components gets one chart for each of them.")
+            .real(&O::growth_threshold, "Growth threshold",
+                  "What the inner vertices of a chart of the initial segmentation may lack to "
+                  "360 degrees, or have too much, all together, in radians, above 0. Smaller "
+                  "values start from more and smaller charts; halved where there are fewer "
+                  "than wanted.")
+            .real(&O::slit_threshold, "Slit threshold",
+                  "Slits are closed where the paper has to bridge a gap of about this width, "
+                  "as a share of the diagonal of the model's box. 0 closes none.")
+            .integer(&O::max_iterations, "Most rounds",
+                     "Rounds in which the smallest charts are removed and the others grown "
+                     "again; the last one removes all that are too many.")
+            .integer(&O::random_seed, "Random seed",
+                     "0 takes angles as they are; other numbers vary them a little, for other "
+                     "charts. The same number always gives the same charts.")
+            .command("papercraft", "symmetric-dirichlet", "papercraft", true)
+            .writes(writes_charts | writes_quality | writes_color)
+            .result("charts_number", "charts, each a disk")
+            .result("initial_charts_number", "charts of the initial segmentation")
+            .result("rounds_number", "rounds of removing charts and growing the others")
+            .result("closed_edges_number", "edges of slits that were closed")
+            .result("slit_length", "length of the slits that are left, model units")
+            .result("seam_length", "length of all cut edges, model units")
+            .runs(run)};
 }
 
 } // namespace devseg::papercraft

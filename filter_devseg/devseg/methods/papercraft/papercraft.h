@@ -3,8 +3,8 @@
 //
 // References
 //   [TTY15] K. Takahashi, T. Tachi, Y. Yamaguchi: Mesh Approximation for Generating Development
-//   with
-//           Creases and Slits. Journal for Geometry and Graphics 19(1), 2015, pages 119 to 129.
+//           with Creases and Slits. Journal for Geometry and Graphics 19(1), 2015, pages 119 to
+//           129.
 #pragma once
 
 #include <vector>

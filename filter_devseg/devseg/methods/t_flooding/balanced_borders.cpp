@@ -7,70 +7,287 @@
 
 #include "devseg/graph/min_cut.h"
 #include "devseg/methods/growth/relabelling.h"
-#include "devseg/methods/growth/reseed.h"
+#include "devseg/methods/growth/seeds.h"
 
 namespace devseg::t_flooding {
 
 namespace {
 
-// The first price of Gauss area that is tried, as a share of the price of all the difference.
-constexpr double first_price = 1.0 / 64.0;
-
-// Strips are at most this many faces wide on each side: the time for their cuts grows much faster
-// than their width.
-constexpr double strip_steps = 4.0;
-
-// The least share of a strip's width that is tried.
-constexpr double narrowest = 0.2;
-
-constexpr double worthwhile = 1.0 - 1e-9; // lower than rounding would explain
+struct BalanceTuning {
+    // The first price of Gauss area that is tried, as a share of the price of all the difference.
+    double first_price = 1.0 / 64.0;
+    // Strips are at most this many faces wide on each side: the time for their cuts grows much
+    // faster than their width.
+    double strip_steps = 4.0;
+};
+constexpr BalanceTuning tuning;
 
 using Pair = std::pair<Index, Index>;
+
+// What borders and faces cost: the same in all sweeps.
+struct BorderCosts {
+    std::vector<float> border;      // 3 #F
+    std::vector<float> step;        // 3 #F: distance of the centroids on both sides
+    std::vector<double> gauss_area; // #F, with its share of edges and corners
+    float widest = 0.0F;            // bound of the strips' width: their cuts cost time
+    double stiffness = 0.0;         // κ: length per Gauss area squared
+};
+
+BorderCosts measure_costs(const Mesh& mesh, const metrics::GaussAreas& areas,
+                          const BorderBalance& options, Index count) {
+    BorderCosts costs;
+    std::vector<Index> valence(mesh.points.size(), 0); // faces of each vertex
+    double steps = 0.0;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        costs.border.push_back(static_cast<float>(
+            mesh.edge_length(h) * (areas.crease[h] != 0 ? options.crease_cost : 1.0)));
+        const HalfEdge twin = mesh.twin[h];
+        costs.step.push_back(
+            twin < 0
+                ? 0.0F
+                : static_cast<float>(
+                      (mesh.face_centers[face_of(h)] - mesh.face_centers[face_of(twin)]).norm()));
+        steps += costs.step.back();
+        ++valence[mesh.origin(h)];
+    }
+    costs.gauss_area = areas.face;
+    for (const HalfEdge h : mesh.all_half_edges())
+        costs.gauss_area[face_of(h)] +=
+            0.5 * areas.edge[h] + areas.vertex[mesh.origin(h)] / valence[mesh.origin(h)];
+    costs.widest =
+        static_cast<float>(tuning.strip_steps * steps / static_cast<double>(costs.step.size()));
+    const double average = areas.total / count;
+    if (average > 0.0)
+        costs.stiffness =
+            options.stiffness * std::sqrt(mesh.total_area / count) / (average * average);
+    return costs;
+}
+
+// One way to part a strip: its sides, what the border in it costs, and the Gauss area that goes
+// from the first chart to the second.
+struct Parting {
+    std::vector<graph::CutSide> side;
+    double length = 0.0;
+    double moved = 0.0;
+};
+
+// The faces near the border of two charts, which may change sides.
+class Strip {
+public:
+    // `node` is −1 for all faces, and will be again; may_move(face, distance from the border).
+    template <class MayMove>
+    Strip(const Mesh& mesh, const BorderCosts& costs, const std::vector<Index>& chart,
+          const Pair& pair, const std::vector<Index>& edges, MayMove may_move,
+          std::vector<Index>& node)
+        : mesh_(mesh), costs_(costs), chart_(chart), pair_(pair), node_(node) {
+        std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
+        const auto offer = [&](Face f, float distance) {
+            if (!may_move(f, distance))
+                return;
+            front.emplace_back(-distance, f);
+            std::push_heap(front.begin(), front.end());
+        };
+        for (const HalfEdge h : edges) {
+            const HalfEdge twin = mesh.twin[h];
+            // Other borders that moved in this sweep may have given a side to a third chart.
+            if (chart[face_of(h)] != pair.first || chart[face_of(twin)] != pair.second)
+                continue;
+            offer(face_of(h), 0.0F);
+            offer(face_of(twin), 0.0F);
+        }
+        while (!front.empty()) {
+            std::pop_heap(front.begin(), front.end());
+            const auto [d, f] = front.back();
+            front.pop_back();
+            if (node[f] >= 0)
+                continue;
+            node[f] = static_cast<Index>(faces_.size());
+            faces_.push_back(f);
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh.twin[h];
+                if (twin >= 0 && node[face_of(twin)] < 0 && chart[face_of(twin)] == chart[f])
+                    offer(face_of(twin), costs.step[h] - d);
+            }
+        }
+    }
+    Strip(const Strip&) = delete;
+    Strip& operator=(const Strip&) = delete;
+    ~Strip() {
+        for (const Face f : faces_)
+            node_[f] = -1;
+    }
+
+    Parting as_it_is() const {
+        Parting now;
+        now.side.assign(faces_.size() + 2, graph::CutSide::source);
+        now.side.back() = graph::CutSide::sink;
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (chart_[faces_[i]] == pair_.second)
+                now.side[i] = graph::CutSide::sink;
+        evaluate(now);
+        return now;
+    }
+
+    // The best of the least cuts for growing prices of Gauss area, from none to one that agrees
+    // with the difference of the charts that is left. `area_a` and `area_b` are those of the
+    // charts; the price that served last time is near, otherwise a small share of the whole.
+    Parting best_parting(double area_a, double area_b, double& last_price) const {
+        const Index core_a = static_cast<Index>(faces_.size());
+        std::vector<graph::CutSide> sides(faces_.size() + 2, graph::CutSide::open);
+        sides[core_a] = graph::CutSide::source;
+        sides[at(core_a) + 1] = graph::CutSide::sink;
+        graph::MinCut cut(std::move(sides));
+        visit_links([&](Index a, Index b, float cost) { cut.link(a, b, cost); });
+        const auto due_after = [&](const Parting& parting) {
+            return costs_.stiffness * (area_a - area_b - 2.0 * parting.moved);
+        };
+        Parting best = solve(cut);
+        const double due = due_after(best);
+        const Index core = due > 0.0 ? core_a + 1 : core_a;
+        std::vector<Index> links;
+        for (Index i = 0; i < core_a; ++i)
+            links.push_back(cut.link(i, core, 0.0));
+        double price = 0.0;
+        double next = std::abs(due) * tuning.first_price;
+        if (last_price > next && last_price < std::abs(due))
+            next = 0.5 * last_price;
+        for (; next < std::abs(due); next *= 2.0) {
+            for (std::size_t i = 0; i < faces_.size(); ++i)
+                cut.raise(links[i], (next - price) * costs_.gauss_area[faces_[i]]);
+            price = next;
+            Parting trial = solve(cut);
+            const double left = due_after(trial);
+            if (energy(area_a, area_b, trial) < energy(area_a, area_b, best))
+                best = std::move(trial);
+            if (std::abs(left) < price || (left > 0.0) != (due > 0.0))
+                break;
+        }
+        last_price = price;
+        return best;
+    }
+
+    // [length + κ/2 Σ area²] of the two charts.
+    double energy(double area_a, double area_b, const Parting& parting) const {
+        const double a = area_a - parting.moved;
+        const double b = area_b + parting.moved;
+        return parting.length + 0.5 * costs_.stiffness * (a * a + b * b);
+    }
+
+    growth::NewLabels labels(const Parting& parting) const {
+        growth::NewLabels result;
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            result.emplace_back(
+                faces_[i], parting.side[i] == graph::CutSide::source ? pair_.first : pair_.second);
+        return result;
+    }
+
+private:
+    // Border of a parting: links of the strip's faces to each other and to the charts' cores.
+    template <class Visit>
+    void visit_links(Visit visit) const {
+        const Index core_a = static_cast<Index>(faces_.size());
+        for (const Face f : faces_)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0)
+                    continue;
+                const Index other = node_[face_of(twin)];
+                const Index c = chart_[face_of(twin)];
+                if (other >= 0 && h < twin)
+                    visit(node_[f], other, costs_.border[h]);
+                else if (other < 0 && c == pair_.first)
+                    visit(node_[f], core_a, costs_.border[h]);
+                else if (other < 0 && c == pair_.second)
+                    visit(node_[f], core_a + 1, costs_.border[h]);
+            }
+    }
+
+    void evaluate(Parting& parting) const {
+        visit_links([&](Index a, Index b, float cost) {
+            if (parting.side[a] != parting.side[b])
+                parting.length += cost;
+        });
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            const double area = costs_.gauss_area[faces_[i]];
+            const bool was_a = chart_[faces_[i]] == pair_.first;
+            const bool is_a = parting.side[i] == graph::CutSide::source;
+            parting.moved += (was_a ? 1 : 0) * area - (is_a ? 1 : 0) * area;
+        }
+    }
+
+    Parting solve(graph::MinCut& cut) const {
+        Parting result;
+        result.side = cut.solve();
+        drop_islands(graph::CutSide::source, result.side);
+        drop_islands(graph::CutSide::sink, result.side);
+        evaluate(result);
+        return result;
+    }
+
+    // Faces of the strip that hang together with their chart's core only through the other chart
+    // go to that one. A price on Gauss area makes islands of single curved faces.
+    void drop_islands(graph::CutSide which, std::vector<graph::CutSide>& side) const {
+        const bool is_a = which == graph::CutSide::source;
+        const Index own = is_a ? pair_.first : pair_.second;
+        std::vector<std::uint8_t> held(faces_.size(), 0);
+        std::vector<Index> stack;
+        const auto hold = [&](std::size_t i) {
+            if (held[i] == 0 && side[i] == which) {
+                held[i] = 1;
+                stack.push_back(faces_[i]);
+            }
+        };
+        const auto for_neighbours = [&](Face f, auto visit) {
+            for (const HalfEdge h : half_edges_of(f))
+                if (mesh_.twin[h] >= 0)
+                    visit(face_of(mesh_.twin[h]));
+        };
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            for_neighbours(faces_[i], [&](Face g) {
+                if (node_[g] < 0 && chart_[g] == own)
+                    hold(i);
+            });
+        while (!stack.empty()) {
+            const Face f = stack.back();
+            stack.pop_back();
+            for_neighbours(f, [&](Face g) {
+                if (node_[g] >= 0)
+                    hold(at(node_[g]));
+            });
+        }
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (held[i] == 0 && side[i] == which)
+                side[i] = is_a ? graph::CutSide::sink : graph::CutSide::source;
+    }
+
+    const Mesh& mesh_;
+    const BorderCosts& costs_;
+    const std::vector<Index>& chart_;
+    const Pair pair_;
+    std::vector<Index>& node_; // #F: position in `faces`, −1 = none
+    std::vector<Index> faces_;
+};
 
 class BorderBalancer {
 public:
     BorderBalancer(const Mesh& mesh, const metrics::GaussAreas& areas, const BorderBalance& options,
                    Index count, std::vector<Index>& chart)
         : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
-          crease_(metrics::long_creases(mesh, areas.crease, count)), fixed_(mesh.faces.size(), 0),
-          border_distance_(mesh), node_(mesh.faces.size(), -1), relabelling_(mesh, chart),
-          changes_(at(count), 0) {
-        std::vector<Index> valence(mesh.points.size(), 0); // faces of each vertex
-        for (const HalfEdge h : mesh.all_half_edges()) {
-            border_cost_.push_back(static_cast<float>(
-                mesh.edge_length(h) * (areas.crease[h] != 0 ? options.crease_cost : 1.0)));
-            const HalfEdge twin = mesh.twin[h];
-            step_.push_back(
-                twin < 0 ? 0.0F
-                         : static_cast<float>(
-                               (mesh.face_centers[h / 3] - mesh.face_centers[twin / 3]).norm()));
-            ++valence[mesh.origin(h)];
-        }
-        face_area_ = areas.face;
-        for (const HalfEdge h : mesh.all_half_edges())
-            face_area_[h / 3] +=
-                0.5 * areas.edge[h] + areas.vertex[mesh.origin(h)] / valence[mesh.origin(h)];
-        double steps = 0.0;
-        for (const float step : step_)
-            steps += step;
-        widest_ = static_cast<float>(strip_steps * steps / static_cast<double>(step_.size()));
-        const double average = areas.total / count;
-        if (average > 0.0)
-            stiffness_ =
-                options.stiffness * std::sqrt(mesh.total_area / count) / (average * average);
-    }
+          costs_(measure_costs(mesh, areas, options, count)),
+          crease_(metrics::long_creases(mesh, areas.crease, count)), border_distance_(mesh),
+          node_(mesh.faces.size(), -1), relabelling_(mesh, chart), changes_(at(count), 0) {}
 
     void sweep(Progress& progress) {
         fix_creases();
         deepest_ = border_distance_.farthest_faces(
-            chart_, std::vector<Index>(at(count_), -1), [&](HalfEdge h) { return step_[h]; },
+            chart_, std::vector<Index>(at(count_), -1), [&](HalfEdge h) { return costs_.step[h]; },
             progress);
         gauss_area_ = metrics::chart_gauss_areas(mesh_, areas_, chart_, count_);
         std::vector<std::pair<Pair, Index>> borders; // the charts on both sides, half-edge
         for (const HalfEdge h : mesh_.all_half_edges()) {
             const HalfEdge twin = mesh_.twin[h];
-            if (twin >= 0 && chart_[h / 3] < chart_[twin / 3])
-                borders.push_back({{chart_[h / 3], chart_[twin / 3]}, h});
+            if (twin >= 0 && chart_[face_of(h)] < chart_[face_of(twin)])
+                borders.push_back({{chart_[face_of(h)], chart_[face_of(twin)]}, h});
         }
         std::sort(borders.begin(), borders.end());
         for (std::size_t i = 0; i < borders.size();) {
@@ -96,220 +313,42 @@ public:
 private:
     // Faces at borders that follow a long crease stay where they are.
     void fix_creases() {
-        std::fill(fixed_.begin(), fixed_.end(), 0);
+        fixed_.assign(mesh_.faces.size(), 0);
         for (const HalfEdge h : mesh_.all_half_edges())
-            if (crease_[h] != 0 && chart_[h / 3] != chart_[mesh_.twin[h] / 3])
-                fixed_[h / 3] = 1;
-    }
-
-    // Faces on both sides that are near this border; the deepest face of a chart stays.
-    std::vector<Index> strip(const Pair& pair, const std::vector<Index>& edges, double share) {
-        std::vector<Index> faces;
-        std::vector<std::pair<float, Index>> front; // a heap of (distance, face)
-        const float reach = static_cast<float>(share * options_.reach);
-        const float widest = static_cast<float>(share) * widest_;
-        const auto offer = [&](Face f, float d) {
-            const std::size_t c = at(chart_[f]);
-            if (fixed_[f] != 0 || f == deepest_.face[c] ||
-                d > std::min(reach * deepest_.distance[c], widest))
-                return;
-            front.emplace_back(-d, f);
-            std::push_heap(front.begin(), front.end());
-        };
-        for (const HalfEdge h : edges) {
-            const HalfEdge twin = mesh_.twin[h];
-            // Other borders that moved in this sweep may have given a side to a third chart.
-            if (chart_[h / 3] != pair.first || chart_[twin / 3] != pair.second)
-                continue;
-            offer(h / 3, 0.0F);
-            offer(twin / 3, 0.0F);
-        }
-        while (!front.empty()) {
-            std::pop_heap(front.begin(), front.end());
-            const auto [d, f] = front.back();
-            front.pop_back();
-            if (node_[f] >= 0)
-                continue;
-            node_[f] = static_cast<Index>(faces.size());
-            faces.push_back(f);
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin >= 0 && node_[twin / 3] < 0 && chart_[twin / 3] == chart_[f])
-                    offer(twin / 3, step_[h] - d);
-            }
-        }
-        return faces;
-    }
-
-    // One way to part the strip: its sides, what the border in it costs, and the Gauss area that
-    // goes from the first chart to the second.
-    struct Parting {
-        std::vector<graph::CutSide> side;
-        double length = 0.0;
-        double moved = 0.0;
-    };
-
-    // [length + κ/2 Σ area²] of the two charts after `moved` has gone from a to b.
-    double energy(const Pair& pair, const Parting& parting) const {
-        const double a = gauss_area_[pair.first] - parting.moved;
-        const double b = gauss_area_[pair.second] + parting.moved;
-        return parting.length + 0.5 * stiffness_ * (a * a + b * b);
-    }
-    double difference(const Pair& pair, const Parting& parting) const {
-        return gauss_area_[pair.first] - gauss_area_[pair.second] - 2.0 * parting.moved;
-    }
-
-    // Border of a parting: links of the strip's faces to each other and to the charts' cores.
-    template <class Visit>
-    void visit_links(const Pair& pair, const std::vector<Index>& faces, Visit visit) const {
-        const Index core_a = static_cast<Index>(faces.size());
-        for (const Face f : faces)
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0)
-                    continue;
-                const Index other = node_[twin / 3];
-                const Index c = chart_[twin / 3];
-                if (other >= 0 && h < twin)
-                    visit(node_[f], other, border_cost_[h]);
-                else if (other < 0 && c == pair.first)
-                    visit(node_[f], core_a, border_cost_[h]);
-                else if (other < 0 && c == pair.second)
-                    visit(node_[f], core_a + 1, border_cost_[h]);
-            }
-    }
-
-    void evaluate(const Pair& pair, const std::vector<Index>& faces, Parting& parting) const {
-        parting.length = parting.moved = 0.0;
-        visit_links(pair, faces, [&](Index a, Index b, float cost) {
-            if (parting.side[a] != parting.side[b])
-                parting.length += cost;
-        });
-        for (std::size_t i = 0; i < faces.size(); ++i) {
-            const bool was_a = chart_[faces[i]] == pair.first;
-            const bool is_a = parting.side[i] == graph::CutSide::source;
-            parting.moved +=
-                (was_a ? 1 : 0) * face_area_[faces[i]] - (is_a ? 1 : 0) * face_area_[faces[i]];
-        }
-    }
-
-    Parting solve(const Pair& pair, const std::vector<Index>& faces, graph::MinCut& cut) const {
-        Parting result;
-        result.side = cut.solve();
-        drop_islands(pair, faces, graph::CutSide::source, result.side);
-        drop_islands(pair, faces, graph::CutSide::sink, result.side);
-        evaluate(pair, faces, result);
-        return result;
-    }
-
-    // Faces of the strip that hang together with their chart's core only through the other chart
-    // go to that one. A price on Gauss area makes islands of single curved faces.
-    void drop_islands(const Pair& pair, const std::vector<Index>& faces, graph::CutSide which,
-                      std::vector<graph::CutSide>& side) const {
-        const Index own = which == graph::CutSide::source ? pair.first : pair.second;
-        std::vector<std::uint8_t> held(faces.size(), 0);
-        std::vector<Index> stack;
-        const auto hold = [&](std::size_t i) {
-            if (held[i] == 0 && side[i] == which) {
-                held[i] = 1;
-                stack.push_back(faces[i]);
-            }
-        };
-        const auto for_neighbours = [&](Face f, auto visit) {
-            for (const HalfEdge h : half_edges_of(f))
-                if (mesh_.twin[h] >= 0)
-                    visit(mesh_.twin[h] / 3);
-        };
-        for (std::size_t i = 0; i < faces.size(); ++i)
-            for_neighbours(faces[i], [&](Index g) {
-                if (node_[g] < 0 && chart_[g] == own)
-                    hold(i);
-            });
-        while (!stack.empty()) {
-            const Face f = stack.back();
-            stack.pop_back();
-            for_neighbours(f, [&](Index g) {
-                if (node_[g] >= 0)
-                    hold(at(node_[g]));
-            });
-        }
-        for (std::size_t i = 0; i < faces.size(); ++i)
-            if (held[i] == 0 && side[i] == which)
-                side[i] =
-                    which == graph::CutSide::source ? graph::CutSide::sink : graph::CutSide::source;
-    }
-
-    // The least cut for growing prices of Gauss area, from none to one that agrees with the
-    // difference of the charts that is left.
-    Parting best_parting(const Pair& pair, const std::vector<Index>& faces) {
-        const Index core_a = static_cast<Index>(faces.size());
-        std::vector<graph::CutSide> sides(faces.size() + 2, graph::CutSide::open);
-        sides[core_a] = graph::CutSide::source;
-        sides[at(core_a) + 1] = graph::CutSide::sink;
-        graph::MinCut cut(std::move(sides));
-        visit_links(pair, faces, [&](Index a, Index b, float cost) { cut.link(a, b, cost); });
-        Parting best = solve(pair, faces, cut);
-        double due = stiffness_ * difference(pair, best);
-        const Index core = due > 0.0 ? core_a + 1 : core_a;
-        std::vector<Index> links(faces.size());
-        for (std::size_t i = 0; i < faces.size(); ++i)
-            links[i] = cut.link(static_cast<Index>(i), core, 0.0);
-        // The price that served last time is near; otherwise a small share of the whole.
-        double& last = last_price_[pair];
-        double price = 0.0;
-        double next = std::abs(due) * first_price;
-        if (last > next && last < std::abs(due))
-            next = 0.5 * last;
-        for (; next < std::abs(due); next *= 2.0) {
-            for (std::size_t i = 0; i < faces.size(); ++i)
-                cut.raise(links[i], (next - price) * face_area_[faces[i]]);
-            price = next;
-            Parting trial = solve(pair, faces, cut);
-            const double left = stiffness_ * difference(pair, trial);
-            if (energy(pair, trial) < energy(pair, best))
-                best = std::move(trial);
-            if (std::abs(left) < price || (left > 0.0) != (due > 0.0))
-                break;
-        }
-        last = price;
-        return best;
+            if (crease_[h] != 0 && chart_[face_of(h)] != chart_[face_of(mesh_.twin[h])])
+                fixed_[face_of(h)] = 1;
     }
 
     // A wide strip may take a chart apart where a narrow one does not.
     bool move_border(const Pair& pair, const std::vector<Index>& edges) {
-        bool improves = true;
-        for (double share = 1.0; improves && share > narrowest; share *= 0.5) {
-            const std::vector<Index> faces = strip(pair, edges, share);
-            Parting now;
-            now.side.assign(faces.size() + 2, graph::CutSide::source);
-            now.side.back() = graph::CutSide::sink;
-            for (std::size_t i = 0; i < faces.size(); ++i)
-                if (chart_[faces[i]] == pair.second)
-                    now.side[i] = graph::CutSide::sink;
-            evaluate(pair, faces, now);
-            const Parting best = best_parting(pair, faces);
-            improves = energy(pair, best) < energy(pair, now) * worthwhile;
-            for (const Face f : faces)
-                node_[f] = -1;
-            if (improves && apply(pair, faces, best))
-                return true;
+        double& area_a = gauss_area_[pair.first];
+        double& area_b = gauss_area_[pair.second];
+        for (const double share : {1.0, 0.5, 0.25}) {
+            const float reach = static_cast<float>(share * options_.reach);
+            const float widest = static_cast<float>(share) * costs_.widest;
+            // The deepest face of a chart stays.
+            const auto may_move = [&](Face f, float distance) {
+                const Index c = chart_[f];
+                return fixed_[f] == 0 && f != deepest_.face[c] &&
+                       !(distance > std::min(reach * deepest_.distance[c], widest));
+            };
+            const Strip strip(mesh_, costs_, chart_, pair, edges, may_move, node_);
+            const Parting now = strip.as_it_is();
+            const Parting best = strip.best_parting(area_a, area_b, last_price_[pair]);
+            if (!(strip.energy(area_a, area_b, best) <
+                  strip.energy(area_a, area_b, now) * growth::worthwhile))
+                return false;
+            // A border may make a chart simpler, but not take it apart.
+            const Face a = deepest_.face[pair.first];
+            const Face b = deepest_.face[pair.second];
+            if (!relabelling_.take({{{pair.first, a, a}, {pair.second, b, b}}}, strip.labels(best),
+                                   {1.0, true}))
+                continue;
+            area_a -= best.moved;
+            area_b += best.moved;
+            return true;
         }
         return false;
-    }
-
-    // A border may make a chart simpler, but not take it apart. Anchors stay where they are.
-    bool apply(const Pair& pair, const std::vector<Index>& faces, const Parting& parting) {
-        growth::NewLabels labels;
-        for (std::size_t i = 0; i < faces.size(); ++i)
-            labels.emplace_back(faces[i], parting.side[i] == graph::CutSide::source ? pair.first
-                                                                                    : pair.second);
-        const Face a = deepest_.face[pair.first];
-        const Face b = deepest_.face[pair.second];
-        if (!relabelling_.take({{{pair.first, a, a}, {pair.second, b, b}}}, labels, {1.0, true}))
-            return false;
-        gauss_area_[pair.first] -= parting.moved;
-        gauss_area_[pair.second] += parting.moved;
-        return true;
     }
 
     const Mesh& mesh_;
@@ -317,17 +356,13 @@ private:
     const BorderBalance& options_;
     std::vector<Index>& chart_;
     Index count_;
-    float widest_ = 0.0F;              // bound of the strips' width: their cuts cost time
-    std::vector<double> face_area_;    // #F: Gauss area with its share of edges and corners
-    std::vector<double> gauss_area_;   // of each chart
-    double stiffness_ = 0.0;           // κ: length per Gauss area squared
+    const BorderCosts costs_;
     std::vector<std::uint8_t> crease_; // 3 #F: long creases
     std::vector<std::uint8_t> fixed_;  // #F: keeps its chart in this sweep
-    std::vector<float> border_cost_;   // 3 #F
-    std::vector<float> step_;          // 3 #F: distance of the centroids on both sides
+    std::vector<double> gauss_area_;   // of each chart
     growth::BorderDistance border_distance_;
     growth::FarthestFaces deepest_; // of each chart: stays where it is
-    std::vector<Index> node_;       // #F: node in the strip at hand, −1 = none
+    std::vector<Index> node_;       // #F: scratch of strips
     growth::Relabelling relabelling_;
     std::vector<int> changes_;    // of each chart: borders moved so far
     std::map<Pair, int> settled_; // changes of both charts when nothing could be gained

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/methods/baselines/mcgim.h"
-#include "devseg/methods/baselines/vsa.h"
+#include "devseg/methods/baselines/baselines.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"

@@ -10,8 +10,8 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/methods/dcharts/coarse_charts.h"
 #include "devseg/methods/dcharts/draft.h"
+#include "devseg/methods/dcharts/full_charts.h"
 #include "devseg/metrics/segmentation.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
@@ -126,13 +126,15 @@ TEST(DevelopableCharts, StraighteningShortensBorders) {
 TEST(DevelopableCharts, BordersLoseTheStepsOfTheCoarseSurface) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::sphere(6), 0.002, 5));
     Progress progress;
-    const WorkingSurface working(mesh, false, 6, progress);
-    ASSERT_LT(working.mesh().face_count(), mesh.face_count() / 4);
-    const DChartsResult grown = segment_dcharts(working.mesh(), charts(6), progress);
-    const Draft draft = make_untried_draft(working.mesh(), grown.chart);
+    const std::optional<Decimation> decimation = decimate(mesh, false, 6, progress);
+    ASSERT_TRUE(decimation);
+    const Mesh& coarse = decimation->coarse.mesh;
+    ASSERT_LT(coarse.face_count(), mesh.face_count() / 4);
+    const DChartsResult grown = segment_dcharts(coarse, charts(6), progress);
+    const Draft draft = make_untried_draft(coarse, grown.chart);
     const auto seams = [&](Straightening straightening) {
-        const FullCharts full =
-            working.carry_over(draft, grown.chart, 0.02, straightening, progress);
+        const DevelopableCharts full =
+            transfer(mesh, decimation, draft, grown.chart, 0.02, straightening, progress);
         return metrics::seam_length(mesh, atlas::make_chart_map(mesh, full.chart, {}, false));
     };
     EXPECT_LT(seams(Straightening::fitting), seams(Straightening::none));

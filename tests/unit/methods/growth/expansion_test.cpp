@@ -1,4 +1,4 @@
-#include "devseg/methods/growth/expansion.h"
+#include "devseg/methods/growth/borders.h"
 
 #include <cmath>
 
