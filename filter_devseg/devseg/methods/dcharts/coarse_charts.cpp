@@ -44,9 +44,7 @@ WorkingSurface::WorkingSurface(const Mesh& full, bool creased, Index charts, Pro
         std::max(creased ? creased_coarse_faces : coarse_faces, faces_per_chart * charts);
     if (full.face_count() <= worth_coarsening * wanted)
         return;
-    surface_ =
-        std::make_unique<mesh::CoarseSurface>(mesh::coarsen_in_parallel(full, wanted, progress));
-    coarse_ = std::make_unique<mesh::CoarseMesh>(mesh::extract_coarse_mesh(full, *surface_));
+    coarse_ = mesh::coarsen_in_parallel(full, wanted, progress);
 }
 
 FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Index>& patch,
@@ -55,14 +53,8 @@ FullCharts WorkingSurface::carry_over(const Draft& draft, const std::vector<Inde
     FullCharts result;
     result.seam = draft.seam;
     result.darts = static_cast<Index>(draft.tips.size());
-    if (coarse_) {
-        std::vector<Index> label(full_.faces.size(), -1);
-        for (std::size_t f = 0; f < coarse_->face.size(); ++f)
-            label[coarse_->face[f]] = draft.chart[f];
-        result.chart = mesh::refine_labels(full_.points, *surface_, std::move(label), progress);
-    } else {
-        result.chart = draft.chart;
-    }
+    result.chart =
+        coarse_ ? mesh::refine_labels(full_, *coarse_, draft.chart, progress) : draft.chart;
     straighten(draft, patch, max_fitting_error, straightening, result.chart, progress);
     if (coarse_ || straightening != Straightening::none) {
         result.chart = atlas::absorb_fragments(full_, result.chart, fragment_share);

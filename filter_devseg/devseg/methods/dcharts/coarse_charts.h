@@ -1,7 +1,7 @@
 // The surface on which decisions are made, and the way back to the full one.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "devseg/mesh/coarsen.h"
@@ -66,8 +66,7 @@ private:
 
     const Mesh& full_;
     bool creased_;
-    std::unique_ptr<mesh::CoarseSurface> surface_;
-    std::unique_ptr<mesh::CoarseMesh> coarse_;
+    std::optional<mesh::CoarseMesh> coarse_;
 };
 
 } // namespace devseg::dcharts
