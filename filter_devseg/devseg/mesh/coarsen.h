@@ -24,33 +24,42 @@ struct CoarseSurface {
     std::vector<Index> collapses;    // half-edges, removed → kept vertex, in their order
     std::vector<std::size_t> rounds; // number of collapses at the end of each round
     Index alive_faces = 0;
+
+    Range<FaceKind> all_faces() const { return {0, static_cast<Index>(faces.size())}; }
+    Range<HalfEdgeKind> all_half_edges() const { return {0, static_cast<Index>(twin.size())}; }
+    Vertex origin(HalfEdge h) const { return faces[face_of(h)][corner_of(h)]; }
+    Vertex target(HalfEdge h) const { return origin(Mesh::next(h)); }
+    /// The third corner of the face.
+    Vertex apex(HalfEdge h) const { return origin(Mesh::previous(h)); }
+    /// The face on the other side, −1 on a boundary.
+    Face across(HalfEdge h) const { return twin[h] < 0 ? Face() : face_of(twin[h]); }
+};
+
+/// A coarse version of a mesh, and the way back.
+struct CoarseMesh {
+    Mesh mesh;                 // the faces that are alive
+    std::vector<Index> face;   // #f of `mesh`: number in the fine mesh
+    std::vector<Index> vertex; // #v of `mesh`: number in the fine mesh
+    CoarseSurface surface;     // in the numbers of the fine mesh
 };
 
 /// Removes vertices, those first that change the surface least [GH97], until at most `target_faces`
 /// are left, or no vertex can go. The topology stays; boundary vertices move along the boundary
 /// only. A round removes vertices that are not neighbours of each other.
-CoarseSurface coarsen(const std::vector<Vec3>& points, const std::vector<Triangle>& faces,
-                      const std::vector<HalfEdge>& twin, Index target_faces,
-                      const Progress& progress);
+CoarseMesh coarsen(const Mesh& fine, Index target_faces, const Progress& progress);
 
 /// The same with all cores; not from within a task of parallel_for.
-CoarseSurface coarsen_in_parallel(const Mesh& mesh, Index target_faces, Progress& progress);
+CoarseMesh coarsen_in_parallel(const Mesh& fine, Index target_faces, Progress& progress);
 
 /// Undoes the last collapse; returns its half-edge, which leaves the vertex that is back.
-Index undo_collapse(CoarseSurface& surface);
+HalfEdge undo_collapse(CoarseSurface& surface);
 
-/// The faces that are alive, as a mesh of their own.
-struct CoarseMesh {
-    Mesh mesh;
-    std::vector<Index> face;   // #f of the coarse mesh: number in the fine mesh
-    std::vector<Index> vertex; // #v of the coarse mesh: number in the fine mesh
-};
-CoarseMesh extract_coarse_mesh(const Mesh& fine, const CoarseSurface& surface);
+CoarseMesh extract_coarse_mesh(const Mesh& fine, CoarseSurface surface);
 
-/// Labels of the alive faces (−1 for others) → labels of all faces, by undoing all collapses. The
-/// two faces that come back with a vertex take the label of a neighbour each, so that regions stay
+/// Labels of the coarse mesh's faces → labels of all faces (#F), by undoing all collapses. The two
+/// faces that come back with a vertex take the label of a neighbour each, so that regions stay
 /// connected; where they may choose, borders stay short.
-std::vector<Index> refine_labels(const std::vector<Vec3>& points, CoarseSurface surface,
-                                 std::vector<Index> label, const Progress& progress);
+std::vector<Index> refine_labels(const Mesh& fine, const CoarseMesh& coarse,
+                                 const std::vector<Index>& label, const Progress& progress);
 
 } // namespace devseg::mesh

@@ -18,7 +18,7 @@ namespace {
 using shapes::Random;
 
 CoarseSurface coarsened(const Mesh& mesh, Index target) {
-    return coarsen(mesh.points, mesh.faces, mesh.twin, target, Progress{});
+    return coarsen(mesh, target, Progress{}).surface;
 }
 
 // A prism without its ends: six creases from rim to rim.
@@ -88,7 +88,7 @@ TEST(Coarsen, TheTopologyStaysThatOfTheSurface) {
     for (const Mesh& mesh : surfaces()) {
         const checks::Topology fine = whole_topology(mesh);
         for (const Index target : {mesh.face_count() / 2, mesh.face_count() / 8, 0}) {
-            const CoarseMesh coarse = extract_coarse_mesh(mesh, coarsened(mesh, target));
+            const CoarseMesh coarse = coarsen(mesh, target, Progress{});
             ASSERT_TRUE(checks::is_valid(coarse.mesh));
             const checks::Topology found = whole_topology(coarse.mesh);
             EXPECT_EQ(found.euler, fine.euler);
@@ -169,7 +169,7 @@ TEST(Coarsen, PlanarPartsAndStraightCreasesAreKeptExactly) {
 
 TEST(Coarsen, CurvedSurfacesStayNear) {
     const Mesh mesh = checks::gated(shapes::sphere(4)); // 5120 faces
-    const Mesh coarse = extract_coarse_mesh(mesh, coarsened(mesh, 500)).mesh;
+    const Mesh coarse = coarsen(mesh, 500, Progress{}).mesh;
     EXPECT_NEAR(coarse.total_area, mesh.total_area, 0.03 * mesh.total_area);
     // Round triangles: none is a needle, and none has turned over.
     for (const Face f : coarse.all_faces()) {
@@ -184,7 +184,7 @@ TEST(Coarsen, CurvedSurfacesStayNear) {
 
 TEST(Coarsen, BoundariesStayOnTheBoundary) {
     const Mesh mesh = checks::gated(shapes::annulus(60, 10, 1.0, 2.0));
-    const CoarseMesh coarse = extract_coarse_mesh(mesh, coarsened(mesh, 200));
+    const CoarseMesh coarse = coarsen(mesh, 200, Progress{});
     for (const HalfEdge h : coarse.mesh.all_half_edges()) {
         if (coarse.mesh.twin[h] >= 0)
             continue;
@@ -246,21 +246,16 @@ double border_length(const Mesh& mesh, const std::vector<Index>& label) {
 TEST(Coarsen, RefinedLabelsAreConnectedAndCoverAll) {
     std::uint32_t seed = 1;
     for (const Mesh& mesh : surfaces()) {
-        const CoarseSurface s = coarsened(mesh, mesh.face_count() / 6);
-        const CoarseMesh coarse = extract_coarse_mesh(mesh, s);
+        const CoarseMesh coarse = coarsen(mesh, mesh.face_count() / 6, Progress());
         const Index count = std::min<Index>(8, coarse.mesh.face_count());
         const std::vector<Index> on_coarse = grown_labels(coarse.mesh, count, seed++);
-        std::vector<Index> label(mesh.faces.size(), -1);
-        for (std::size_t f = 0; f < on_coarse.size(); ++f)
-            label[coarse.face[f]] = on_coarse[f];
-        const std::vector<Index> fine = refine_labels(mesh.points, s, label, Progress());
+        const std::vector<Index> fine = refine_labels(mesh, coarse, on_coarse, Progress());
         for (std::size_t f = 0; f < fine.size(); ++f) {
             ASSERT_GE(fine[f], 0);
             ASSERT_LT(fine[f], count);
-            if (s.alive[f] != 0) { // only faces that come back take labels
-                EXPECT_EQ(fine[f], label[f]);
-            }
         }
+        for (std::size_t f = 0; f < on_coarse.size(); ++f) // only faces that come back take labels
+            EXPECT_EQ(fine[coarse.face[f]], on_coarse[f]);
         const atlas::ChartMap charts =
             atlas::make_chart_map(mesh, fine, {}, false); // parts become charts
         EXPECT_EQ(charts.count, count);
@@ -276,7 +271,7 @@ TEST(Coarsen, RunsAreEqualAndCanBeCancelled) {
     EXPECT_EQ(a.faces, b.faces);
     Progress stopped([](double, const char*) { return false; });
     EXPECT_THROW(stopped.update(0.0), Cancelled);
-    EXPECT_THROW(coarsen(mesh.points, mesh.faces, mesh.twin, 100, stopped), Cancelled);
+    EXPECT_THROW(coarsen(mesh, 100, stopped), Cancelled);
 }
 
 } // namespace

@@ -215,9 +215,7 @@ std::vector<Vec2> flatten_multilevel(
         solve,
     const Progress& progress) {
     const Mesh local = atlas::mesh_of(mesh, surface);
-    mesh::CoarseSurface coarse =
-        mesh::coarsen(local.points, local.faces, local.twin, multilevel_threshold / 3, progress);
-    const mesh::CoarseMesh small = mesh::extract_coarse_mesh(local, coarse);
+    mesh::CoarseMesh small = mesh::coarsen(local, multilevel_threshold / 3, progress);
     std::vector<Index> all(small.mesh.faces.size());
     std::iota(all.begin(), all.end(), 0);
     const atlas::ChartSurface disk = atlas::extract_surface(
@@ -227,7 +225,7 @@ std::vector<Vec2> flatten_multilevel(
     for (const Vertex v : disk.all_vertices())
         uv[small.vertex[disk.vertex[v]]] = found[v];
 
-    Refinement refinement(local, std::move(coarse), std::move(uv));
+    Refinement refinement(local, std::move(small.surface), std::move(uv));
     while (!refinement.done()) {
         refinement.refine(progress);
         refinement.relax(refinement.done() ? &problem : nullptr, progress);

@@ -140,7 +140,7 @@ Decided decide(const Mesh& mesh, const SegmentationPlan& plan, DChartsResult pat
     return few;
 }
 
-DevelopableCharts finish(const Mesh& mesh, const std::optional<Decimation>& decimation,
+DevelopableCharts finish(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                          const SegmentationPlan& plan, const Decided& decided,
                          Straightening straightening, Progress& progress) {
     auto finishing = progress.part("finishing borders", 1.0);
@@ -171,7 +171,7 @@ double distance(const DevelopableChartsOptions& options, const DevelopableCharts
 
 // With more darts where the worst spot needs them, and measured.
 DevelopableCharts finish_within_bounds(const Mesh& mesh,
-                                       const std::optional<Decimation>& decimation,
+                                       const std::optional<mesh::CoarseMesh>& decimation,
                                        const SegmentationPlan& plan, const Aim& aim,
                                        const Decided& decided, Straightening straightening,
                                        Progress& progress) {
@@ -213,11 +213,11 @@ void split_worst(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim,
 
 // The fewest charts within the bounds: what the coarse surface may use of them is lowered until the
 // map of the full surface keeps them.
-DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<Decimation>& decimation,
+DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                               const SegmentationPlan& plan, const DChartsResult& patches,
                               Progress& progress) {
     const DevelopableChartsOptions& options = plan.options;
-    const Mesh& coarse = decimation ? decimation->coarse.mesh : mesh;
+    const Mesh& coarse = decimation ? decimation->mesh : mesh;
     const double allowed = options.max_l2_stretch * options.max_l2_stretch - 1.0;
     const bool has_linf = options.max_linf_stretch > 0.0;
     double share = tuning.first_share;
@@ -285,9 +285,9 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
                       options.max_linf_stretch);
     const SegmentationPlan plan = make_plan(mesh, options);
     auto coarsening = progress.part("coarsening", 0.06);
-    const std::optional<Decimation> decimation = decimate(
+    const std::optional<mesh::CoarseMesh> decimation = decimate(
         mesh, plan.creased, std::max(options.charts_number, tuning.automatic_seeds), coarsening);
-    const Mesh& coarse = decimation ? decimation->coarse.mesh : mesh;
+    const Mesh& coarse = decimation ? decimation->mesh : mesh;
     auto growing = progress.part(0.15);
     DChartsResult patches = grow_patches(coarse, plan, growing);
     auto deciding = progress.part(progress.left());

@@ -29,14 +29,6 @@ growth::ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
     return result;
 }
 
-std::vector<Index> transfer_labels(const Mesh& mesh, const Decimation& decimation,
-                                   const std::vector<Index>& chart, const Progress& progress) {
-    std::vector<Index> label(mesh.faces.size(), -1);
-    for (std::size_t f = 0; f < chart.size(); ++f)
-        label[decimation.coarse.face[f]] = chart[f];
-    return mesh::refine_labels(mesh.points, decimation.surface, std::move(label), progress);
-}
-
 // A strip of about one edge of the coarse surface is too narrow to change the shape of a chart by
 // much.
 void straighten(const Mesh& mesh, const Mesh& coarse, const Draft& draft,
@@ -57,25 +49,23 @@ void straighten(const Mesh& mesh, const Mesh& coarse, const Draft& draft,
 
 } // namespace
 
-std::optional<Decimation> decimate(const Mesh& mesh, bool creased, Index charts,
-                                   Progress& progress) {
+std::optional<mesh::CoarseMesh> decimate(const Mesh& mesh, bool creased, Index charts,
+                                         Progress& progress) {
     const Index wanted = std::max(creased ? tuning.decimated_creased_faces : tuning.decimated_faces,
                                   tuning.faces_per_chart * charts);
     if (mesh.face_count() <= tuning.worth_decimation * wanted)
         return {};
-    Decimation result{mesh::coarsen_in_parallel(mesh, wanted, progress), {}};
-    result.coarse = mesh::extract_coarse_mesh(mesh, result.surface);
-    return result;
+    return mesh::coarsen_in_parallel(mesh, wanted, progress);
 }
 
-DevelopableCharts transfer(const Mesh& mesh, const std::optional<Decimation>& decimation,
+DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                            const Draft& draft, const std::vector<Index>& patch,
                            double max_fitting_error, Straightening straightening,
                            Progress& progress) {
     DevelopableCharts result;
     result.chart =
-        decimation ? transfer_labels(mesh, *decimation, draft.chart, progress) : draft.chart;
-    straighten(mesh, decimation ? decimation->coarse.mesh : mesh, draft, patch, max_fitting_error,
+        decimation ? mesh::refine_labels(mesh, *decimation, draft.chart, progress) : draft.chart;
+    straighten(mesh, decimation ? decimation->mesh : mesh, draft, patch, max_fitting_error,
                straightening, result.chart, progress);
     result.seam = draft.seam;
     result.darts = static_cast<Index>(draft.tips.size());
@@ -84,7 +74,7 @@ DevelopableCharts transfer(const Mesh& mesh, const std::optional<Decimation>& de
         progress.check();
         std::vector<Index> tips = draft.tips;
         for (Index& tip : tips)
-            tip = decimation ? decimation->coarse.vertex[tip] : tip;
+            tip = decimation ? decimation->vertex[tip] : tip;
         result.seam.assign(mesh.twin.size(), 0);
         result.darts = cut_darts_to(mesh, result.chart, tips, result.seam);
     }

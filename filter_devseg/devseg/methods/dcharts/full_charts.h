@@ -11,15 +11,10 @@
 
 namespace devseg::dcharts {
 
-struct Decimation {
-    mesh::CoarseSurface surface;
-    mesh::CoarseMesh coarse;
-};
-
 /// The surface on which decisions for about so many charts are made; none where it is small enough
 /// itself. Creased surfaces are decimated less: borders must run exactly along their creases.
-std::optional<Decimation> decimate(const Mesh& mesh, bool creased, Index charts,
-                                   Progress& progress);
+std::optional<mesh::CoarseMesh> decimate(const Mesh& mesh, bool creased, Index charts,
+                                         Progress& progress);
 
 /// What is done to borders on the full surface: nothing; the shortest ones among the faces that fit
 /// both charts; and then, in a narrow strip, whatever the faces fit, so that steps go.
@@ -27,7 +22,7 @@ enum class Straightening { none, fitting, smooth };
 
 /// The draft's charts and darts on the full surface. `patch` (faces of the draft's surface) is what
 /// the charts were joined from.
-DevelopableCharts transfer(const Mesh& mesh, const std::optional<Decimation>& decimation,
+DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                            const Draft& draft, const std::vector<Index>& patch,
                            double max_fitting_error, Straightening straightening,
                            Progress& progress);

@@ -369,9 +369,7 @@ std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
 WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progress& progress) {
     if (mesh.face_count() <= most_faces)
         return {mesh, {}};
-    return {
-        mesh::extract_coarse_mesh(mesh, mesh::coarsen_in_parallel(mesh, most_faces, progress)).mesh,
-        {}};
+    return {mesh::coarsen_in_parallel(mesh, most_faces, progress).mesh, {}};
 }
 
 std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
@@ -391,9 +389,7 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
             area > 1.0 / tuning.whole_area)
             continue;
         if (2 * half.face_count() > most_faces)
-            half = mesh::extract_coarse_mesh(half, mesh::coarsen(half.points, half.faces, half.twin,
-                                                                 most_faces / 2, progress))
-                       .mesh;
+            half = mesh::coarsen(half, most_faces / 2, progress).mesh;
         WorkingSurface surface = glue(half, side);
         if (euler_characteristic(surface.mesh) != euler_characteristic(mesh))
             continue;
