@@ -69,6 +69,27 @@ public:
 
     static std::string reference(int number) { return std::to_string(number) + " 0 R"; }
 
+    // A string as dictionaries and texts hold it: bytes in parentheses.
+    static std::string literal(const std::string& bytes) {
+        std::string text = "(";
+        for (const char c : bytes) {
+            if (c == '(' || c == ')' || c == '\\')
+                text += '\\';
+            text += c;
+        }
+        return text + ')';
+    }
+
+    // UTF-8 text for people, in a form that knows all scripts.
+    static std::string text(const std::string& utf8) {
+        static const char* const digits = "0123456789ABCDEF";
+        std::string hex = "<FEFF";
+        for (const QChar c : QString::fromStdString(utf8))
+            for (int shift = 12; shift >= 0; shift -= 4)
+                hex += digits[(c.unicode() >> shift) & 15];
+        return hex + '>';
+    }
+
 private:
     std::vector<std::string> bodies_; // of object i + 1
 };
@@ -98,8 +119,8 @@ public:
                                        "/OCProperties << /OCGs [" +
                                        groups_ + "] /D << /Order [" + groups_ + "] /ON [" +
                                        groups_ + "] >> >> >>");
-        const int information =
-            objects_.add("<< /Title " + pdf_text(document_.title) + " /Producer (devseg) >>");
+        const int information = objects_.add("<< /Title " + PdfObjects::text(document_.title) +
+                                             " /Producer (devseg) >>");
         return objects_.file(catalogue, information);
     }
 
@@ -111,7 +132,7 @@ private:
                 !layer_numbers_.emplace(layer.id, layer_numbers_.size()).second)
                 return;
             const std::string group = PdfObjects::reference(
-                objects_.add("<< /Type /OCG /Name " + pdf_text(layer.label) + " >>"));
+                objects_.add("<< /Type /OCG /Name " + PdfObjects::text(layer.label) + " >>"));
             properties_ += "/L" + std::to_string(layer_numbers_.size() - 1) + ' ' + group + ' ';
             groups_ += group + ' ';
         };
@@ -213,7 +234,7 @@ private:
         const double s = std::sin(text.angle);
         data += "BT /F1 " + millimetres(text.size) + " Tf " + factor(c) + ' ' + factor(s) + ' ' +
                 factor(-s) + ' ' + factor(c) + ' ' + point(text_start(text)) + " Tm " +
-                pdf_literal(latin1(text.text)) + " Tj ET\n";
+                PdfObjects::literal(latin1(text.text)) + " Tj ET\n";
     }
 
     static std::string colour(const std::string& code) {
@@ -241,25 +262,6 @@ private:
 };
 
 } // namespace
-
-std::string pdf_literal(const std::string& bytes) {
-    std::string text = "(";
-    for (const char c : bytes) {
-        if (c == '(' || c == ')' || c == '\\')
-            text += '\\';
-        text += c;
-    }
-    return text + ')';
-}
-
-std::string pdf_text(const std::string& utf8) {
-    static const char* const digits = "0123456789ABCDEF";
-    std::string hex = "<FEFF";
-    for (const QChar c : QString::fromStdString(utf8))
-        for (int shift = 12; shift >= 0; shift -= 4)
-            hex += digits[(c.unicode() >> shift) & 15];
-    return hex + '>';
-}
 
 std::string pdf_bytes(const Document& document) {
     return Writer(document).write();

@@ -13,8 +13,4 @@ namespace devseg::writers {
 /// finite, and there must be a page.
 std::string pdf_bytes(const Document& document);
 
-/// A string as dictionaries and texts hold it: bytes in parentheses; UTF-8 as hexadecimal UTF-16.
-std::string pdf_literal(const std::string& bytes);
-std::string pdf_text(const std::string& utf8);
-
 } // namespace devseg::writers

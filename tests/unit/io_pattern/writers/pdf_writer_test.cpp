@@ -75,8 +75,8 @@ TEST(PdfWriter, SameBytesInEveryLocale) {
 }
 
 TEST(PdfWriter, StringsAreEscaped) {
-    EXPECT_EQ(pdf_literal("a(b)\\"), "(a\\(b\\)\\\\)");
-    EXPECT_EQ(pdf_text("A\xc3\xa4"), "<FEFF004100E4>");
+    EXPECT_EQ(PdfObjects::literal("a(b)\\"), "(a\\(b\\)\\\\)");
+    EXPECT_EQ(PdfObjects::text("A\xc3\xa4"), "<FEFF004100E4>");
 }
 
 TEST(TextMetrics, WidthsAreThoseOfHelvetica) {
