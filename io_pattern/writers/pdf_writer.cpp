@@ -1,15 +1,13 @@
 // References
 //   ISO 32000-1:2008, Portable document format, PDF 1.7: content streams (8), form XObjects
-//   (8.10), optional content (8.11), text (9), viewer preferences (12.2), file structure (7.5),
-//   strings (7.3.4).
+//   (8.10), optional content (8.11), text (9), viewer preferences (12.2).
 #include "writers/pdf_writer.h"
 
-#include <QByteArray>
-#include <QString>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "writers/pdf_objects.h"
 #include "writers/text.h"
 
 namespace devseg::writers {
@@ -20,79 +18,6 @@ constexpr double points_per_mm = 72.0 / 25.4;
 constexpr double line_width = 0.2;       // mm, still seen on paper where a hairline is not
 constexpr double largest_page = 14400.0; // user units, what readers take
 constexpr int scale_decimals = 8;        // of factors, that multiply lengths of metres
-
-std::string padded(std::size_t value, std::size_t digits) {
-    const std::string text = std::to_string(value);
-    return std::string(digits - std::min(digits, text.size()), '0') + text;
-}
-
-// The skeleton of a PDF file: numbered objects, streams and the table of their places.
-class PdfObjects {
-public:
-    // A number for an object that is defined later.
-    int reserve() {
-        bodies_.emplace_back();
-        return static_cast<int>(bodies_.size());
-    }
-    void define(int number, const std::string& body) { bodies_[at(number - 1)] = body; }
-    int add(const std::string& body) {
-        bodies_.push_back(body);
-        return static_cast<int>(bodies_.size());
-    }
-
-    // A compressed stream; `entries` of its dictionary beside length and filter.
-    int add_stream(const std::string& entries, const std::string& data) {
-        // Qt puts the size in front of what zlib makes, as four bytes.
-        const QByteArray packed =
-            qCompress(reinterpret_cast<const uchar*>(data.data()), static_cast<int>(data.size()))
-                .mid(4);
-        return add("<< " + entries + " /Filter /FlateDecode /Length " +
-                   std::to_string(packed.size()) + " >>\nstream\n" + packed.toStdString() +
-                   "\nendstream");
-    }
-
-    // The whole file. Every reserved number must have been defined.
-    std::string file(int catalogue, int information) const {
-        // The second line tells programs that move files that this one is not plain text.
-        std::string bytes = "%PDF-1.6\n%\xe2\xe3\xcf\xd3\n";
-        std::string table = "0000000000 65535 f \n";
-        for (std::size_t i = 0; i < bodies_.size(); ++i) {
-            table += padded(bytes.size(), 10) + " 00000 n \n";
-            bytes += std::to_string(i + 1) + " 0 obj\n" + bodies_[i] + "\nendobj\n";
-        }
-        const std::string size = std::to_string(bodies_.size() + 1);
-        const std::size_t start = bytes.size();
-        return bytes + "xref\n0 " + size + '\n' + table + "trailer\n<< /Size " + size + " /Root " +
-               reference(catalogue) + " /Info " + reference(information) + " >>\nstartxref\n" +
-               std::to_string(start) + "\n%%EOF\n";
-    }
-
-    static std::string reference(int number) { return std::to_string(number) + " 0 R"; }
-
-    // A string as dictionaries and texts hold it: bytes in parentheses.
-    static std::string literal(const std::string& bytes) {
-        std::string text = "(";
-        for (const char c : bytes) {
-            if (c == '(' || c == ')' || c == '\\')
-                text += '\\';
-            text += c;
-        }
-        return text + ')';
-    }
-
-    // UTF-8 text for people, in a form that knows all scripts.
-    static std::string text(const std::string& utf8) {
-        static const char* const digits = "0123456789ABCDEF";
-        std::string hex = "<FEFF";
-        for (const QChar c : QString::fromStdString(utf8))
-            for (int shift = 12; shift >= 0; shift -= 4)
-                hex += digits[(c.unicode() >> shift) & 15];
-        return hex + '>';
-    }
-
-private:
-    std::vector<std::string> bodies_; // of object i + 1
-};
 
 class Writer {
 public:

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "writers/pdf_objects.h"
 #include "writers/text.h"
 
 namespace devseg::writers {
