@@ -67,7 +67,7 @@ std::vector<graph::CutSide> cut_off(const Mesh& mesh, const std::vector<double>&
     for (const Face f : mesh.all_faces())
         if (distance[f] < tuning.inner_band * root)
             start[f] = graph::CutSide::source;
-        else if (!(distance[f] < root / tuning.inner_band))
+        else if (!(distance[f] < tuning.outer_band * root))
             start[f] = graph::CutSide::sink;
     graph::MinCut cut(start);
     for (const HalfEdge h : mesh.all_half_edges())

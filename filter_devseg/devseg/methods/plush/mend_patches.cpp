@@ -259,7 +259,7 @@ Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cos
         open_what_floats(mesh, setting.hard, joined, marks);
         const auto cuts =
             mend_patch(mesh, setting.graph, cost, joined, marks, setting.tester.limits(), progress);
-        if (!cuts || length_of(mesh, *cuts) > length_of(mesh, border))
+        if (!cuts || length_of(mesh, *cuts) > tuning.longest_darts * length_of(mesh, border))
             return false;
         mark(mesh, *cuts, 1, marks);
         if (patches_of(mesh, marks, joined).size() > 1)

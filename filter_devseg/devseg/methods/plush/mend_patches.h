@@ -45,7 +45,7 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
                    const OpenPart& on_model);
 
 /// Joins patches up to a share of the surface to a neighbour along all of their common border,
-/// where darts that are no longer than that border are enough to keep the limits. `cost`: of
+/// where darts up to half as long again as that border are enough to keep the limits. `cost`: of
 /// paths for darts, 3 #F. Returns how many joins were tried.
 Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cost, double most_area,
                       SeamMarks& seam, Progress& progress);

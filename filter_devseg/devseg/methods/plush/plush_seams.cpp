@@ -94,7 +94,7 @@ SeamGuides guides_of(const Evidence& evidence) {
 std::vector<double> dart_cost(const Evidence& evidence) {
     std::vector<double> cost = edge_lengths(evidence.surface.mesh);
     for (std::size_t h = 0; h < cost.size(); ++h)
-        cost[h] *= natural_factor(tuning.natural_seam, evidence.weights.stray[h]);
+        cost[h] *= natural_factor(tuning.natural_dart, evidence.weights.stray[h]);
     return cost;
 }
 

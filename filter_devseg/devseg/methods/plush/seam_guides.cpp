@@ -193,11 +193,11 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
         }
         const double curved = 1.0 / (1.0 + std::abs(curvature[a]) + std::abs(curvature[b]));
         result.stray.push_back(straying(along, shapes[h].bend));
-        result.weight.push_back(
-            natural_factor(tuning.natural_seam, result.stray.back()) *
-            std::max(tuning.tiny, std::pow(mesh.edge_length(h) / longest, options.geodesic) *
-                                      std::pow(std::max(0.0, along), options.skeleton) *
-                                      std::pow(curved, options.curvature)));
+        result.weight.push_back(natural_factor(tuning.natural_seam, result.stray.back()) *
+                                std::max(tuning.least_path_weight,
+                                         std::pow(mesh.edge_length(h) / longest, options.geodesic) *
+                                             std::pow(std::max(0.0, along), options.skeleton) *
+                                             std::pow(curved, options.curvature)));
     }
     return result;
 }

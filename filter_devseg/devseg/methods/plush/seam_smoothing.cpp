@@ -198,7 +198,8 @@ private:
 } // namespace
 
 void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
-    for (bool changed = true; changed;) { // the border gets shorter every time
+    bool changed = true;
+    for (int round = 0; round < tuning.tooth_rounds && changed; ++round) {
         changed = false;
         for (const Face f : mesh.all_faces()) {
             std::array<Index, 3> other{-1, -1, -1};

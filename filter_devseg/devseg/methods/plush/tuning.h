@@ -16,7 +16,7 @@ struct Window {
 };
 
 struct Tuning {
-    double tiny = 1e-9;  // internal units, or a weight: stands for nothing where nothing may not be
+    double tiny = 1e-9;  // internal units, or a share: stands for nothing where nothing may not be
     double speck = 2e-3; // smaller pieces are left out, and smaller ends are no limbs
 
     // Symmetry.
@@ -60,15 +60,18 @@ struct Tuning {
     double limb_reach = 0.75;    // of the model's extent: roots are not looked for beyond
     double largest_limb = 0.35;  // larger ones are bodies
     double limb_widening = 1.35; // of the ring behind a root over the ring before it
-    double inner_band = 0.75;    // of the root's distance: the cut lies between it and its inverse
-    double concave_gain = 4.0;   // how much cheaper an edge of curvature −1 is than a flat one
-    double same_limb = 0.6;      // common area over the area of both together
+    double inner_band = 0.75;    // the cut lies within these shares of the root's distance
+    double outer_band = 1.3;
+    double concave_gain = 4.0; // how much cheaper an edge of curvature −1 is than a flat one
+    double same_limb = 0.6;    // common area over the area of both together
 
     // Shares of costs that go where seams look natural.
-    double natural_seam = 0.95;    // of a seam's weight, and a dart's length
-    double natural_transfer = 0.4; // of a path along another surface's seam
-    double natural_straight = 0.5; // while seams are straightened
-    double shared_seam = 0.25;     // factor of edges that are seams already
+    double least_path_weight = 1e-4; // so that paths stay short where a term vanishes
+    double natural_seam = 0.95;      // of a seam's weight
+    double natural_dart = 0.8;       // of a dart's length
+    double natural_transfer = 0.4;   // of a path along another surface's seam
+    double natural_straight = 0.5;   // while seams are straightened
+    double shared_seam = 0.25;       // factor of edges that are seams already
 
     // Trials.
     double used_bound = 0.98; // share of the bound: maps are rounded to 32 bits later
@@ -93,6 +96,7 @@ struct Tuning {
     double small_patch = 0.1; // smaller ones are joined along narrow necks once seams are straight;
                               // a fifth of it on the model, and a tenth with darts
     double narrow_neck = 0.15; // of the root of the smaller patch
+    int tooth_rounds = 12;     // of taking teeth away
     int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
     double path_worth = 0.97;  // of its cost: what a new path must save
     // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
@@ -113,8 +117,9 @@ struct Tuning {
     double far_margin = 0.75;
     double own_margin = 0.95;
     double tighter = 0.88;
-    int second_thoughts = 1; // rounds of deciding again; one more where there are two halves
-    int most_cuts = 4;       // that mend a patch
+    int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
+    int most_cuts = 4;          // that mend a patch
+    double longest_darts = 1.5; // over the border of a remnant that goes: an island is worse
 
     // Thin tips. Shares of the root of the surface.
     double thin = 0.03;          // tongues that are narrower go
