@@ -12,7 +12,7 @@ bool is_flipped_around(const atlas::ChartSurface& surface, const std::vector<Vec
                        HalfEdge leaving) {
     bool flipped = false;
     mesh::visit_star(surface.twin, leaving, [&](HalfEdge h) {
-        const Triangle& t = surface.corners[h / 3];
+        const Triangle& t = surface.faces[h / 3];
         flipped = flipped || !(orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0);
     });
     return flipped;
@@ -26,7 +26,7 @@ void restore_needles(const Mesh& mesh, const atlas::ChartSurface& surface,
         const double area = mesh.face_areas[surface.face[f]];
         if (!(area > 0.0) || problem.area[f] < widened * area)
             continue;
-        const Triangle& t = surface.corners[f];
+        const Triangle& t = surface.faces[f];
         std::size_t longest = 0; // edge k → k + 1
         const auto length = [&](std::size_t k) { return (uv[t[(k + 1) % 3]] - uv[t[k]]).norm(); };
         for (std::size_t k = 1; k < 3; ++k)

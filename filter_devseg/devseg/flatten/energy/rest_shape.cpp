@@ -61,7 +61,7 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
                                " boundary loops; apply 'Charts: Cut to Disks' first");
     FlatteningProblem problem;
     problem.vertex_count = surface.vertex_count();
-    problem.faces = surface.corners;
+    problem.faces = surface.faces;
     for (const HalfEdge h : surface.loops.front()) {
         problem.boundary.push_back(surface.origin(h));
         problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));

@@ -111,8 +111,8 @@ std::vector<std::pair<Index, Index>> overlapping_pairs(const atlas::ChartSurface
     if (!boundary_crosses_itself(surface, uv))
         return {};
     CornerUv corners;
-    corners.reserve(3 * surface.corners.size());
-    for (const Triangle& t : surface.corners)
+    corners.reserve(3 * surface.faces.size());
+    for (const Triangle& t : surface.faces)
         for (const Vertex v : t)
             corners.push_back(uv[v]);
     return plane::find_overlapping_pairs(corners, tolerance);

@@ -70,7 +70,7 @@ private:
         return false;
     }
     bool positive(Face f) const {
-        const Triangle& t = s_.corners[f];
+        const Triangle& t = s_.faces[f];
         return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]) > 0.0;
     }
 
