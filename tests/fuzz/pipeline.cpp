@@ -87,7 +87,7 @@ Layout lay_in_a_row(const Mesh& mesh, const atlas::ChartMap& charts,
         for (Vec2& p : chart.uv)
             p += Vec2(left, 0.0) - box.min();
         left += 1.01 * box.sizes().x() + 0.01;
-        layout.too_thin += flatten::snap_to_single(chart.surface.corners, chart.uv);
+        layout.too_thin += flatten::snap_to_single(chart.surface.faces, chart.uv);
         for (const HalfEdge h : chart.surface.all_half_edges())
             layout.uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     }

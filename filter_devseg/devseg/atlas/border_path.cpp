@@ -14,7 +14,7 @@ constexpr double least_crease_factor = 0.1;
 } // namespace
 
 double crease_factor(const Mesh& mesh, HalfEdge h) {
-    const double cosine = mesh.face_normals[h / 3].dot(mesh.face_normals[mesh.twin[h] / 3]);
+    const double cosine = mesh.face_normals[face_of(h)].dot(mesh.face_normals[mesh.across(h)]);
     return std::max(least_crease_factor, cosine);
 }
 
@@ -30,7 +30,7 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
         return {};
     const Index start = static_cast<Index>(found - s.vertex.begin());
 
-    const VertexEdges edges(s);
+    const Buckets<HalfEdge> edges = inner_half_edges(s);
     graph::ShortestPaths<> paths(s.vertex.size());
     paths.add_source(start);
     std::vector<Index> path;
@@ -40,7 +40,7 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
                 path.push_back(s.mesh_half_edge(paths.step[u]));
             return false;
         }
-        for (const HalfEdge e : edges.leaving(v)) {
+        for (const HalfEdge e : edges[v]) {
             const HalfEdge h = s.mesh_half_edge(e);
             paths.reach(s.target(e), distance + crease_factor(mesh, h) * mesh.edge_length(h), e);
         }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace devseg::atlas {
@@ -12,39 +11,26 @@ namespace {
 
 // One vertex for each fan of corners that hangs together across uncut edges.
 void weld_corners(const Mesh& mesh, ChartSurface& surface) {
-    const Index corners = 3 * surface.face_count();
-    surface.corners.assign(surface.face.size(), Triangle{-1, -1, -1});
-    const auto corner = [&](HalfEdge h) -> Index& { return surface.corners[h / 3][h % 3]; };
-    for (Index start = 0; start < corners; ++start) {
-        if (corner(start) >= 0)
+    for (const HalfEdge start : surface.all_half_edges()) {
+        if (surface.origin(start) >= 0)
             continue;
         const Vertex v = surface.vertex_count();
         surface.vertex.push_back(mesh.origin(surface.mesh_half_edge(start)));
-        for (HalfEdge h = start; h >= 0 && corner(h) < 0; h = surface.twin[Mesh::previous(h)])
-            corner(h) = v;
-        for (Index back = surface.twin[start]; back >= 0; back = surface.twin[Mesh::next(back)]) {
-            if (corner(Mesh::next(back)) >= 0)
-                break;
-            corner(Mesh::next(back)) = v;
-        }
+        mesh::visit_star(surface, start,
+                         [&](HalfEdge h) { surface.faces[face_of(h)][corner_of(h)] = v; });
     }
 }
 
-// Boundary half-edges chained head to tail; at its end, the next one is found by turning around
-// the vertex inside the surface.
+// Boundary half-edges chained head to tail.
 void trace_loops(ChartSurface& surface) {
-    const Index half_edges = 3 * surface.face_count();
-    std::vector<std::uint8_t> done(at(half_edges), 0);
-    for (Index start = 0; start < half_edges; ++start) {
+    std::vector<std::uint8_t> done(surface.twin.size(), 0);
+    for (const HalfEdge start : surface.all_half_edges()) {
         if (surface.twin[start] >= 0 || done[start] != 0)
             continue;
         std::vector<Index> loop;
-        for (HalfEdge h = start; done[h] == 0;) {
+        for (HalfEdge h = start; done[h] == 0; h = surface.next_on_boundary(h)) {
             done[h] = 1;
             loop.push_back(h);
-            h = Mesh::next(h);
-            while (surface.twin[h] >= 0)
-                h = Mesh::next(surface.twin[h]);
         }
         surface.loops.push_back(std::move(loop));
     }
@@ -55,7 +41,9 @@ void trace_loops(ChartSurface& surface) {
 ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
                         const std::vector<std::uint8_t>& seam, bool split_at_seams) {
     const auto is_cut = [&](HalfEdge h) { return !seam.empty() && seam[h] != 0; };
-    const auto same_label = [&](HalfEdge h) { return labels[h / 3] == labels[mesh.twin[h] / 3]; };
+    const auto same_label = [&](HalfEdge h) {
+        return labels[face_of(h)] == labels[mesh.across(h)];
+    };
     mesh::FaceComponents parts = mesh::face_components(
         mesh, [&](HalfEdge h) { return same_label(h) && !(split_at_seams && is_cut(h)); });
     ChartMap result;
@@ -63,26 +51,20 @@ ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
     result.count = parts.count;
     result.seam.assign(mesh.twin.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges()) {
-        const Index opposite = mesh.twin[h];
+        const HalfEdge opposite = mesh.twin[h];
         if (opposite < 0)
             continue;
-        const bool border = result.chart[h / 3] != result.chart[opposite / 3];
+        const bool border = result.chart[face_of(h)] != result.chart[mesh.across(h)];
         result.seam[h] = border || is_cut(h) || is_cut(opposite) ? 1 : 0;
     }
     return result;
 }
 
-ChartFaces group_faces(const ChartMap& charts) {
-    ChartFaces result;
-    result.begin.assign(at(charts.count) + 1, 0);
-    for (const Index c : charts.chart)
-        ++result.begin[at(c) + 1];
-    std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
-    result.faces.resize(charts.chart.size());
-    std::vector<Index> cursor(result.begin.begin(), result.begin.end() - 1);
-    for (std::size_t f = 0; f < charts.chart.size(); ++f)
-        result.faces[cursor[charts.chart[f]]++] = static_cast<Index>(f);
-    return result;
+Buckets<Index> group_faces(const ChartMap& charts) {
+    return make_buckets<Index>(charts.count, [&](auto put) {
+        for (const Face f : Range<FaceKind>(0, static_cast<Index>(charts.chart.size())))
+            put(charts.chart[f], f);
+    });
 }
 
 namespace {
@@ -92,19 +74,20 @@ ChartSurface extract(const Mesh& mesh, std::vector<Index> faces,
                      const std::vector<std::uint8_t>& seam, std::vector<Index>& local_face) {
     ChartSurface surface;
     surface.face = std::move(faces);
+    surface.faces.assign(surface.face.size(), Triangle{-1, -1, -1}); // until corners are welded
     for (const Face f : surface.all_faces())
         local_face[surface.face[f]] = f;
     surface.twin.assign(3 * surface.face.size(), -1);
     Index inner_half_edges = 0;
     for (const HalfEdge h : surface.all_half_edges()) {
-        const Index global = surface.mesh_half_edge(h);
-        const Index opposite = mesh.twin[global];
+        const HalfEdge global = surface.mesh_half_edge(h);
+        const HalfEdge opposite = mesh.twin[global];
         if (opposite < 0 || seam[global] != 0)
             continue;
-        surface.twin[h] = 3 * local_face[opposite / 3] + opposite % 3;
+        surface.twin[h] = half_edge_of(local_face[face_of(opposite)], corner_of(opposite));
         ++inner_half_edges;
     }
-    surface.edge_count = 3 * surface.face_count() - inner_half_edges / 2;
+    surface.edge_count = surface.half_edge_count() - inner_half_edges / 2;
     weld_corners(mesh, surface);
     trace_loops(surface);
     return surface;
@@ -119,15 +102,13 @@ ChartSurface extract_surface(const Mesh& mesh, std::vector<Index> faces,
 }
 
 std::vector<ChartSurface> extract_charts(const Mesh& mesh, const ChartMap& charts) {
-    const ChartFaces groups = group_faces(charts);
+    const Buckets<Index> groups = group_faces(charts);
     std::vector<Index> local_face(mesh.faces.size());
     std::vector<ChartSurface> surfaces;
     surfaces.reserve(at(charts.count));
     for (Index c = 0; c < charts.count; ++c)
-        surfaces.push_back(extract(mesh,
-                                   {groups.faces.begin() + groups.begin[c],
-                                    groups.faces.begin() + groups.begin[at(c) + 1]},
-                                   charts.seam, local_face));
+        surfaces.push_back(
+            extract(mesh, {groups[c].begin(), groups[c].end()}, charts.seam, local_face));
     return surfaces;
 }
 
@@ -138,9 +119,9 @@ std::vector<std::uint8_t> enclose(const Mesh& mesh, const std::vector<Index>& fa
         inside[f] = 1;
     for (const Face f : faces)
         for (const HalfEdge h : half_edges_of(f)) {
-            const HalfEdge twin = mesh.twin[h];
-            if (twin >= 0 && inside[twin / 3] == 0)
-                seam[h] = seam[twin] = 1;
+            const Face g = mesh.across(h);
+            if (g >= 0 && inside[g] == 0)
+                seam[h] = seam[mesh.twin[h]] = 1;
         }
     return seam;
 }
@@ -152,9 +133,9 @@ ChartSurface join_surfaces(const Mesh& mesh, const ChartSurface& a, const ChartS
         in_b[f] = 1;
     for (const Face f : a.face)
         for (const HalfEdge h : half_edges_of(f)) {
-            const HalfEdge twin = mesh.twin[h];
-            if (twin >= 0 && in_b[twin / 3] != 0)
-                seam[h] = seam[twin] = 0;
+            const Face g = mesh.across(h);
+            if (g >= 0 && in_b[g] != 0)
+                seam[h] = seam[mesh.twin[h]] = 0;
         }
     std::vector<Index> faces;
     std::merge(a.face.begin(), a.face.end(), b.face.begin(), b.face.end(),
@@ -174,9 +155,9 @@ std::vector<Index> neighbour_labels(const Mesh& mesh, const std::vector<Index>& 
     std::map<Index, double> border;
     for (const Face f : chart.face)
         for (const HalfEdge h : half_edges_of(f)) {
-            const HalfEdge twin = mesh.twin[h];
-            if (twin >= 0 && label[twin / 3] != label[f])
-                border[label[twin / 3]] += mesh.edge_length(h);
+            const Face g = mesh.across(h);
+            if (g >= 0 && label[g] != label[f])
+                border[label[g]] += mesh.edge_length(h);
         }
     std::vector<std::pair<double, Index>> order;
     for (const auto& [other, length] : border)
@@ -190,10 +171,9 @@ std::vector<Index> neighbour_labels(const Mesh& mesh, const std::vector<Index>& 
 
 Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
     Mesh part;
+    static_cast<mesh::Connectivity&>(part) = surface;
     for (const Vertex v : surface.vertex)
         part.points.push_back(mesh.points[v]);
-    part.faces = surface.corners;
-    part.twin = surface.twin;
     part.unit_length = mesh.unit_length;
     mesh::compute_face_geometry(part);
     return part;

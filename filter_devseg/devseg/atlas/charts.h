@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "devseg/base/buckets.h"
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::atlas {
@@ -23,34 +24,25 @@ struct ChartMap {
 ChartMap make_chart_map(const Mesh& mesh, const std::vector<Index>& labels,
                         const std::vector<std::uint8_t>& seam, bool split_at_seams);
 
-/// The faces of each chart, in ascending order: faces of chart c are
-/// faces[begin[c]] … faces[begin[c + 1] − 1].
-struct ChartFaces {
-    std::vector<Index> begin; // #charts + 1
-    std::vector<Index> faces; // #F
-};
-ChartFaces group_faces(const ChartMap& charts);
+/// The faces of each chart, ascending.
+Buckets<Index> group_faces(const ChartMap& charts);
 
-/// One chart, cut open along its seams: a manifold of its own with local vertices and half-edges.
-struct ChartSurface {
+/// One chart, cut open along its seams: a manifold of its own, whose `faces` and `twin` are local
+/// vertices and half-edges.
+struct ChartSurface : mesh::Connectivity {
     std::vector<Index> face;               // #f: index in the mesh
-    std::vector<Triangle> corners;         // #f: local vertices
     std::vector<Index> vertex;             // #v: index of the mesh vertex
-    std::vector<HalfEdge> twin;            // 3 #f: local half-edges, −1 on the chart's boundary
     std::vector<std::vector<Index>> loops; // boundary loops as local half-edges, in their order
     Index edge_count = 0;
 
     Index vertex_count() const { return static_cast<Index>(vertex.size()); }
-    Index face_count() const { return static_cast<Index>(face.size()); }
     Range<VertexKind> all_vertices() const { return {0, vertex_count()}; }
-    Range<FaceKind> all_faces() const { return {0, face_count()}; }
-    Range<HalfEdgeKind> all_half_edges() const { return {0, 3 * face_count()}; }
-    Vertex origin(HalfEdge h) const { return corners[face_of(h)][corner_of(h)]; }
-    Vertex target(HalfEdge h) const { return origin(Mesh::next(h)); }
     Index euler_characteristic() const { return vertex_count() - edge_count + face_count(); }
     bool is_disk() const { return loops.size() == 1 && euler_characteristic() == 1; }
     /// Half-edge of the mesh that the local half-edge lies on.
-    Index mesh_half_edge(HalfEdge h) const { return 3 * face[h / 3] + h % 3; }
+    HalfEdge mesh_half_edge(HalfEdge h) const {
+        return half_edge_of(face[face_of(h)], corner_of(h));
+    }
 };
 
 /// The given faces, cut open along the marked edges (`seam`, 3 #F): all edges between these faces

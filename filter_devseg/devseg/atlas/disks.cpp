@@ -1,12 +1,12 @@
 #include "devseg/atlas/disks.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "devseg/atlas/handle_cutter.h"
 #include "devseg/atlas/join_loops.h"
 #include "devseg/graph/shortest_paths.h"
+#include "devseg/graph/unions.h"
 
 namespace devseg::atlas {
 
@@ -20,8 +20,8 @@ double edge_length(const Mesh& mesh, const ChartSurface& s, HalfEdge h) {
     return mesh.edge_length(s.mesh_half_edge(h));
 }
 
-PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges& edges, Index root,
-                      const Progress& progress) {
+PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const Buckets<HalfEdge>& edges,
+                      Index root, const Progress& progress) {
     PathForest forest(s.vertex.size());
     if (s.loops.empty())
         forest.add_source(root);
@@ -30,7 +30,7 @@ PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const VertexEdges
             forest.add_source(s.origin(h));
     forest.run(
         [&](Vertex v, double distance) {
-            for (const HalfEdge e : edges.leaving(v))
+            for (const HalfEdge e : edges[v])
                 forest.reach(s.target(e), distance + edge_length(mesh, s, e), s.twin[e]);
         },
         progress);
@@ -65,7 +65,7 @@ public:
 
     // For charts with at most one loop.
     double cut_handles() {
-        const VertexEdges edges(s_);
+        const Buckets<HalfEdge> edges = inner_half_edges(s_);
         const PathForest forest = grow_paths(mesh_, s_, edges, 0, progress_);
         for (const HalfEdge h : handle_edges(forest)) {
             cut_edge(h);
@@ -98,8 +98,8 @@ public:
 
 private:
     void cut_edge(HalfEdge h) {
-        const Index a = s_.mesh_half_edge(h);
-        const Index b = s_.mesh_half_edge(s_.twin[h]);
+        const HalfEdge a = s_.mesh_half_edge(h);
+        const HalfEdge b = s_.mesh_half_edge(s_.twin[h]);
         if (seam_[a] == 0)
             length_ += mesh_.edge_length(a);
         seam_[a] = seam_[b] = 1;
@@ -108,11 +108,11 @@ private:
 
     // The cycles through handles of a closed chart may hang together only by a path from the
     // root, which cuts nothing apart: take it back.
-    void drop_stem(const VertexEdges& edges, Vertex v) {
+    void drop_stem(const Buckets<HalfEdge>& edges, Vertex v) {
         while (true) {
             Index only = -1;
             int count = 0;
-            for (const HalfEdge e : edges.leaving(v))
+            for (const HalfEdge e : edges[v])
                 if (seam_[s_.mesh_half_edge(e)] != 0) {
                     only = e;
                     ++count;
@@ -137,10 +137,8 @@ private:
         Heartbeat beat(progress_);
         for (const HalfEdge h : s_.all_half_edges()) {
             beat();
-            const Index opposite = s_.twin[h];
-            if (opposite < h)
-                continue;
-            if (in_forest(forest, h) || in_forest(forest, opposite))
+            const HalfEdge opposite = s_.twin[h];
+            if (opposite < h || in_forest(forest, h) || in_forest(forest, opposite))
                 continue;
             duals.push_back({forest.distance[s_.origin(h)] + forest.distance[s_.target(h)] +
                                  edge_length(mesh_, s_, h),
@@ -148,22 +146,16 @@ private:
         }
         std::stable_sort(duals.begin(), duals.end(),
                          [](const Dual& a, const Dual& b) { return a.cycle > b.cycle; });
-        std::vector<Index> parent(s_.face.size());
-        std::iota(parent.begin(), parent.end(), 0);
-        const auto find = [&](Face f) {
-            while (parent[f] != f)
-                f = parent[f] = parent[parent[f]];
-            return f;
-        };
+        graph::Unions tree(s_.faces.size());
         std::vector<Index> rest;
         for (const Dual& dual : duals) {
             beat();
-            const Index a = find(dual.half_edge / 3);
-            const Index b = find(s_.twin[dual.half_edge] / 3);
+            const Index a = tree.find(face_of(dual.half_edge));
+            const Index b = tree.find(s_.across(dual.half_edge));
             if (a == b)
                 rest.push_back(dual.half_edge);
             else
-                parent[a] = b;
+                tree.join(b, a);
         }
         return rest;
     }
@@ -173,7 +165,7 @@ private:
     }
 
     // No boundary and no handle: a slit between two vertices that are far from each other.
-    void cut_sphere(const VertexEdges& edges, const PathForest& forest) {
+    void cut_sphere(const Buckets<HalfEdge>& edges, const PathForest& forest) {
         const Index far = farthest(forest);
         const PathForest from_far = grow_paths(mesh_, s_, edges, far, progress_);
         cut_path(from_far, farthest(from_far));
@@ -251,7 +243,7 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
 
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
                   const TipRule& rule, double& cut_length, const Progress& progress) {
-    const VertexEdges edges(disk);
+    const Buckets<HalfEdge> edges = inner_half_edges(disk);
     const PathForest forest = grow_paths(mesh, disk, edges, 0, progress);
     const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule, progress);
     Cutter cutter(mesh, disk, seam, progress);

@@ -1,10 +1,12 @@
 #include "devseg/atlas/fragments.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/graph/unions.h"
 
 namespace devseg::atlas {
 
@@ -22,27 +24,20 @@ PieceGraph build_graph(const Mesh& mesh, const ChartMap& pieces) {
     graph.border.resize(at(pieces.count));
     for (const Face f : mesh.all_faces())
         graph.area[pieces.chart[f]] += mesh.face_areas[f];
-    for (const HalfEdge h : mesh.all_half_edges()) {
-        const HalfEdge twin = mesh.twin[h];
-        if (twin < 0)
-            continue;
-        const Index a = pieces.chart[h / 3];
-        const Index b = pieces.chart[twin / 3];
-        if (a != b)
-            graph.border[a][b] += mesh.edge_length(h);
-    }
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (pieces.seam[h] != 0)
+            graph.border[pieces.chart[face_of(h)]][pieces.chart[mesh.across(h)]] +=
+                mesh.edge_length(h);
     return graph;
 }
 
+// −1 = none.
 Index longest_neighbour(const PieceGraph& graph, Index piece) {
-    Index best = -1;
-    double longest = -1.0;
-    for (const auto& [other, length] : graph.border[piece])
-        if (length > longest) {
-            longest = length;
-            best = other;
-        }
-    return best;
+    const std::map<Index, double>& border = graph.border[piece];
+    const auto longest =
+        std::max_element(border.begin(), border.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    return longest == border.end() ? -1 : longest->first;
 }
 
 } // namespace
@@ -56,16 +51,14 @@ std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& 
     for (Index p = 0; p < pieces.count; ++p)
         if (graph.area[p] < limit)
             small.emplace(graph.area[p], p);
-    std::vector<Index> owner(at(pieces.count));
-    for (Index p = 0; p < pieces.count; ++p)
-        owner[p] = p;
+    graph::Unions owner(at(pieces.count));
     while (!small.empty()) {
         const Index piece = small.begin()->second;
         small.erase(small.begin());
         const Index into = longest_neighbour(graph, piece);
         if (into < 0)
             continue;
-        owner[piece] = into;
+        owner.join(into, piece);
         const bool was_small = small.erase({graph.area[into], into}) > 0;
         graph.area[into] += graph.area[piece];
         if (was_small && graph.area[into] < limit)
@@ -79,8 +72,7 @@ std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& 
         }
     }
     for (Index& p : pieces.chart)
-        while (owner[p] != p)
-            p = owner[p];
+        p = owner.find(p);
     return make_chart_map(mesh, pieces.chart, {}, false).chart;
 }
 

@@ -17,15 +17,13 @@ constexpr double remembered_gain = 0.98;
 class Wavefronts {
 public:
     Wavefronts(const Mesh& mesh, const ChartSurface& surface) : s_(surface) {
-        const std::size_t half_edges = 3 * surface.face.size();
-        length_.resize(half_edges, 0.0);
-        for (HalfEdge h = 0; h < static_cast<Index>(half_edges); ++h)
-            if (surface.twin[h] >= 0) // the boundary is open already
-                length_[h] = mesh.edge_length(surface.mesh_half_edge(h));
-        next_.resize(half_edges);
-        previous_.resize(half_edges);
-        loop_of_.assign(half_edges, -1);
-        inside_.assign(surface.face.size(), 0);
+        for (const HalfEdge h : surface.all_half_edges()) // the boundary is open already
+            length_.push_back(surface.twin[h] < 0 ? 0.0
+                                                  : mesh.edge_length(surface.mesh_half_edge(h)));
+        next_.resize(length_.size());
+        previous_.resize(length_.size());
+        loop_of_.assign(length_.size(), -1);
+        inside_.assign(surface.faces.size(), 0);
     }
 
     bool has(Face face) const { return inside_[face] != 0; }
@@ -39,15 +37,15 @@ public:
             loops_[loop].length += length_[h];
         }
         loops_[loop].size = 3;
-        remember(loop, 3 * face);
+        remember(loop, half_edge_of(face, 0));
     }
 
     /// Adds the face behind half-edge h of the region, and glues all edges that it shares.
     void add(HalfEdge h) {
-        const Index inner = s_.twin[h];
-        inside_[inner / 3] = 1;
-        const Index a = Mesh::next(inner);
-        const Index b = Mesh::next(a);
+        const HalfEdge inner = s_.twin[h];
+        inside_[face_of(inner)] = 1;
+        const HalfEdge a = Mesh::next(inner);
+        const HalfEdge b = Mesh::next(a);
         const Index loop = loop_of_[h];
         // h gives way to the face's two other edges.
         link(previous_[h], a);
@@ -59,10 +57,10 @@ public:
         loop_of_[h] = -1;
         loops_[loop].size += 1;
         loops_[loop].length += length_[a] + length_[b] - length_[h];
-        for (const Index g : {a, b})
+        for (const HalfEdge g : {a, b})
             if (s_.twin[g] >= 0 && loop_of_[s_.twin[g]] >= 0 && loop_of_[g] >= 0)
                 glue(g, s_.twin[g]);
-        for (const Index g : {a, b})
+        for (const HalfEdge g : {a, b})
             if (loop_of_[g] >= 0)
                 remember(loop_of_[g], g);
     }
@@ -81,7 +79,7 @@ private:
         loops_.emplace_back();
         return static_cast<Index>(loops_.size()) - 1;
     }
-    void link(Index from, Index to) {
+    void link(HalfEdge from, HalfEdge to) {
         next_[from] = to;
         previous_[to] = from;
     }
@@ -92,16 +90,22 @@ private:
             return;
         loop.shortest = loop.length;
         loop.half_edges.clear();
-        const Index first = h;
+        for_loop(h, [&](HalfEdge k) {
+            if (s_.twin[k] >= 0)
+                loop.half_edges.push_back(k);
+        });
+    }
+
+    template <class Visit>
+    void for_loop(HalfEdge first, Visit visit) const {
+        HalfEdge h = first;
         do {
-            if (length_is_cut(h))
-                loop.half_edges.push_back(h);
+            visit(h);
             h = next_[h];
         } while (h != first);
     }
-    bool length_is_cut(HalfEdge h) const { return s_.twin[h] >= 0; }
 
-    void glue(HalfEdge h, Index t) {
+    void glue(HalfEdge h, HalfEdge t) {
         if (loop_of_[h] != loop_of_[t])
             merge(h, t);
         else if (next_[h] == t || next_[t] == h)
@@ -119,9 +123,9 @@ private:
         loop_of_[h] = -1;
     }
 
-    void zip(HalfEdge h, Index t) {
+    void zip(HalfEdge h, HalfEdge t) {
         const Index loop = loop_of_[h];
-        const Index rest = next_[h] == t ? next_[t] : next_[h];
+        const HalfEdge rest = next_[h] == t ? next_[t] : next_[h];
         remove(h);
         remove(t);
         if (loops_[loop].size > 0)
@@ -130,24 +134,24 @@ private:
 
     // The lists between h and t become loops of their own, the one with fewer edges a new one; the
     // other goes on, with a memory that starts now.
-    void split(HalfEdge h, Index t) {
+    void split(HalfEdge h, HalfEdge t) {
         const Index old = loop_of_[h];
         const HalfEdge after_h = next_[h];
         const HalfEdge after_t = next_[t];
-        const Index before_h = previous_[h];
-        const Index before_t = previous_[t];
+        const HalfEdge before_h = previous_[h];
+        const HalfEdge before_t = previous_[t];
         remove(h);
         remove(t);
         link(before_t, after_h);
         link(before_h, after_t);
-        Index a = after_h;
-        Index b = after_t;
+        HalfEdge a = after_h;
+        HalfEdge b = after_t;
         while (next_[a] != after_h && next_[b] != after_t) {
             a = next_[a];
             b = next_[b];
         }
-        const Index small = next_[a] == after_h ? after_h : after_t;
-        const Index large = small == after_h ? after_t : after_h;
+        const HalfEdge small = next_[a] == after_h ? after_h : after_t;
+        const HalfEdge large = small == after_h ? after_t : after_h;
         const Index fresh = new_loop();
         relabel(small, fresh);
         loops_[old].size -= loops_[fresh].size;
@@ -157,14 +161,12 @@ private:
         remember(old, large);
     }
 
-    void relabel(Index first, Index loop) {
-        HalfEdge h = first;
-        do {
+    void relabel(HalfEdge first, Index loop) {
+        for_loop(first, [&](HalfEdge h) {
             loop_of_[h] = loop;
             loops_[loop].length += length_[h];
             ++loops_[loop].size;
-            h = next_[h];
-        } while (h != first);
+        });
     }
 
     // A handle: the shorter memory is cut.
@@ -180,8 +182,8 @@ private:
         loops_[small] = {};
         const HalfEdge after_h = next_[h];
         const HalfEdge after_t = next_[t];
-        const Index before_h = previous_[h];
-        const Index before_t = previous_[t];
+        const HalfEdge before_h = previous_[h];
+        const HalfEdge before_t = previous_[t];
         const bool h_alone = after_h == h;
         const bool t_alone = after_t == t;
         remove(h);
@@ -198,10 +200,10 @@ private:
     }
 
     const ChartSurface& s_;
-    std::vector<double> length_;  // 3 #f: what it costs to cut there
-    std::vector<Index> next_;     // 3 #f
-    std::vector<Index> previous_; // 3 #f
-    std::vector<Index> loop_of_;  // 3 #f: −1 = not on a wavefront
+    std::vector<double> length_;     // 3 #f: what it costs to cut there
+    std::vector<HalfEdge> next_;     // 3 #f
+    std::vector<HalfEdge> previous_; // 3 #f
+    std::vector<Index> loop_of_;     // 3 #f: −1 = not on a wavefront
     std::vector<std::uint8_t> inside_;
     std::vector<Loop> loops_;
     std::vector<Index> cuts_;
@@ -216,18 +218,20 @@ std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
     // Faces with two neighbours inside shorten the wavefront and come first, then the nearest.
     using Entry = std::tuple<int, double, Index>; // (class, distance, half-edge of the region)
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    std::vector<double> distance(surface.face.size(), 0.0);
+    std::vector<double> distance(surface.faces.size(), 0.0);
     const auto centre = [&](Face f) -> const Vec3& { return mesh.face_centers[surface.face[f]]; };
+    const auto is_inside = [&](HalfEdge h) {
+        return surface.twin[h] >= 0 && fronts.has(surface.across(h));
+    };
     const auto offer = [&](Face f) {
         for (const HalfEdge h : half_edges_of(f)) {
-            const HalfEdge twin = surface.twin[h];
-            if (twin < 0 || fronts.has(twin / 3))
+            const Face g = surface.across(h);
+            if (g < 0 || fronts.has(g))
                 continue;
             int inside = 0;
-            for (Index g = twin - twin % 3; g < twin - twin % 3 + 3; ++g)
-                inside += surface.twin[g] >= 0 && fronts.has(surface.twin[g] / 3) ? 1 : 0;
-            queue.emplace(inside > 1 ? 0 : 1, distance[f] + (centre(f) - centre(twin / 3)).norm(),
-                          h);
+            for (const HalfEdge k : half_edges_of(g))
+                inside += is_inside(k) ? 1 : 0;
+            queue.emplace(inside > 1 ? 0 : 1, distance[f] + (centre(f) - centre(g)).norm(), h);
         }
     };
     fronts.start(0);
@@ -236,7 +240,7 @@ std::vector<Index> cut_handles(const Mesh& mesh, const ChartSurface& surface,
         beat();
         const auto [rank, d, h] = queue.top();
         queue.pop();
-        const Face f = surface.twin[h] / 3;
+        const Face f = surface.across(h);
         if (fronts.has(f))
             continue;
         distance[f] = d;

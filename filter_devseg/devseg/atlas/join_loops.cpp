@@ -1,21 +1,17 @@
 #include "devseg/atlas/join_loops.h"
 
-#include <numeric>
 #include <utility>
 
 #include "devseg/graph/shortest_paths.h"
 
 namespace devseg::atlas {
 
-VertexEdges::VertexEdges(const ChartSurface& surface) : begin_(surface.vertex.size() + 1, 0) {
-    for (const HalfEdge h : surface.all_half_edges())
-        begin_[surface.origin(h) + 1] += surface.twin[h] >= 0 ? 1 : 0;
-    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-    edges_.resize(at(begin_.back()));
-    std::vector<Index> cursor(begin_.begin(), begin_.end() - 1);
-    for (const HalfEdge h : surface.all_half_edges())
-        if (surface.twin[h] >= 0)
-            edges_[cursor[surface.origin(h)]++] = h;
+Buckets<HalfEdge> inner_half_edges(const ChartSurface& surface) {
+    return make_buckets<HalfEdge>(surface.vertex_count(), [&](auto put) {
+        for (const HalfEdge h : surface.all_half_edges())
+            if (surface.twin[h] >= 0)
+                put(surface.origin(h), h);
+    });
 }
 
 double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vector<Index>& loop) {
@@ -30,8 +26,8 @@ namespace {
 class LoopJoiner {
 public:
     LoopJoiner(const Mesh& mesh, const ChartSurface& surface)
-        : mesh_(mesh), s_(surface), edges_(surface), paths_(surface.vertex.size()),
-          open_loop_(surface.vertex.size(), -1) {
+        : mesh_(mesh), s_(surface), edges_(inner_half_edges(surface)),
+          paths_(surface.vertex.size()), open_loop_(surface.vertex.size(), -1) {
         for (std::size_t l = 0; l < s_.loops.size(); ++l)
             for (const HalfEdge h : s_.loops[l])
                 open_loop_[s_.origin(h)] = static_cast<Index>(l);
@@ -52,7 +48,7 @@ public:
                     absorb_loop(loop);
                     return --open > 0;
                 }
-                for (const HalfEdge e : edges_.leaving(v))
+                for (const HalfEdge e : edges_[v])
                     paths_.reach(s_.target(e), distance + mesh_.edge_length(s_.mesh_half_edge(e)),
                                  s_.twin[e]);
                 return true;
@@ -80,7 +76,7 @@ private:
 
     const Mesh& mesh_;
     const ChartSurface& s_;
-    VertexEdges edges_;
+    Buckets<HalfEdge> edges_;
     graph::ShortestPaths<> paths_; // to what is joined; steps leave the vertex, towards it
     std::vector<Index> open_loop_; // #v: loop of the vertex that is not joined yet, −1 = none
     std::vector<Index> cut_;

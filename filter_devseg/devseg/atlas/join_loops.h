@@ -5,7 +5,6 @@
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
-#include "devseg/base/span.h"
 
 namespace devseg::atlas {
 
@@ -15,16 +14,8 @@ namespace devseg::atlas {
 std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
                               const Progress& progress);
 
-/// The half-edges that leave each vertex through the inside of the chart: its ways for cuts.
-class VertexEdges {
-public:
-    explicit VertexEdges(const ChartSurface& surface);
-    Span<HalfEdge> leaving(Vertex v) const { return {edges_, begin_[v], begin_[v + 1]}; }
-
-private:
-    std::vector<Index> begin_; // #v + 1
-    std::vector<HalfEdge> edges_;
-};
+/// The half-edges that leave each vertex through the inside of the chart: the ways for cuts.
+Buckets<HalfEdge> inner_half_edges(const ChartSurface& surface); // #v
 
 double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vector<Index>& loop);
 

@@ -27,7 +27,7 @@ ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv) {
     };
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges()) {
-        const Index opposite = mesh.twin[h];
+        const HalfEdge opposite = mesh.twin[h];
         if (opposite >= 0)
             seam[h] = differ(h, Mesh::next(opposite)) || differ(Mesh::next(h), opposite) ? 1 : 0;
     }
@@ -39,8 +39,9 @@ double layout_scale(const Mesh& mesh, const ChartMap& charts, const CornerUv& uv
     std::vector<double> plane(at(charts.count), 0.0);
     for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.twin[h] < 0 || charts.seam[h] != 0) {
-            surface[charts.chart[h / 3]] += mesh.edge_length(h);
-            plane[charts.chart[h / 3]] += (uv[Mesh::next(h)] - uv[h]).norm();
+            const Index c = charts.chart[face_of(h)];
+            surface[c] += mesh.edge_length(h);
+            plane[c] += (uv[Mesh::next(h)] - uv[h]).norm();
         }
     double least = infinite;
     double most = 0.0;

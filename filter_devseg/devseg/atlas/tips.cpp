@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devseg/atlas/join_loops.h"
+#include "devseg/graph/unions.h"
 
 namespace devseg::atlas {
 
@@ -17,25 +18,23 @@ constexpr double horn_height = 0.5; // least height, share of the loop
 class Parts {
 public:
     Parts(const ChartSurface& surface, const std::vector<double>& distance)
-        : s_(surface), distance_(distance), parent_(surface.face.size(), -1),
-          perimeter_(surface.face.size(), 0.0), tip_(surface.face.size(), -1),
-          found_(surface.face.size(), 0) {}
+        : s_(surface), distance_(distance), sets_(surface.faces.size()),
+          perimeter_(surface.faces.size(), 0.0), tip_(surface.faces.size(), -1),
+          found_(surface.faces.size(), 0) {}
 
     /// Adds a face; lengths are of its edges. Returns the part it belongs to now.
     Index add(Face f, const std::array<double, 3>& lengths) {
-        parent_[f] = f;
         perimeter_[f] = lengths[0] + lengths[1] + lengths[2];
-        tip_[f] = s_.origin(3 * f);
-        for (Index k = 1; k < 3; ++k)
-            if (farther(s_.origin(3 * f + k), tip_[f]))
-                tip_[f] = s_.origin(3 * f + k);
+        for (const Vertex v : s_.faces[f])
+            if (tip_[f] < 0 || farther(v, tip_[f]))
+                tip_[f] = v;
         Index part = f;
-        for (Index k = 0; k < 3; ++k) {
-            const HalfEdge twin = s_.twin[3 * f + k];
-            if (twin < 0 || parent_[twin / 3] < 0)
+        for (const HalfEdge h : half_edges_of(f)) {
+            const Face g = s_.across(h);
+            if (g < 0 || tip_[g] < 0)
                 continue;
-            part = join(part, find(twin / 3));
-            perimeter_[part] -= 2.0 * lengths[k];
+            part = join(part, sets_.find(g));
+            perimeter_[part] -= 2.0 * lengths[corner_of(h)];
         }
         return part;
     }
@@ -48,17 +47,12 @@ private:
     bool farther(Index a, Index b) const {
         return distance_[a] != distance_[b] ? distance_[a] > distance_[b] : a < b;
     }
-    Index find(Face f) {
-        while (parent_[f] != f)
-            f = parent_[f] = parent_[parent_[f]];
-        return f;
-    }
     Index join(Index a, Index b) {
         if (a == b)
             return a;
         if (farther(tip_[b], tip_[a]))
             std::swap(a, b);
-        parent_[b] = a;
+        sets_.join(a, b);
         perimeter_[a] += perimeter_[b];
         // The far end of both was far enough for a loop that only one of them has: it stays taken.
         if (tip_[a] == tip_[b])
@@ -68,9 +62,9 @@ private:
 
     const ChartSurface& s_;
     const std::vector<double>& distance_;
-    std::vector<Index> parent_;
+    graph::Unions sets_; // of faces
     std::vector<double> perimeter_;
-    std::vector<Index> tip_; // the farthest vertex
+    std::vector<Index> tip_; // the farthest vertex, −1 before a face is added
     std::vector<std::uint8_t> found_;
 };
 
@@ -80,11 +74,10 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
                              const std::vector<double>& distance, const TipRule& rule,
                              const Progress& progress) {
     Heartbeat beat(progress);
-    std::vector<double> level(surface.face.size());
-    for (const Face f : surface.all_faces())
-        level[f] = std::min({distance[surface.origin(3 * f)], distance[surface.origin(3 * f + 1)],
-                             distance[surface.origin(3 * f + 2)]});
-    std::vector<Index> order(surface.face.size());
+    std::vector<double> level;
+    for (const auto& [a, b, c] : surface.faces)
+        level.push_back(std::min({distance[a], distance[b], distance[c]}));
+    std::vector<Index> order(surface.faces.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(),
               [&](Index a, Index b) { return level[a] != level[b] ? level[a] > level[b] : a < b; });
@@ -96,8 +89,8 @@ std::vector<Index> find_tips(const Mesh& mesh, const ChartSurface& surface,
     for (const Face f : order) {
         beat();
         std::array<double, 3> lengths{};
-        for (Index k = 0; k < 3; ++k)
-            lengths[k] = mesh.edge_length(surface.mesh_half_edge(3 * f + k));
+        for (const HalfEdge h : half_edges_of(f))
+            lengths[corner_of(h)] = mesh.edge_length(surface.mesh_half_edge(h));
         const Index part = parts.add(f, lengths);
         const Index tip = parts.tip(part);
         const double loop = parts.perimeter(part);

@@ -105,7 +105,7 @@ LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& patter
             const Index source = surface.face[f];
             Triangle corners{};
             for (Index k = 0; k < 3; ++k) {
-                corners[k] = first + surface.corners[f][k];
+                corners[k] = first + surface.faces[f][k];
                 const Vec2& position = pattern.corner_place[3 * source + k];
                 layer.geometry.points[corners[k]] = Vec3(position.x(), position.y(), 0.0);
             }

@@ -14,7 +14,7 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
                     const pack::PackOptions& options, double scale_to_side, Progress& progress) {
     std::vector<pack::PackItem> items;
     for (const flatten::FlatChart& chart : charts)
-        items.push_back({&chart.surface.corners, &chart.uv});
+        items.push_back({&chart.surface.faces, &chart.uv});
     const pack::PackResult packed = pack::pack_charts(items, options, progress);
     const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
     if (!(scale * packed.side < std::numeric_limits<float>::max()))
@@ -26,7 +26,7 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
         flatten::FlatChart& chart = charts[c];
         for (Vec2& p : chart.uv)
             p = scale * packed.placements[c](p);
-        layout.unsettled += flatten::snap_to_single(chart.surface.corners, chart.uv);
+        layout.unsettled += flatten::snap_to_single(chart.surface.faces, chart.uv);
         for (const HalfEdge h : chart.surface.all_half_edges())
             layout.uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     }

@@ -52,18 +52,17 @@ Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> whi
 // chart of its first face had, unless that one was cut. Returns the numbers of those without a map.
 std::vector<Index> take_over(const Mesh& mesh, atlas::ChartMap charts, const Cuts& cuts,
                              FlattenResult& result) {
-    const atlas::ChartFaces group = atlas::group_faces(charts);
+    const Buckets<Index> group = atlas::group_faces(charts);
     std::vector<FlatChart> flat(at(charts.count));
     std::vector<Index> open;
     for (Index c = 0; c < charts.count; ++c) {
-        const auto first = group.faces.begin() + group.begin[c];
-        const Index old = result.charts.chart[*first];
+        const Index old = result.charts.chart[*group[c].begin()];
         if (cuts[old].empty()) {
             flat[c] = std::move(result.flat[old]);
             continue;
         }
-        const auto end = group.faces.begin() + group.begin[at(c) + 1];
-        flat[c].surface = atlas::extract_surface(mesh, {first, end}, charts.seam);
+        flat[c].surface =
+            atlas::extract_surface(mesh, {group[c].begin(), group[c].end()}, charts.seam);
         flat[c].cut_off = true;
         open.push_back(c);
     }

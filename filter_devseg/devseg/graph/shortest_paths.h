@@ -5,7 +5,6 @@
 //   doi:10.1007/BF01386390
 #pragma once
 
-#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -31,12 +30,11 @@ namespace devseg::graph {
 template <class Length = double>
 class ShortestPaths {
 public:
-    static constexpr Length unreached = std::numeric_limits<Length>::infinity();
-
-    std::vector<Length> distance; // #nodes, `unreached` where nothing leads
+    std::vector<Length> distance; // #nodes, infinite where nothing leads
     std::vector<Index> step; // #nodes: what came with the last step of the path; −1 = nothing
 
-    explicit ShortestPaths(std::size_t nodes) : distance(nodes, unreached), step(nodes, -1) {}
+    explicit ShortestPaths(std::size_t nodes)
+        : distance(nodes, static_cast<Length>(infinite)), step(nodes, -1) {}
 
     /// A place where paths begin; more may come between two runs, and during one.
     void add_source(Index node) {
@@ -78,7 +76,7 @@ public:
     /// Forgets all paths, in the time that it took to find them.
     void clear() {
         for (const Index node : touched_) {
-            distance[node] = unreached;
+            distance[node] = static_cast<Length>(infinite);
             step[node] = -1;
         }
         touched_.clear();
@@ -94,7 +92,7 @@ private:
         }
     };
     void put(Index node, Length through) {
-        if (distance[node] == unreached)
+        if (distance[node] == static_cast<Length>(infinite))
             touched_.push_back(node);
         distance[node] = through;
         queue_.push({through, node});

@@ -5,9 +5,8 @@ namespace devseg::mesh {
 std::vector<double> angle_defects(const Mesh& mesh) {
     std::vector<double> defect(mesh.points.size(), 2.0 * pi);
     for (const HalfEdge h : mesh.all_half_edges())
-        defect[mesh.origin(h)] -=
-            corner_angle(mesh.points[mesh.origin(h)], mesh.points[mesh.target(h)],
-                         mesh.points[mesh.origin(Mesh::previous(h))]);
+        defect[mesh.origin(h)] -= corner_angle(
+            mesh.points[mesh.origin(h)], mesh.points[mesh.target(h)], mesh.points[mesh.apex(h)]);
     const std::vector<std::uint8_t> boundary = boundary_vertices(mesh);
     for (std::size_t v = 0; v < defect.size(); ++v)
         if (boundary[v] != 0)

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double golden_ratio = 0.61803398874989485; // multiples of it spread evenly over 0 … 1
 constexpr double unevenness = 0.2;
-constexpr double least_area = 1e-200; // internal units: below, sums of squares are no numbers
 constexpr double area_loss = 0.01;
 constexpr double grid = 0x1p-24; // units of the frame
 
@@ -28,7 +27,7 @@ CanonicalFrame canonical_frame(const Mesh& mesh, const Progress& progress) {
         frame.center += weight(mesh, f) * mesh.face_centers[f];
         total += weight(mesh, f);
     }
-    if (!(total > least_area))
+    if (!(total > 0.0))
         return {};
     frame.center /= total;
     frame.unit = std::sqrt(mesh.total_area);

@@ -157,7 +157,7 @@ private:
         std::size_t count = 0;
         Ring around_v;
         const bool inner = gather_ring(v, around_v);
-        visit_star(s_.twin, leaving_[v], [&](HalfEdge h) {
+        visit_star(s_, leaving_[v], [&](HalfEdge h) {
             if (count == candidates.size() || (!inner && s_.twin[h] >= 0))
                 return;
             const Vertex w = s_.target(h);
@@ -215,7 +215,7 @@ private:
         return common == (twin >= 0 ? 2 : 1);
     }
     bool gather_ring(Vertex u, Ring& ring) const {
-        return visit_star(s_.twin, leaving_[u], [&](HalfEdge k) {
+        return visit_star(s_, leaving_[u], [&](HalfEdge k) {
             ring.add(s_.target(k));
             if (s_.twin[Mesh::previous(k)] < 0)
                 ring.add(s_.apex(k));
@@ -227,7 +227,7 @@ private:
         if (s_.twin[Mesh::next(h)] < 0 && s_.twin[back] < 0)
             return false;
         Index faces = 0;
-        const bool inner = visit_star(s_.twin, back, [&](Index) { ++faces; });
+        const bool inner = visit_star(s_, back, [&](Index) { ++faces; });
         return !inner || faces > 3;
     }
     bool keeps_shape(HalfEdge h) const {
@@ -236,7 +236,7 @@ private:
         const Face face = face_of(h);
         const Face other = s_.across(h);
         bool good = true;
-        visit_star(s_.twin, h, [&](HalfEdge k) {
+        visit_star(s_, h, [&](HalfEdge k) {
             if (!good || face_of(k) == face || face_of(k) == other)
                 return;
             const Vec3& a = points_[s_.target(k)];
@@ -260,7 +260,7 @@ private:
             return false;
         }
         quadric_[w].add(quadric_[v]);
-        visit_star(s_.twin, h, [&](HalfEdge k) {
+        visit_star(s_, h, [&](HalfEdge k) {
             touch(s_.target(k));
             touch(s_.apex(k));
         });
@@ -273,7 +273,7 @@ private:
     void collapse(HalfEdge h) {
         const Vertex w = s_.target(h);
         const HalfEdge twin = s_.twin[h];
-        visit_star(s_.twin, h, [&](HalfEdge k) {
+        visit_star(s_, h, [&](HalfEdge k) {
             if (face_of(k) != face_of(h) && face_of(k) != s_.across(h))
                 s_.faces[face_of(k)][corner_of(k)] = w;
         });
@@ -313,7 +313,7 @@ private:
 
 CoarseMesh coarsen_with(const Mesh& fine, Index target_faces, const Progress& progress,
                         Progress* shared) {
-    CoarseSurface surface{fine.faces, fine.twin, {}, {}, {}, fine.face_count()};
+    CoarseSurface surface{{fine.faces, fine.twin}, {}, {}, {}, fine.face_count()};
     surface.alive.assign(fine.faces.size(), 1);
     if (surface.alive_faces > target_faces) {
         Coarsener coarsener(fine.points, surface, shared);

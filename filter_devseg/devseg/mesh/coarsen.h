@@ -17,22 +17,11 @@ namespace devseg::mesh {
 /// A surface with a part of its vertices removed. A collapse takes the two faces beside an edge out
 /// (one on a boundary) and gives the other faces of the removed vertex to the kept one, so that
 /// faces and half-edges keep their numbers, and a removed face keeps the corners and twins it had.
-struct CoarseSurface {
-    std::vector<Triangle> faces;     // #F
-    std::vector<HalfEdge> twin;      // 3 #F
+struct CoarseSurface : Connectivity {
     std::vector<std::uint8_t> alive; // #F
     std::vector<Index> collapses;    // half-edges, removed → kept vertex, in their order
     std::vector<std::size_t> rounds; // number of collapses at the end of each round
     Index alive_faces = 0;
-
-    Range<FaceKind> all_faces() const { return {0, static_cast<Index>(faces.size())}; }
-    Range<HalfEdgeKind> all_half_edges() const { return {0, static_cast<Index>(twin.size())}; }
-    Vertex origin(HalfEdge h) const { return faces[face_of(h)][corner_of(h)]; }
-    Vertex target(HalfEdge h) const { return origin(Mesh::next(h)); }
-    /// The third corner of the face.
-    Vertex apex(HalfEdge h) const { return origin(Mesh::previous(h)); }
-    /// The face on the other side, −1 on a boundary.
-    Face across(HalfEdge h) const { return twin[h] < 0 ? Face() : face_of(twin[h]); }
 };
 
 /// A coarse version of a mesh, and the way back.

@@ -1,12 +1,13 @@
 #include "devseg/mesh/input_gate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
+#include "devseg/base/buckets.h"
 #include "devseg/base/errors.h"
 #include "devseg/mesh/weld.h"
 
@@ -84,30 +85,15 @@ Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
     return centre;
 }
 
-// Items sorted into buckets 0 … bucket_count − 1 (counting sort): bucket b is [begin[b],
-// begin[b+1]).
-template <class Item>
-struct Buckets {
-    std::vector<Index> begin;
-    std::vector<Item> items;
-};
-
-template <class Item, class BucketOf, class MakeItem>
-Buckets<Item> sort_into_buckets(Index item_count, Index bucket_count, BucketOf bucket_of,
-                                MakeItem make_item) {
-    Buckets<Item> result;
-    result.begin.assign(at(bucket_count) + 1, 0);
-    for (Index i = 0; i < item_count; ++i)
-        ++result.begin[at(bucket_of(i)) + 1];
-    std::partial_sum(result.begin.begin(), result.begin.end(), result.begin.begin());
-    result.items.resize(at(item_count));
-    std::vector<Index> cursor(result.begin.begin(), result.begin.end() - 1);
-    for (Index i = 0; i < item_count; ++i)
-        result.items[cursor[bucket_of(i)]++] = make_item(i);
-    for (Index b = 0; b < bucket_count; ++b)
-        std::sort(result.items.begin() + result.begin[b],
-                  result.items.begin() + result.begin[at(b) + 1]);
-    return result;
+// Visits the items of each bucket, sorted.
+template <class Item, class Visit>
+void for_sorted(Buckets<Item> buckets, Visit visit) {
+    for (Index b = 0; b < buckets.count(); ++b) {
+        const auto first = buckets.items.begin() + buckets.begin[b];
+        const auto last = buckets.items.begin() + buckets.begin[at(b) + 1];
+        std::sort(first, last);
+        visit(first, last);
+    }
 }
 
 struct FaceSelection {
@@ -118,38 +104,33 @@ struct FaceSelection {
 };
 
 FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vertex_count) {
-    const Index count = static_cast<Index>(faces.size());
+    const Range<FaceKind> all(0, static_cast<Index>(faces.size()));
     const auto sorted = [&](Face f) {
         Triangle t = faces[f];
         std::sort(t.begin(), t.end());
         return t;
     };
-    struct Key {
-        Index middle, largest, face;
-        bool operator<(const Key& o) const {
-            return std::tie(middle, largest, face) < std::tie(o.middle, o.largest, o.face);
-        }
-    };
-    const auto buckets = sort_into_buckets<Key>(
-        count, vertex_count, [&](Face f) { return sorted(f)[0]; },
-        [&](Face f) {
-            const Triangle t = sorted(f);
-            return Key{t[1], t[2], f};
-        });
-
+    using Key = std::array<Index, 3>; // middle vertex, largest vertex, face
     FaceSelection result;
-    result.duplicate_of.assign(at(count), -1);
-    for (std::size_t b = 0; b + 1 < buckets.begin.size(); ++b)
-        for (Index i = buckets.begin[b] + 1; i < buckets.begin[b + 1]; ++i) {
-            const Key& before = buckets.items[i - 1];
-            const Key& key = buckets.items[i];
-            if (key.middle != before.middle || key.largest != before.largest)
-                continue;
-            const Index first = result.duplicate_of[before.face];
-            result.duplicate_of[key.face] = first >= 0 ? first : before.face;
-        }
-    result.kept.reserve(at(count));
-    for (Face f = 0; f < count; ++f) {
+    result.duplicate_of.assign(faces.size(), -1);
+    for_sorted(make_buckets<Key>(vertex_count,
+                                 [&](auto put) {
+                                     for (const Face f : all) {
+                                         const Triangle t = sorted(f);
+                                         put(t[0], Key{t[1], t[2], f});
+                                     }
+                                 }),
+               [&](auto key, auto last) {
+                   if (key == last)
+                       return;
+                   for (auto before = key++; key != last; before = key++)
+                       if ((*key)[0] == (*before)[0] && (*key)[1] == (*before)[1]) {
+                           const Index first = result.duplicate_of[(*before)[2]];
+                           result.duplicate_of[(*key)[2]] = first >= 0 ? first : (*before)[2];
+                       }
+               });
+    result.kept.reserve(faces.size());
+    for (const Face f : all) {
         const Triangle t = sorted(f);
         if (t[0] == t[1] || t[1] == t[2]) {
             result.duplicate_of[f] = -1;
@@ -164,25 +145,19 @@ FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vert
 }
 
 // All half-edges of each edge that has exactly two faces, whatever their directions.
-std::vector<Index> neighbours_regardless_of_direction(const std::vector<Triangle>& faces,
-                                                      Index vertex_count,
+std::vector<Index> neighbours_regardless_of_direction(const Mesh& mesh,
                                                       std::vector<std::uint8_t>& cut,
                                                       Index& crowded_edges) {
-    std::vector<Index> neighbour(3 * faces.size(), -1);
-    const auto ends = [&](HalfEdge h) {
-        const Triangle& t = faces[h / 3];
-        return std::minmax({t[h % 3], t[(h % 3 + 1) % 3]});
-    };
+    std::vector<Index> neighbour(cut.size(), -1);
     using Use = std::pair<Index, Index>; // (larger vertex, half-edge)
-    const auto buckets = sort_into_buckets<Use>(
-        static_cast<Index>(neighbour.size()), vertex_count,
-        [&](HalfEdge h) { return ends(h).first; },
-        [&](HalfEdge h) { return Use(ends(h).second, h); });
-    for (Vertex v = 0; v < vertex_count; ++v) {
-        const auto first = buckets.items.begin() + buckets.begin[v];
-        const auto last = buckets.items.begin() + buckets.begin[at(v) + 1];
-        for (auto run = first; run != last;) {
-            auto end = run;
+    const auto put_all = [&](auto put) {
+        for (const HalfEdge h : mesh.all_half_edges()) {
+            const auto [low, high] = std::minmax({mesh.origin(h), mesh.target(h)});
+            put(low, Use(high, h));
+        }
+    };
+    for_sorted(make_buckets<Use>(mesh.vertex_count(), put_all), [&](auto run, auto last) {
+        for (auto end = run; run != last; run = end) {
             while (end != last && end->first == run->first)
                 ++end;
             if (end - run == 2) {
@@ -193,9 +168,8 @@ std::vector<Index> neighbours_regardless_of_direction(const std::vector<Triangle
                 for (auto use = run; use != end; ++use)
                     cut[use->second] = 1;
             }
-            run = end;
         }
-    }
+    });
     return neighbour;
 }
 
@@ -206,14 +180,12 @@ struct Orientation {
 };
 
 // Breadth-first over each component; the orientation that most faces had is kept.
-Orientation orient(const std::vector<Triangle>& faces, std::vector<Index>& neighbour,
+Orientation orient(const Mesh& mesh, std::vector<Index>& neighbour,
                    std::vector<std::uint8_t>& cut) {
-    const Index count = static_cast<Index>(faces.size());
-    const auto start_vertex = [&](HalfEdge h) { return faces[h / 3][h % 3]; };
     Orientation result;
-    result.flipped.assign(at(count), 2); // 2 = not reached yet
+    result.flipped.assign(mesh.faces.size(), 2); // 2 = not reached yet
     std::vector<Index> component;
-    for (Index seed = 0; seed < count; ++seed) {
+    for (const Face seed : mesh.all_faces()) {
         if (result.flipped[seed] != 2)
             continue;
         component.assign(1, seed);
@@ -223,16 +195,16 @@ Orientation orient(const std::vector<Triangle>& faces, std::vector<Index>& neigh
             const Face f = component[i];
             turned += result.flipped[f];
             for (const HalfEdge h : half_edges_of(f)) {
-                const Index opposite = neighbour[h];
+                const HalfEdge opposite = neighbour[h];
                 if (opposite < 0)
                     continue;
                 // Two faces that run along their edge in the same direction disagree.
-                const bool disagree = start_vertex(h) == start_vertex(opposite);
+                const bool disagree = mesh.origin(h) == mesh.origin(opposite);
                 const std::uint8_t wanted = result.flipped[f] ^ (disagree ? 1 : 0);
-                std::uint8_t& state = result.flipped[opposite / 3];
+                std::uint8_t& state = result.flipped[face_of(opposite)];
                 if (state == 2) {
                     state = wanted;
-                    component.push_back(opposite / 3);
+                    component.push_back(face_of(opposite));
                 } else if (state != wanted) {
                     ++result.one_sided_edges;
                     cut[h] = cut[opposite] = 1;
@@ -253,12 +225,11 @@ Orientation orient(const std::vector<Triangle>& faces, std::vector<Index>& neigh
 
 // Gives every fan of faces around a vertex a vertex of its own. Returns how many were added.
 Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
-    const Index corners = mesh.half_edge_count();
-    std::vector<Index> corner_vertex(at(corners), -1);
+    std::vector<std::uint8_t> done(mesh.twin.size(), 0); // corner h is the origin of half-edge h
     std::vector<std::uint8_t> used(mesh.points.size(), 0);
     Index added = 0;
-    for (Index start = 0; start < corners; ++start) {
-        if (corner_vertex[start] >= 0)
+    for (const HalfEdge start : mesh.all_half_edges()) {
+        if (done[start] != 0)
             continue;
         Vertex v = mesh.origin(start);
         if (used[v] != 0) {
@@ -269,19 +240,11 @@ Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
         } else {
             used[v] = 1;
         }
-        // Corner h of a face is the origin of half-edge h. Around the vertex: across the edge
-        // that ends here, and across the edge that starts here.
-        for (HalfEdge h = start; h >= 0 && corner_vertex[h] < 0; h = mesh.twin[Mesh::previous(h)])
-            corner_vertex[h] = v;
-        for (Index back = mesh.twin[start]; back >= 0; back = mesh.twin[Mesh::next(back)]) {
-            const HalfEdge h = Mesh::next(back);
-            if (corner_vertex[h] >= 0)
-                break;
-            corner_vertex[h] = v;
-        }
+        visit_star(mesh, start, [&](HalfEdge h) {
+            mesh.faces[face_of(h)][corner_of(h)] = v;
+            done[h] = 1;
+        });
     }
-    for (HalfEdge h = 0; h < corners; ++h)
-        mesh.faces[h / 3][h % 3] = corner_vertex[h];
     return added;
 }
 
@@ -358,10 +321,10 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
     progress.check();
     gated.cut.assign(3 * mesh.faces.size(), 0);
     Index crowded_edges = 0;
-    std::vector<Index> neighbour = neighbours_regardless_of_direction(
-        mesh.faces, mesh.vertex_count(), gated.cut, crowded_edges);
+    std::vector<Index> neighbour =
+        neighbours_regardless_of_direction(mesh, gated.cut, crowded_edges);
     progress.check();
-    Orientation orientation = orient(mesh.faces, neighbour, gated.cut);
+    Orientation orientation = orient(mesh, neighbour, gated.cut);
     gated.flipped = std::move(orientation.flipped);
 
     progress.check();

@@ -14,11 +14,9 @@ void spread_normals(Mesh& mesh, std::vector<Index> missing) {
         std::vector<Index> still_missing;
         for (const Face f : missing) {
             Vec3 sum = Vec3::Zero();
-            for (const HalfEdge h : half_edges_of(f)) {
-                const Index opposite = mesh.twin[h];
-                if (opposite >= 0)
-                    sum += mesh.face_normals[opposite / 3];
-            }
+            for (const HalfEdge h : half_edges_of(f))
+                if (mesh.twin[h] >= 0)
+                    sum += mesh.face_normals[mesh.across(h)];
             if (sum.squaredNorm() > 0.0)
                 found.emplace_back(f, sum.normalized());
             else
@@ -43,11 +41,11 @@ void compute_face_geometry(Mesh& mesh) {
     mesh.face_centers.resize(count);
     mesh.total_area = 0.0;
     std::vector<Index> without_normal;
-    for (std::size_t f = 0; f < count; ++f) {
-        const Triangle& t = mesh.faces[f];
-        const Vec3& a = mesh.points[t[0]];
-        const Vec3& b = mesh.points[t[1]];
-        const Vec3& c = mesh.points[t[2]];
+    for (const Face f : mesh.all_faces()) {
+        const auto [v, w, u] = mesh.faces[f];
+        const Vec3& a = mesh.points[v];
+        const Vec3& b = mesh.points[w];
+        const Vec3& c = mesh.points[u];
         const Vec3 normal = (b - a).cross(c - a);
         const double length = normal.norm();
         mesh.face_areas[f] = 0.5 * length;
@@ -57,7 +55,7 @@ void compute_face_geometry(Mesh& mesh) {
             mesh.face_normals[f] = normal / length;
         } else {
             mesh.face_normals[f].setZero();
-            without_normal.push_back(static_cast<Index>(f));
+            without_normal.push_back(f);
         }
     }
     spread_normals(mesh, std::move(without_normal));

@@ -22,10 +22,36 @@
 
 namespace devseg::mesh {
 
-struct Mesh {
+/// Triangles, and which lie side by side.
+struct Connectivity {
+    std::vector<Triangle> faces; // #F
+    std::vector<HalfEdge> twin;  // 3 #F: the opposite half-edge, −1 on a boundary
+
+    Index face_count() const { return static_cast<Index>(faces.size()); }
+    Index half_edge_count() const { return 3 * face_count(); }
+    Range<FaceKind> all_faces() const { return {0, face_count()}; }
+    Range<HalfEdgeKind> all_half_edges() const { return {0, half_edge_count()}; }
+
+    Vertex origin(HalfEdge h) const { return faces[face_of(h)][corner_of(h)]; }
+    Vertex target(HalfEdge h) const { return origin(next(h)); }
+    /// The third corner of the face.
+    Vertex apex(HalfEdge h) const { return origin(previous(h)); }
+    /// The face on the other side, −1 on a boundary.
+    Face across(HalfEdge h) const { return twin[h] < 0 ? Face() : face_of(twin[h]); }
+    /// The boundary half-edge that goes on from the target of h.
+    HalfEdge next_on_boundary(HalfEdge h) const {
+        h = next(h);
+        while (twin[h] >= 0)
+            h = next(twin[h]);
+        return h;
+    }
+
+    static HalfEdge next(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
+    static HalfEdge previous(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
+};
+
+struct Mesh : Connectivity {
     std::vector<Vec3> points;       // #V, in internal units
-    std::vector<Triangle> faces;    // #F
-    std::vector<HalfEdge> twin;     // 3 #F: the opposite half-edge, −1 on a boundary
     std::vector<double> face_areas; // #F, internal units squared
     std::vector<Vec3> face_normals; // #F, unit; faces without area take a neighbour's normal
     std::vector<Vec3> face_centers; // #F, centroids
@@ -33,18 +59,8 @@ struct Mesh {
     double unit_length = 1.0; // model units per internal unit
 
     Index vertex_count() const { return static_cast<Index>(points.size()); }
-    Index face_count() const { return static_cast<Index>(faces.size()); }
-    Index half_edge_count() const { return 3 * face_count(); }
     Range<VertexKind> all_vertices() const { return {0, vertex_count()}; }
-    Range<FaceKind> all_faces() const { return {0, face_count()}; }
-    Range<HalfEdgeKind> all_half_edges() const { return {0, half_edge_count()}; }
-
-    Vertex origin(HalfEdge h) const { return faces[face_of(h)][corner_of(h)]; }
-    Vertex target(HalfEdge h) const { return origin(next(h)); }
     double edge_length(HalfEdge h) const { return (points[target(h)] - points[origin(h)]).norm(); }
-
-    static HalfEdge next(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
-    static HalfEdge previous(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
 };
 
 /// Fills areas, normals, centres and the total area from points and faces.
@@ -58,7 +74,7 @@ struct FaceComponents {
 };
 
 template <class Connected>
-FaceComponents face_components(const Mesh& mesh, Connected connected) {
+FaceComponents face_components(const Connectivity& mesh, Connected connected) {
     FaceComponents result;
     result.label.assign(mesh.faces.size(), -1);
     std::vector<Index> stack;
@@ -71,11 +87,11 @@ FaceComponents face_components(const Mesh& mesh, Connected connected) {
             const Face f = stack.back();
             stack.pop_back();
             for (const HalfEdge h : half_edges_of(f)) {
-                const Index opposite = mesh.twin[h];
-                if (opposite < 0 || result.label[opposite / 3] >= 0 || !connected(h))
+                const Face g = mesh.across(h);
+                if (g < 0 || result.label[g] >= 0 || !connected(h))
                     continue;
-                result.label[opposite / 3] = result.count;
-                stack.push_back(opposite / 3);
+                result.label[g] = result.count;
+                stack.push_back(g);
             }
         }
         ++result.count;
@@ -94,12 +110,12 @@ bool visit_star(const std::vector<HalfEdge>& twin, HalfEdge half_edge, Visit vis
     } while (leaving >= 0 && leaving != half_edge);
     if (leaving == half_edge)
         return true;
-    for (Index back = twin[half_edge]; back >= 0; back = twin[Mesh::next(back)])
+    for (HalfEdge back = twin[half_edge]; back >= 0; back = twin[Mesh::next(back)])
         visit(Mesh::next(back));
     return false;
 }
 template <class Visit>
-bool visit_star(const Mesh& mesh, HalfEdge half_edge, Visit visit) {
+bool visit_star(const Connectivity& mesh, HalfEdge half_edge, Visit visit) {
     return visit_star(mesh.twin, half_edge, visit);
 }
 

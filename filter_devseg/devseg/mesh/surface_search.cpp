@@ -7,7 +7,7 @@ namespace devseg::mesh {
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
     std::vector<Vec3> normal(mesh.points.size(), Vec3::Zero());
     for (const HalfEdge h : mesh.all_half_edges())
-        normal[mesh.origin(h)] += mesh.face_areas[h / 3] * mesh.face_normals[h / 3];
+        normal[mesh.origin(h)] += mesh.face_areas[face_of(h)] * mesh.face_normals[face_of(h)];
     for (Vec3& n : normal)
         n = n.stableNormalized();
     return normal;

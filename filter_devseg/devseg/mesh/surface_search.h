@@ -35,13 +35,14 @@ public:
     std::pair<Index, Vec3> on_faces(const Vec3& p, Vertex v, Accept accept) const {
         std::pair<Index, Vec3> best{-1, mesh_.points[v]};
         visit_star(mesh_, leaving_[v], [&](HalfEdge h) {
-            if (!accept(h / 3))
+            const Face f = face_of(h);
+            if (!accept(f))
                 return;
-            const Triangle& t = mesh_.faces[h / 3];
+            const auto [a, b, c] = mesh_.faces[f];
             const Vec3 q =
-                nearest_in_triangle(p, mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]);
+                nearest_in_triangle(p, mesh_.points[a], mesh_.points[b], mesh_.points[c]);
             if (best.first < 0 || (q - p).squaredNorm() < (best.second - p).squaredNorm())
-                best = {h / 3, q};
+                best = {f, q};
         });
         return best;
     }

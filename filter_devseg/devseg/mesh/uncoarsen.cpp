@@ -17,7 +17,7 @@ HalfEdge undo_collapse(CoarseSurface& s) {
                 s.twin[s.twin[k]] = k;
     }
     const Vertex v = s.origin(h);
-    visit_star(s.twin, h, [&](HalfEdge k) { s.faces[face_of(k)][corner_of(k)] = v; });
+    visit_star(s, h, [&](HalfEdge k) { s.faces[face_of(k)][corner_of(k)] = v; });
     return h;
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
+
+#include "devseg/graph/unions.h"
 
 namespace devseg::mesh {
 
@@ -38,27 +39,6 @@ std::vector<Edge> border_edges(const RawMesh& raw) {
     return border;
 }
 
-// Representatives of vertices that are one.
-class Unions {
-public:
-    explicit Unions(std::size_t size) : parent_(size) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-    }
-    Index find(Index i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(Index i, Index j) {
-        const Index a = find(i);
-        const Index b = find(j);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<Index> parent_;
-};
-
 // Faces with three different vertices that lie on those of another face.
 std::size_t count_duplicates(const std::vector<Triangle>& faces) {
     std::vector<Triangle> sorted;
@@ -83,17 +63,14 @@ Index weld_soup(const RawMesh& raw, std::vector<Triangle>& faces) {
                 return 0;
             corners.push_back(v);
         }
-    const auto key = [&](Vertex v) {
-        const Vec3& p = raw.points[v];
-        return std::make_tuple(p.x(), p.y(), p.z());
-    };
+    const auto place = [&](Vertex v) -> const Vec3& { return raw.points[v]; };
     std::sort(corners.begin(), corners.end(), [&](Index a, Index b) {
-        return std::make_pair(key(a), a) < std::make_pair(key(b), b);
+        return place(a) == place(b) ? a < b : before(place(a), place(b));
     });
     std::vector<Index> first(raw.points.size(), -1);
     Index less = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const bool same = i > 0 && key(corners[i]) == key(corners[i - 1]);
+        const bool same = i > 0 && place(corners[i]) == place(corners[i - 1]);
         first[corners[i]] = same ? first[corners[i - 1]] : corners[i];
         less += same ? 1 : 0;
     }
@@ -116,19 +93,23 @@ WeldedMesh weld_borders(const RawMesh& raw) {
     };
     std::stable_sort(edges.begin(), edges.end(), less);
     WeldedMesh welded{raw, 0};
-    Unions unions(raw.points.size());
+    graph::Unions one(raw.points.size()); // vertices that are one: the first stands for all
+    const auto join = [&](Vertex v, Vertex w) {
+        const auto [first, second] = std::minmax({one.find(v), one.find(w)});
+        one.join(first, second);
+    };
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
         while (j < edges.size() && !less(edges[i], edges[j]))
             ++j;
         if (j != i + 2 || place(edges[i].from) == place(edges[i].to))
             continue;
-        unions.join(edges[i].from, edges[i + 1].from);
-        unions.join(edges[i].to, edges[i + 1].to);
+        join(edges[i].from, edges[i + 1].from);
+        join(edges[i].to, edges[i + 1].to);
         ++welded.edges;
     }
     for (Triangle& t : welded.mesh.faces)
         for (Index& v : t)
-            v = unions.find(v);
+            v = one.find(v);
     if (welded.edges > 0 && count_duplicates(welded.mesh.faces) > count_duplicates(raw.faces))
         return {raw, 0};
     return welded;

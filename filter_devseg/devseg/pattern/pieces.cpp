@@ -331,11 +331,10 @@ std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
 void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
                      const PatternOptions& options, double mm, Pattern& pattern,
                      Progress& progress) {
-    const atlas::ChartFaces groups = atlas::group_faces(charts);
+    const Buckets<Index> groups = atlas::group_faces(charts);
     const auto faces_of = [&](const PatternPiece& piece) {
-        const std::size_t c = at(piece.chart);
-        return std::vector<Index>(groups.faces.begin() + groups.begin[c],
-                                  groups.faces.begin() + groups.begin[c + 1]);
+        const Span<Index> faces = groups[piece.chart];
+        return std::vector<Index>(faces.begin(), faces.end());
     };
     const double count = static_cast<double>(pattern.pieces.size());
     pattern.face_piece.assign(mesh.faces.size(), -1);

@@ -354,7 +354,7 @@ TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
     for (const flatten::FlatChart& chart : flat.flat) {
         EXPECT_TRUE(chart.developed);
         EXPECT_FALSE(chart.pushed);
-        for (const Triangle& t : chart.surface.corners) {
+        for (const Triangle& t : chart.surface.faces) {
             const Vec2 a = chart.uv[t[1]] - chart.uv[t[0]];
             const Vec2 b = chart.uv[t[2]] - chart.uv[t[0]];
             area += 0.5 * (a.x() * b.y() - a.y() * b.x());

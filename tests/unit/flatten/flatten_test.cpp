@@ -38,12 +38,12 @@ atlas::ChartMap segmented(const Mesh& mesh, int number) {
 // Pairs of faces of one chart that share more than a sliver of area, by clipping.
 Index overlaps(const FlatChart& chart) {
     const auto corners = [&](std::size_t f) {
-        const Triangle& t = chart.surface.corners[f];
+        const Triangle& t = chart.surface.faces[f];
         return checks::Corners{chart.uv[t[0]], chart.uv[t[1]], chart.uv[t[2]]};
     };
     Index count = 0;
-    for (std::size_t f = 0; f < chart.surface.corners.size(); ++f)
-        for (std::size_t g = f + 1; g < chart.surface.corners.size(); ++g)
+    for (std::size_t f = 0; f < chart.surface.faces.size(); ++f)
+        for (std::size_t g = f + 1; g < chart.surface.faces.size(); ++g)
             count += checks::common_area(corners(f), corners(g)) > 1e-8 ? 1 : 0;
     return count;
 }
@@ -66,10 +66,10 @@ void expect_promises(const Mesh& mesh, const atlas::ChartMap& charts, const Flat
         for (const Face f : chart.surface.all_faces()) {
             ASSERT_EQ(r.charts.chart[chart.surface.face[f]], c);
             area += mesh.face_areas[chart.surface.face[f]];
-            const Triangle& t = chart.surface.corners[f];
+            const Triangle& t = chart.surface.faces[f];
             flat += 0.5 * orientation(chart.uv[t[0]], chart.uv[t[1]], chart.uv[t[2]]);
         }
-        EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
+        EXPECT_EQ(checks::count_flips(chart.surface.faces, chart.uv), 0);
         EXPECT_NEAR(flat, area, 2e-3 * area); // opening closed slits may cost a little
         EXPECT_GE(chart.energy, 1.0 - 1e-9);
         EXPECT_EQ(overlaps(chart), 0);

@@ -52,7 +52,7 @@ TEST(Slivers, GoToANeighbourThatHasRoom) {
         const FlatChart& chart = flat.flat[c];
         faces += chart.surface.face_count();
         EXPECT_NEAR(chart.energy, 1.0, 1e-9);
-        EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
+        EXPECT_EQ(checks::count_flips(chart.surface.faces, chart.uv), 0);
         for (const Index f : chart.surface.face)
             EXPECT_EQ(flat.charts.chart[f], c);
     }
@@ -97,7 +97,7 @@ Index disks_in_the_plane(const Mesh& mesh, const FlattenResult& flat) {
         for (std::size_t f = 0; f < chart.surface.face.size(); ++f)
             for (std::size_t k = 0; k < 3; ++k)
                 uv[3 * at(chart.surface.face[f]) + k] =
-                    chart.uv[chart.surface.corners[f][k]] + Vec2(shift, 0.0);
+                    chart.uv[chart.surface.faces[f][k]] + Vec2(shift, 0.0);
         shift += 10.0;
     }
     Index disks = 0;

@@ -61,7 +61,7 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
                                " boundary loops; apply 'Charts: Cut to Disks' first");
     FlatteningProblem problem;
     problem.vertex_count = surface.vertex_count();
-    problem.faces = surface.corners;
+    problem.faces = surface.faces;
     problem.twin = surface.twin;
     problem.model_size = std::sqrt(mesh.total_area);
     for (const HalfEdge h : surface.loops.front()) {

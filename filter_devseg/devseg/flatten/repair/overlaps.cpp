@@ -164,8 +164,8 @@ public:
     // Faces that overlap around a common boundary vertex: the surface turns by more than 360
     // degrees there. Each neighbour on the boundary must get outside of the other one's edge.
     void find_full_turn(Face f, Face g) {
-        for (const Vertex v : s_.corners[f]) {
-            const Triangle& t = s_.corners[g];
+        for (const Vertex v : s_.faces[f]) {
+            const Triangle& t = s_.faces[g];
             if (leaving_[v] < 0 || (v != t[0] && v != t[1] && v != t[2]))
                 continue;
             const Index out = leaving_[v];
@@ -178,8 +178,8 @@ public:
 
     // Boundary vertices of f that lie on g leave across the nearest boundary edge.
     void find_inside(Face f, Face g) {
-        const Triangle& t = s_.corners[g];
-        for (const Vertex v : s_.corners[f]) {
+        const Triangle& t = s_.faces[g];
+        for (const Vertex v : s_.faces[f]) {
             if (leaving_[v] < 0 || settled_[v] != 0 || v == t[0] || v == t[1] || v == t[2] ||
                 !tested_.emplace(v, g).second || !inside(uv_[v], uv_[t[0]], uv_[t[1]], uv_[t[2]]))
                 continue;
@@ -248,8 +248,8 @@ Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Ve
     if (!boundary_crosses_itself(surface, uv))
         return {};
     CornerUv corners;
-    corners.reserve(3 * surface.corners.size());
-    for (const Triangle& t : surface.corners)
+    corners.reserve(3 * surface.faces.size());
+    for (const Triangle& t : surface.faces)
         for (const Vertex v : t)
             corners.push_back(uv[v]);
     return plane::find_overlapping_pairs(corners, tolerance);

@@ -54,7 +54,7 @@ private:
         uv_[v] = home_[v] + 0.5 * gap_ / length * plane::left_of(edge);
         done_[v] = 1;
         const HalfEdge leaving = s_.origin(h) == v ? h : Mesh::next(h);
-        if (!is_positive_around(s_.corners, s_.twin, uv_, leaving))
+        if (!is_positive_around(s_.faces, s_.twin, uv_, leaving))
             uv_[v] = home_[v];
     }
 

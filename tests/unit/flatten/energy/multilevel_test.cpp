@@ -111,7 +111,7 @@ TEST(Multilevel, FacesWithoutAreaAndNeedlesAreFlattened) {
         const FlattenResult r =
             flatten_charts(disk.mesh, disk.charts, FlattenMethod::symmetric_dirichlet, progress);
         for (const FlatChart& chart : r.flat)
-            EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
+            EXPECT_EQ(checks::count_flips(chart.surface.faces, chart.uv), 0);
     }
 }
 

@@ -126,9 +126,9 @@ TEST(DevelopableCharts, StraighteningShortensBorders) {
 TEST(DevelopableCharts, BordersLoseTheStepsOfTheCoarseSurface) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::sphere(6), 0.002, 5));
     Progress progress;
-    const std::optional<Decimation> decimation = decimate(mesh, false, 6, progress);
+    const std::optional<mesh::CoarseMesh> decimation = decimate(mesh, false, 6, progress);
     ASSERT_TRUE(decimation);
-    const Mesh& coarse = decimation->coarse.mesh;
+    const Mesh& coarse = decimation->mesh;
     ASSERT_LT(coarse.face_count(), mesh.face_count() / 4);
     const DChartsResult grown = segment_dcharts(coarse, charts(6), progress);
     const Draft draft = make_untried_draft(coarse, grown.chart);

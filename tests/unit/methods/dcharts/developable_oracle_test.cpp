@@ -88,12 +88,12 @@ std::vector<Oracle> oracles() {
 // Largest difference to 2π of the angles around an inner vertex.
 double worst_defect(const Disk& disk) {
     std::vector<double> angle(at(disk.surface.vertex_count()), 0.0);
-    for (std::size_t f = 0; f < disk.surface.corners.size(); ++f)
+    for (std::size_t f = 0; f < disk.surface.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
             const Triangle& t = disk.mesh.faces[disk.surface.face[f]];
             const Vec3 a = disk.mesh.points[t[(k + 1) % 3]] - disk.mesh.points[t[k]];
             const Vec3 b = disk.mesh.points[t[(k + 2) % 3]] - disk.mesh.points[t[k]];
-            angle[disk.surface.corners[f][k]] += std::atan2(a.cross(b).norm(), a.dot(b));
+            angle[disk.surface.faces[f][k]] += std::atan2(a.cross(b).norm(), a.dot(b));
         }
     for (const Index v : disk.problem.boundary)
         angle[v] = 2.0 * pi;
@@ -123,9 +123,9 @@ TEST(DevelopableOracle, EveryMethodFindsTheIsometry) {
             const flatten::FlatChart& chart = r.flat.front();
             EXPECT_EQ(r.cuts, 0);
             EXPECT_FALSE(chart.mended);
-            EXPECT_EQ(checks::count_flips(chart.surface.corners, chart.uv), 0);
+            EXPECT_EQ(checks::count_flips(chart.surface.faces, chart.uv), 0);
             EXPECT_NEAR(checks::l2_stretch(oracle.disk.problem, chart.uv), 1.0, 1e-6);
-            for (std::size_t f = 0; f < chart.surface.corners.size(); ++f)
+            for (std::size_t f = 0; f < chart.surface.faces.size(); ++f)
                 for (const double s : checks::stretches(oracle.disk.problem, chart.uv, f))
                     EXPECT_NEAR(s, 1.0, 1e-4);
         }
