@@ -302,7 +302,7 @@ GlueTabs make_tabs(const pattern::Pattern& pattern, double depth, Progress& prog
         return false;
     };
     for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
-        progress.check();
+        progress.update(static_cast<double>(s) / static_cast<double>(pattern.seams.size()));
         const pattern::Seam& seam = pattern.seams[s];
         std::vector<Side> sides;
         for (const pattern::SeamSide& side : seam.sides)

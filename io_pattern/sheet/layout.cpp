@@ -252,7 +252,7 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     note_tabs(tabs, layout);
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
-        drawing.check();
+        drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
         if (options.mirror)

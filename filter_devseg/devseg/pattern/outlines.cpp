@@ -234,7 +234,7 @@ std::vector<PatternPiece> trace_pieces(const Mesh& mesh, const CornerUv& uv,
     std::vector<PatternPiece> pieces;
     std::vector<std::size_t> turned;
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
-        progress.check();
+        progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
         if (uv_areas[c] == 0.0 || surfaces[c].loops.empty())
             continue;
         const double mirror = uv_areas[c] < 0.0 ? -1.0 : 1.0;
