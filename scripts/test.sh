@@ -10,8 +10,9 @@ source "$(dirname "${BASH_SOURCE[0]}")/build_host.sh"
 # shellcheck source=scripts/build_meshlab.sh
 source "$root/scripts/build_meshlab.sh"
 
-# MeshLab with its batch server, and an X server without a screen, used with mouse and keyboard.
-system_packages+=(meshlab xvfb xauth xdotool)
+# MeshLab with its batch server, an X server without a screen, used with mouse and keyboard, and a
+# reader of PDF files.
+system_packages+=(meshlab xvfb xauth xdotool poppler-utils)
 devseg_setup
 if [[ ${DEVSEG_GUI_TESTS:-} == 1 ]]; then
     system_packages=(libglu1-mesa-dev)
