@@ -1,0 +1,230 @@
+#include "devseg/methods/plush/plush_seams.h"
+#include "devseg/methods/plush/seam_removal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/parallel.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/methods/plush/limbs.h"
+#include "devseg/methods/plush/patch_trial.h"
+#include "devseg/methods/plush/seam_smoothing.h"
+#include "devseg/methods/plush/transfer_seams.h"
+#include "devseg/methods/plush/surface_fields.h"
+#include "devseg/methods/plush/working_surface.h"
+#include "unit/checks.h"
+#include "unit/shapes.h"
+#include "unit/temporary_folder.h"
+
+namespace devseg::plush {
+namespace {
+TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
+    // Two halves of a plate: all of the seam between them can go, and parts of it as well.
+    const WorkingSurface surface{checks::gated(shapes::grid(20, 20, 1.0, 1.0)), {}};
+    const Mesh& mesh = surface.mesh;
+    double middle = 0.0;
+    for (const Vec3& p : mesh.points)
+        middle += p.x() / static_cast<double>(mesh.points.size());
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (std::abs(mesh.points[mesh.origin(h)].x() - middle) < 1e-9 &&
+            std::abs(mesh.points[mesh.target(h)].x() - middle) < 1e-9)
+            mark(mesh, h, 1, seam);
+    ASSERT_EQ(find_patches(mesh, seam).count, 2);
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const SeamMarks hard;
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    PatchTester tester(surface, {0.15, true});
+    Progress progress;
+    RemovalOptions options;
+    options.most_together = 1.1; // no patch is large
+    const Index trials =
+        join_patches({surface, graph, hard, weight, tester, tester}, options, seam, progress);
+    EXPECT_EQ(trials, 1); // those that were made besides do not count
+    EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
+}
+
+TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
+    mesh::RawMesh raw = shapes::torus(40, 20);
+    for (Vec3& p : raw.points)
+        p.x() += 0.3 * p.y() * p.y(); // bent: left and right stay, front and back differ
+    const Mesh mesh = checks::gated(raw);
+    Progress progress;
+    const auto plane = find_mirror_plane(mesh, 0.02, progress);
+    ASSERT_TRUE(plane.has_value());
+    EXPECT_LT(plane->deviation, 1e-3);
+    EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
+    for (const Index most : {20000, 600}) {
+        const auto surface = mirrored_working_surface(mesh, *plane, most, Progress{});
+        ASSERT_TRUE(surface.has_value());
+        const Mesh& half = surface->mesh;
+        EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));
+        EXPECT_NEAR(half.total_area, mesh.total_area, 0.05 * mesh.total_area);
+        Index on_plane = 0;
+        for (const HalfEdge h : half.all_half_edges()) {
+            const Index image = surface->image[h];
+            EXPECT_EQ(surface->image[image], h);
+            EXPECT_LT(
+                (plane->reflect(half.points[half.origin(h)]) - half.points[half.target(image)])
+                    .norm(),
+                1e-9);
+            ASSERT_GE(half.twin[h], 0); // the torus stays closed
+            EXPECT_EQ(surface->image[half.twin[h]], half.twin[image]);
+            on_plane += surface->is_on_plane(h) ? 1 : 0;
+        }
+        EXPECT_GT(on_plane, 0);
+    }
+}
+
+TEST(Symmetry, NoPlaneWhereThereIsNone) {
+    mesh::RawMesh raw = shapes::sphere(3);
+    for (Vec3& p : raw.points)
+        p += 0.5 * Vec3(std::sin(2.0 * p.y() + p.z()), std::sin(3.0 * p.z() + 1.0), p.x() * p.y());
+    Progress progress;
+    EXPECT_FALSE(find_mirror_plane(checks::gated(raw), 0.01, progress).has_value());
+}
+
+TEST(Skeleton, BonesOfCapsuleLieAlongItsAxis) {
+    const Mesh mesh = checks::gated(shapes::capped_cylinder(24, 60, 0.3, 4.0));
+    const Skeleton skeleton = extract_skeleton(mesh, Progress{});
+    ASSERT_FALSE(skeleton.empty());
+    for (const auto& [a, b] : skeleton.bones) {
+        const Vec3 bone = skeleton.joints[b] - skeleton.joints[a];
+        EXPECT_GT(std::abs(bone.normalized().z()), 0.95);
+    }
+    const BoneWeights weights = bone_weights(mesh, skeleton, Progress{});
+    for (const auto& row : weights) {
+        double sum = 0.0;
+        for (const auto& entry : row)
+            sum += entry.second;
+        EXPECT_NEAR(sum, 1.0, 1e-9);
+    }
+    EXPECT_TRUE(extract_skeleton(checks::gated(shapes::cylinder_tube(12, 6)), Progress{}).empty());
+}
+
+TEST(Skeleton, FilesAreReadOrRefused) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("bones.obj");
+    const auto write = [&](const char* text) { std::ofstream(path) << text; };
+    const auto read = [&] {
+        return read_skeleton(path, [](const Vec3& p) { return Vec3(0.5 * p); });
+    };
+    write("# bones\nv 0 0 0\nv 0 0 2\nv 0 1 2\nl 1 2 3\n");
+    const Skeleton skeleton = read();
+    EXPECT_EQ(skeleton.bones.size(), 2U);
+    EXPECT_EQ(skeleton.joints[1], Vec3(0.0, 0.0, 1.0));
+    write("v 0 0 0\nl 1 2\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "line 2"));
+    write("v 0 0\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "line 1"));
+    write("v 0 0 0\n");
+    EXPECT_TRUE(checks::contains(checks::error_of<InvalidParameter>(read), "bone"));
+    std::remove(path.c_str());
+    EXPECT_TRUE(checks::contains(checks::error_of<FileError>(read), "cannot be read"));
+}
+
+TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
+    std::vector<Vec2> profile{{0.0, 3.0}};
+    for (int i = 0; i <= 20; ++i)
+        profile.emplace_back(0.25, 2.95 - 0.1 * i); // the finger, down to the ball
+    for (int i = 1; i < 30; ++i) {
+        const double t = 0.25 + (shapes::pi - 0.25) * i / 30.0;
+        profile.emplace_back(std::sin(t), std::cos(t));
+    }
+    profile.emplace_back(0.0, -1.0);
+    std::reverse(profile.begin(), profile.end());
+    const mesh::RawMesh raw = shapes::revolve(profile, 32);
+    const Mesh mesh = checks::gated(raw);
+    Index tip = 0;
+    for (const Vertex v : mesh.all_vertices())
+        if (mesh.points[v].z() > mesh.points[tip].z())
+            tip = v;
+    const auto limbs =
+        find_limbs(mesh, build_vertex_graph(mesh), mean_curvature(mesh), {tip}, Progress{});
+    ASSERT_EQ(limbs.size(), 1U);
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (const Limb& limb : limbs)
+        for (const Index h : limb_border(mesh, limb))
+            mark(mesh, h, 1, seam);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (seam[h] != 0) {
+            const double z = mesh.points[mesh.origin(h)].z() * mesh.unit_length + 1.0;
+            EXPECT_NEAR(z, 0.95, 0.25); // in the model, where the finger meets the ball
+        }
+}
+
+TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
+    const auto accepted = [](const mesh::RawMesh& raw) {
+        const checks::Disk disk(raw);
+        return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, false, Progress{})
+            .accepted;
+    };
+    EXPECT_TRUE(accepted(shapes::cylinder_tube(24, 8)));
+    EXPECT_TRUE(accepted(shapes::grid(6, 6)));
+    EXPECT_FALSE(accepted(shapes::hemisphere(32, 12)));
+}
+
+// Equations of conformal maps are singular there; the answer is a map all the same.
+TEST(PatchTrial, NeedlesAreMapped) {
+    for (const double height : {1e-5, 1e-9, 1e-11, 1e-13}) {
+        const checks::Disk disk({{{0, 0, 0}, {1, 0, 0}, {0, height, 0}}, {{0, 1, 2}}});
+        const PatchTrial trial =
+            try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, true, Progress{});
+        ASSERT_EQ(trial.change.size(), 1U);
+        EXPECT_TRUE(std::isfinite(trial.change[0])) << height;
+    }
+}
+
+TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
+    const Mesh mesh = checks::gated(shapes::grid(8, 8));
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Vec3& a = mesh.points[mesh.origin(h)];
+        const Vec3& b = mesh.points[mesh.target(h)];
+        if ((std::abs(a.x()) < 1e-9 && std::abs(b.x()) < 1e-9) ||
+            (std::abs(a.y()) < 1e-9 && std::abs(b.y()) < 1e-9))
+            mark(mesh, h, 1, seam);
+    }
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    const auto segments = find_segments(mesh, seam, {}, weight);
+    EXPECT_EQ(segments.size(), 4U);
+    for (const SeamSegment& segment : segments)
+        EXPECT_EQ(segment.half_edges.size(), 4U);
+    EXPECT_EQ(find_patches(mesh, seam).count, 4);
+    // Flat patches need no seam at all.
+    const WorkingSurface surface{mesh, {}};
+    PatchTester tester(surface, {});
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const SeamSetting setting{surface, graph, {}, weight, tester, tester, 100};
+    Progress progress;
+    remove_seams(setting, RemovalOptions{}, seam, progress);
+    EXPECT_EQ(find_patches(mesh, seam).count, 1);
+    EXPECT_EQ(find_segments(mesh, seam, {}, weight).size(), 0U);
+}
+
+TEST(SeamSmoothing, TeethGo) {
+    const Mesh mesh = checks::gated(shapes::grid(10, 10));
+    std::vector<Index> label(mesh.faces.size());
+    for (std::size_t f = 0; f < label.size(); ++f)
+        label[f] = mesh.face_centers[f].x() > 0.0 ? 1 : 0;
+    std::vector<Index> toothed = label;
+    for (const Face f : mesh.all_faces())
+        for (const HalfEdge h : half_edges_of(f))
+            if (mesh.twin[h] >= 0 && label[f] == 0 && f % 4 == 0 && label[mesh.twin[h] / 3] == 1)
+                toothed[f] = 1;
+    EXPECT_NE(toothed, label);
+    remove_teeth(mesh, toothed);
+    for (const Face f : mesh.all_faces()) {
+        int others = 0;
+        for (const HalfEdge h : half_edges_of(f))
+            others += mesh.twin[h] >= 0 && toothed[mesh.twin[h] / 3] != toothed[f];
+        EXPECT_LT(others, 2);
+    }
+}
+
+} // namespace
+} // namespace devseg::plush
