@@ -7,7 +7,9 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/maps/tutte.h"
+#include "devseg/flatten/maps/unfold.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/plane/overlap.h"
 
@@ -22,6 +24,7 @@ struct Tuning {
     double coarsest = 1e-5;
     int few_rounds = 40;
     int many_rounds = 200;
+    int stitching_rounds = 2; // spread what does not fit over more faces than those at the border
 };
 constexpr Tuning tuning;
 
@@ -29,7 +32,7 @@ constexpr Tuning tuning;
 // depending on how much of the distortion is shear: an energy whose excess is that of the wanted
 // l2² is hopeless.
 std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const TrialEffort& effort,
-                           const Progress& progress) {
+                           const std::vector<Vec2>& turns, const Progress& progress) {
     flatten::SymmetricDirichletOptions options;
     const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
     options.relative_tolerance = std::min(tuning.share_of_excess * excess, tuning.coarsest);
@@ -37,9 +40,14 @@ std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const Tria
         tuning.share_of_excess * excess < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
     if (effort.give_up)
         options.give_up_energy = 1.0 + excess;
-    std::vector<Vec2> uv = flatten::minimise_symmetric_dirichlet(
-                               problem, flatten::simple_map(problem), options, progress)
-                               .uv;
+    std::vector<Vec2> start;
+    if (!turns.empty())
+        start = flatten::attempt(
+            [&] { return flatten::stitch(problem, turns, tuning.stitching_rounds); });
+    if (start.empty() || flatten::count_flips(problem, start) > 0)
+        start = flatten::simple_map(problem);
+    std::vector<Vec2> uv =
+        flatten::minimise_symmetric_dirichlet(problem, start, options, progress).uv;
     flatten::scale_to_area(problem, uv);
     return uv;
 }
@@ -84,7 +92,7 @@ std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
 
 TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
-                   const Progress& progress) {
+                   const Progress& progress, const std::vector<Vec2>& turns) {
     TrialMap map;
     for (const Face f : faces)
         map.area += mesh.face_areas[f];
@@ -92,20 +100,27 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     const atlas::ChartSurface surface = atlas::cut_to_disk(
         mesh, atlas::extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
-    std::vector<Vec2> uv = flatten::attempt([&] { return trial_uv(problem, effort, progress); });
+    std::vector<Vec2> uv;
+    auto development = flatten::unfold(problem);
+    const bool developed = development.has_value();
+    if (developed)
+        uv = std::move(*development);
+    else
+        uv = flatten::attempt([&] { return trial_uv(problem, effort, turns, progress); });
     map.flat = !uv.empty();
     if (!map.flat)
         return map;
     const double tolerance = plane::layout_tolerance(problem.model_size);
     auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
     map.overlaps = !pairs.empty();
-    if (map.overlaps && effort.push_apart)
+    if (map.overlaps && effort.push_apart && !developed) // developments stay as they are
         if (auto apart =
                 flatten::push_apart(problem, surface, uv, std::move(pairs), tolerance, progress)) {
             uv = std::move(*apart);
             map.overlaps = false;
         }
     const std::vector<double> stretch = measure_stretch(problem, uv, map);
+    map.turns = flatten::face_turns(problem, uv);
     map.worst_faces = local_maxima(surface, stretch);
     for (Index& f : map.worst_faces) {
         map.peaks.push_back(stretch[f]);

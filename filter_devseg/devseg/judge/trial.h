@@ -20,6 +20,7 @@ struct TrialMap {
     double cut_length = 0.0; // of the cuts that made it a disk, internal units
     std::vector<Index> worst_faces; // of the mesh: local maxima of the stretch, the worst first
     std::vector<double> peaks;      // Γ there
+    std::vector<Vec2> turns; // of each face, see flatten::face_turns, in the order of the faces
 
     /// Σ A (l2² − 1): what the charts of a segmentation add up to.
     double excess() const { return area * (l2_squared - 1.0); }
@@ -36,10 +37,11 @@ struct TrialEffort {
 
 /// Flattens the faces as one chart, cut open along the marked edges (`seam`, 3 #F of the mesh;
 /// edges to other faces need no mark) and to a disk where it is none. A few rounds: enough to
-/// compare.
+/// compare. Starts from `turns` (of each face) if they are given: those of a map with other cuts,
+/// or of the maps of two charts that are joined.
 TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
-                   const Progress& progress);
+                   const Progress& progress, const std::vector<Vec2>& turns = {});
 
 /// Fills in the area and the stretch of a map; returns Γ of each face.
 std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,

@@ -18,11 +18,14 @@ namespace devseg::flatten {
 namespace {
 
 // The rotation nearest to a Jacobian, mirrored ones included: the signed singular value
-// decomposition in closed form.
-Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& j) {
-    Vec2 turn(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
+// decomposition in closed form. Returned as the image of the unit vector along x.
+Vec2 nearest_turn(const Eigen::Matrix2d& j) {
+    const Vec2 turn(j(0, 0) + j(1, 1), j(1, 0) - j(0, 1));
     const double length = turn.norm();
-    turn = length > 0.0 ? Vec2(turn / length) : Vec2(1.0, 0.0);
+    return length > 0.0 ? Vec2(turn / length) : Vec2(1.0, 0.0);
+}
+
+Eigen::Matrix2d rotation_of(const Vec2& turn) {
     Eigen::Matrix2d rotation;
     rotation << turn.x(), -turn.y(), turn.y(), turn.x();
     return rotation;
@@ -54,11 +57,10 @@ public:
     }
 
     // [LZXGG08, equation 6]: every edge of a face wants to be the rest edge, turned.
-    std::vector<Vec2> operator()(const std::vector<Vec2>& uv) const {
+    std::vector<Vec2> operator()(const std::vector<Vec2>& turns) const {
         Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(problem_.vertex_count, 2);
         for (std::size_t f = 0; f < problem_.faces.size(); ++f) {
-            const Eigen::Matrix2d wanted =
-                nearest_rotation(jacobian(problem_, uv, f)) * problem_.edges[f];
+            const Eigen::Matrix2d wanted = rotation_of(turns[f]) * problem_.edges[f];
             const std::array<Vec2, 3> edge = {wanted.col(0), wanted.col(1) - wanted.col(0),
                                               -wanted.col(1)};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -70,7 +72,7 @@ public:
         const Eigen::MatrixX2d solution = solver_.solve(rhs.bottomRows(problem_.vertex_count - 1));
         if (!solution.allFinite())
             throw NumericalFailure("expected a finite map, found one that is not");
-        std::vector<Vec2> next(uv.size(), Vec2::Zero());
+        std::vector<Vec2> next(at(problem_.vertex_count), Vec2::Zero());
         for (Vertex v = 1; v < problem_.vertex_count; ++v)
             next[v] = solution.row(v - 1).transpose();
         return next;
@@ -83,11 +85,28 @@ private:
 
 } // namespace
 
+std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    std::vector<Vec2> turns;
+    turns.reserve(problem.faces.size());
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        turns.push_back(nearest_turn(jacobian(problem, uv, f)));
+    return turns;
+}
+
+std::vector<Vec2> stitch(const FlatteningProblem& problem, const std::vector<Vec2>& turns,
+                         int rounds) {
+    const GlobalStep global(problem);
+    std::vector<Vec2> uv = global(turns);
+    for (int i = 0; i < rounds; ++i)
+        uv = global(face_turns(problem, uv));
+    return uv;
+}
+
 double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double sum = 0.0;
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
         const Eigen::Matrix2d j = jacobian(problem, uv, f);
-        sum += problem.area[f] * (j - nearest_rotation(j)).squaredNorm();
+        sum += problem.area[f] * (j - rotation_of(nearest_turn(j))).squaredNorm();
     }
     return sum / problem.total_area;
 }
@@ -100,7 +119,7 @@ ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec
     result.energy = arap_energy(problem, start);
     while (result.rounds < options.max_rounds && !result.converged) {
         progress.check();
-        std::vector<Vec2> next = global(result.uv);
+        std::vector<Vec2> next = global(face_turns(problem, result.uv));
         const double energy = arap_energy(problem, next);
         result.converged = result.energy - energy <= options.relative_tolerance * result.energy;
         if (!(energy < result.energy))

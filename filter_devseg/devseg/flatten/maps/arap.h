@@ -29,4 +29,14 @@ ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec
 /// The energy of any map.
 double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
+/// The rotation nearest to the map of each face (#f), as the image of the unit vector along x: from
+/// the face as FlatteningProblem lays it into the plane. uv is #v.
+std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+
+/// The map whose edges are, in the least squares sense, those of faces that are turned so: charts
+/// that are joined, each with the turns of its own map, fit together along the common border. Faces
+/// may flip. `rounds` of minimise_arap follow. Throws NumericalFailure.
+std::vector<Vec2> stitch(const FlatteningProblem& problem, const std::vector<Vec2>& turns,
+                         int rounds);
+
 } // namespace devseg::flatten

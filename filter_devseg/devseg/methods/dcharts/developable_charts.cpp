@@ -4,18 +4,16 @@
 #include <cmath>
 #include <optional>
 
-#include "devseg/atlas/disks.h"
 #include "devseg/atlas/fragments.h"
-#include "devseg/declare/declare.h"
-#include "devseg/declare/segmentation_output.h"
+#include "devseg/mesh/flat_regions.h"
+#include "devseg/methods/dcharts/bounds.h"
 #include "devseg/methods/dcharts/full_charts.h"
+#include "devseg/methods/dcharts/joins.h"
 #include "devseg/methods/dcharts/tuning.h"
 #include "devseg/methods/growth/borders.h"
-#include "devseg/metrics/segmentation.h"
+#include "devseg/metrics/conic_proxy.h"
 
 namespace devseg::dcharts {
-
-using namespace declare;
 
 namespace {
 
@@ -57,8 +55,22 @@ SegmentationPlan make_plan(const Mesh& mesh, const DevelopableChartsOptions& opt
     return plan;
 }
 
+struct Aim {
+    StretchBounds chart;
+    double max_excess = infinite;
+    bool few = false; // few charts matter more than wide necks between their parts
+};
+
+// Of a given number of charts.
+Aim aim_of(const SegmentationPlan& plan) {
+    Aim aim;
+    aim.chart =
+        bounds_from(plan.options.merge_threshold * (plan.creased ? tuning.creased_threshold : 1.0));
+    return aim;
+}
+
 // D-Charts with short borders.
-DChartsResult grow_patches(const Mesh& mesh, const SegmentationPlan& plan, Progress& progress) {
+DChartsResult grow_charts(const Mesh& mesh, const SegmentationPlan& plan, Progress& progress) {
     auto growing = progress.part(0.15);
     DChartsResult patches = segment_dcharts(mesh, plan.growing, growing);
     auto straightening = progress.part("straightening borders", 0.85);
@@ -70,25 +82,98 @@ DChartsResult grow_patches(const Mesh& mesh, const SegmentationPlan& plan, Progr
         growth::relabel_by_expansion(mesh, patches.proxies, expansion, patches.chart,
                                      straightening);
     }
+    mesh::keep_regions_whole(mesh, tuning.least_chart, patches.chart);
     patches.chart = atlas::absorb_fragments(mesh, patches.chart, tuning.least_chart);
     return patches;
 }
 
-struct Aim {
-    StretchBounds chart;
-    double max_excess = infinite;
-    bool few = false; // few charts matter more than wide necks between their parts
-};
+// The parts of a surface between its creases. Where one is far from developable, D-Charts grow in
+// it, or its flat faces stand for themselves if they are few.
+std::optional<DChartsResult> patches_between_creases(const Mesh& mesh, const SegmentationPlan& plan,
+                                                     Progress& progress) {
+    const mesh::FaceComponents smooth = mesh::face_components(mesh, [&](HalfEdge h) {
+        return mesh.face_normals[face_of(h)].dot(mesh.face_normals[mesh.across(h)]) >=
+               tuning.bent_cosine;
+    });
+    if (smooth.count > tuning.most_regions)
+        return {};
+    const StretchBounds bounds = aim_of(plan).chart;
+    auto trying = progress.part("trying charts", 0.3);
+    const Draft draft = make_draft(mesh, smooth.label, {}, bounds.l2, trying);
+    DChartsResult patches;
+    patches.chart = smooth.label;
+    patches.converged = true;
+    Index count = smooth.count;
+    for (Index p = 0; p < smooth.count; ++p) {
+        if (draft.map[p].flat && bounds.hold(draft.map[p]))
+            continue;
+        const Mesh part = mesh_of_chart(mesh, draft.faces[p]);
+        mesh::FaceComponents inside = mesh::flat_regions(part);
+        if (inside.count > tuning.few_regions) {
+            SegmentationPlan own = plan;
+            own.growing.charts_number =
+                std::clamp(static_cast<int>(std::lround(plan.growing.charts_number *
+                                                        part.total_area / mesh.total_area)),
+                           1, part.face_count());
+            auto growing = progress.part(0.5 * progress.left());
+            DChartsResult grown = grow_charts(part, own, growing);
+            inside.label = std::move(grown.chart);
+            inside.count = 1 + *std::max_element(inside.label.begin(), inside.label.end());
+            patches.hole_charts += grown.hole_charts;
+        }
+        for (const Face f : part.all_faces())
+            if (inside.label[f] > 0)
+                patches.chart[draft.faces[p][f]] = count + inside.label[f] - 1;
+        count += inside.count - 1;
+    }
+    patches.proxies = metrics::fit_conics(mesh, patches.chart, count);
+    return patches;
+}
+
+DChartsResult grow_patches(const Mesh& mesh, const SegmentationPlan& plan, Progress& progress) {
+    if (plan.creased && plan.options.merge_charts) {
+        auto looking = progress.part(0.5);
+        if (auto patches = patches_between_creases(mesh, plan, looking))
+            return *std::move(patches);
+    }
+    auto growing = progress.part(progress.left());
+    return grow_charts(mesh, plan, growing);
+}
+
+MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
+    const DevelopableChartsOptions& options = plan.options;
+    MergeOptions merging;
+    merging.parts_above = plan.creased ? 0 : options.charts_number;
+    merging.keep_corners = plan.creased;
+    merging.chart = aim.chart;
+    if (options.max_chart_l2_stretch > 0.0) {
+        merging.chart.hard_l2 = options.max_chart_l2_stretch;
+        merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
+    }
+    merging.max_excess = aim.max_excess;
+    if (aim.few || plan.creased)
+        merging.least_neck = aim.few ? 0.0 : tuning.creased_neck;
+    return merging;
+}
+
+// Joins that are not exact, as those of smooth surfaces, while there are more charts than wanted.
+void join_to_number(const Mesh& mesh, const SegmentationPlan& plan, Draft& draft,
+                    Progress& progress) {
+    SegmentationPlan as_smooth = plan;
+    as_smooth.creased = false;
+    MergeOptions merging = merge_options(as_smooth, aim_of(as_smooth));
+    merging.enough_charts = plan.options.charts_number;
+    merge_charts(mesh, merging, draft, progress);
+}
 
 void improve(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim, Draft& draft,
              Progress& progress) {
     if (plan.options.merge_charts) {
         auto joining = progress.part("joining charts", plan.options.add_darts ? 0.75 : 1.0);
-        MergeOptions merging;
-        merging.chart = aim.chart;
-        merging.max_excess = aim.max_excess;
-        merging.least_neck = aim.few ? 0.0 : merging.least_neck;
-        merge_charts(mesh, merging, draft, joining);
+        auto first = joining.part(0.7);
+        merge_charts(mesh, merge_options(plan, aim), draft, first);
+        if (plan.creased && plan.options.charts_number > 0)
+            join_to_number(mesh, plan, draft, joining);
     }
     if (plan.options.add_darts) {
         auto cutting = progress.part("cutting darts", 1.0);
@@ -119,9 +204,7 @@ Decided decide(const Mesh& mesh, const SegmentationPlan& plan, DChartsResult pat
         Draft draft = make_untried_draft(mesh, patches.chart);
         return {std::move(patches), std::move(draft)};
     }
-    Aim aim;
-    aim.chart =
-        bounds_from(plan.options.merge_threshold * (plan.creased ? tuning.creased_threshold : 1.0));
+    const Aim aim = aim_of(plan);
     const bool is_few = plan.options.merge_charts && plan.options.charts_number <= tuning.few_seeds;
     auto trying = progress.part(is_few ? 0.5 : 0.95);
     Decided few = join_patches(mesh, plan, aim, std::move(patches), trying);
@@ -169,27 +252,24 @@ double distance(const DevelopableChartsOptions& options, const DevelopableCharts
                : std::max(l2, excess(charts.linf_stretch) / excess(options.max_linf_stretch));
 }
 
-// With more darts where the worst spot needs them, and measured.
-DevelopableCharts finish_within_bounds(const Mesh& mesh,
-                                       const std::optional<mesh::CoarseMesh>& decimation,
-                                       const SegmentationPlan& plan, const Aim& aim,
-                                       const Decided& decided, Straightening straightening,
-                                       Progress& progress) {
+// What the final map keeps.
+void keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim,
+                       DevelopableCharts& charts, Progress& progress) {
     const DevelopableChartsOptions& options = plan.options;
-    auto finishing = progress.part(0.1);
-    DevelopableCharts found = finish(mesh, decimation, plan, decided, straightening, finishing);
-    auto measuring = progress.part(0.6);
-    measure_stretch(mesh, found, measuring);
-    if (options.max_linf_stretch > 0.0 && options.add_darts && distance(options, found) > 1.0 &&
-        found.l2_stretch <= options.max_l2_stretch) {
-        DartOptions darts;
-        darts.chart = {aim.chart.l2, options.max_linf_stretch};
-        auto cutting = progress.part("cutting darts", 0.1);
-        cut_more_darts(mesh, darts, found, cutting);
-        auto again = progress.part(0.1);
-        measure_stretch(mesh, found, again);
+    FinalBounds bounds;
+    bounds.chart_l2 = options.max_chart_l2_stretch;
+    if (options.charts_number == 0) {
+        bounds.linf = options.max_linf_stretch;
+        bounds.max_excess =
+            (options.max_l2_stretch * options.max_l2_stretch - 1.0) * mesh.total_area;
     }
-    return found;
+    if (bounds.chart_l2 == 0.0 && options.charts_number != 0)
+        return;
+    MergeOptions merging = merge_options(plan, aim);
+    merging.max_excess = bounds.max_excess;
+    merging.confirm = options.merge_charts;
+    bounds.add_darts = options.add_darts;
+    keep_bounds(mesh, bounds, plan.growing, merging, charts, progress);
 }
 
 // Splits the charts that contribute most until the stretch of all leaves room for joins.
@@ -211,54 +291,118 @@ void split_worst(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim,
     }
 }
 
-// The fewest charts within the bounds: what the coarse surface may use of them is lowered until the
-// map of the full surface keeps them.
+// The fewest charts within the bounds: what the coarse surface may use of them is lowered once
+// where the map of the full surface does not keep them, and what is still above is cut.
 DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                               const SegmentationPlan& plan, const DChartsResult& patches,
                               Progress& progress) {
     const DevelopableChartsOptions& options = plan.options;
     const Mesh& coarse = decimation ? decimation->mesh : mesh;
     const double allowed = options.max_l2_stretch * options.max_l2_stretch - 1.0;
-    const bool has_linf = options.max_linf_stretch > 0.0;
+    Aim aim;
+    aim.few = true;
+    aim.chart.l2 = std::sqrt(1.0 + tuning.chart_excess * allowed);
+    aim.chart.linf = options.max_linf_stretch > 0.0
+                         ? options.max_linf_stretch
+                         : bounds_from(tuning.loose_linf * (options.max_l2_stretch - 1.0)).linf;
     double share = tuning.first_share;
-    double linf = has_linf ? options.max_linf_stretch
-                           : bounds_from(tuning.loose_linf * (options.max_l2_stretch - 1.0)).linf;
     auto trying = progress.part("trying charts", 0.04);
     Decided decided{patches, make_draft(coarse, patches.chart, {}, options.max_l2_stretch, trying)};
     const Draft start = decided.draft;
     DevelopableCharts best;
-    const int attempts = has_linf ? tuning.most_linf_attempts : tuning.most_attempts;
-    for (int attempt = 0; attempt < attempts; ++attempt) {
-        Aim aim;
-        aim.chart = {std::sqrt(1.0 + tuning.chart_excess * allowed), linf};
+    for (int attempt = 0; attempt < tuning.most_attempts; ++attempt) {
         aim.max_excess = share * allowed * coarse.total_area;
-        aim.few = true;
         decided.draft = start;
-        auto trial = progress.part(0.5 * progress.left());
+        auto trial = progress.part(0.4);
         auto splitting = trial.part("splitting charts", 0.04);
         split_worst(coarse, plan, aim, decided.draft, splitting);
         auto improving = trial.part(0.76);
         improve(coarse, plan, aim, decided.draft, improving);
-        StretchBounds reached;
-        for (const auto straightening : {Straightening::smooth, Straightening::fitting}) {
-            auto finishing = trial.part(0.1);
-            DevelopableCharts found = finish_within_bounds(mesh, decimation, plan, aim, decided,
-                                                           straightening, finishing);
-            reached = {found.l2_stretch, found.linf_stretch};
-            if (best.chart.empty() || distance(options, found) < distance(options, best))
-                best = std::move(found);
-            if (distance(options, best) <= 1.0)
-                return best;
-        }
-        share *= std::min(0.9, allowed / (reached.l2 * reached.l2 - 1.0));
-        if (has_linf)
-            linf = 1.0 + (linf - 1.0) *
-                             std::min(0.9, (options.max_linf_stretch - 1.0) / (reached.linf - 1.0));
+        auto finishing = trial.part(0.1);
+        DevelopableCharts found =
+            finish(mesh, decimation, plan, decided, Straightening::smooth, finishing);
+        auto measuring = trial.part(1.0);
+        measure_stretch(mesh, found, measuring);
+        const double reached = found.l2_stretch * found.l2_stretch - 1.0;
+        if (best.chart.empty() || distance(options, found) < distance(options, best))
+            best = std::move(found);
+        if (distance(options, best) <= 1.0)
+            break;
+        share *= std::min(0.9, allowed / reached);
     }
-    if (has_linf && best.l2_stretch <= options.max_l2_stretch)
-        split_above(mesh, options.max_linf_stretch, plan.growing, best, progress);
+    auto keeping = progress.part(progress.left());
+    keep_final_bounds(mesh, plan, aim, best, keeping);
     best.bounds_kept = distance(options, best) <= 1.0;
     return best;
+}
+
+// A surface in one piece.
+DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOptions& options,
+                                    Progress& progress) {
+    const SegmentationPlan plan = make_plan(mesh, options);
+    auto coarsening = progress.part("coarsening", 0.06);
+    const std::optional<mesh::CoarseMesh> decimation = decimate(
+        mesh, plan.creased, std::max(options.charts_number, tuning.automatic_seeds), coarsening);
+    const Mesh& coarse = decimation ? decimation->mesh : mesh;
+    auto growing = progress.part(0.15);
+    DChartsResult patches = grow_patches(coarse, plan, growing);
+    if (options.charts_number == 0) {
+        auto deciding = progress.part(progress.left());
+        return find_fewest(mesh, decimation, plan, patches, deciding);
+    }
+    auto deciding = progress.part(0.6);
+    DevelopableCharts result =
+        finish(mesh, decimation, plan, decide(coarse, plan, std::move(patches), deciding),
+               Straightening::smooth, deciding);
+    auto keeping = progress.part(progress.left());
+    keep_final_bounds(mesh, plan, aim_of(plan), result, keeping);
+    return result;
+}
+
+void add_up(const DevelopableCharts& part, DevelopableCharts& whole) {
+    whole.rounds = std::max(whole.rounds, part.rounds);
+    whole.converged = whole.converged && part.converged;
+    whole.hole_charts += part.hole_charts;
+    whole.joins += part.joins;
+    whole.darts += part.darts;
+    whole.linf_stretch = std::max(whole.linf_stretch, part.linf_stretch);
+    whole.bounds_kept = whole.bounds_kept && part.bounds_kept;
+}
+
+// The parts of a surface, one after the other, each with its share of the charts.
+DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponents& components,
+                                     const DevelopableChartsOptions& options, Progress& progress) {
+    DevelopableCharts result;
+    result.converged = true;
+    result.chart.resize(mesh.faces.size());
+    result.seam.assign(mesh.twin.size(), 0);
+    double excess = 0.0;
+    Index first = 0; // number of the component's first chart
+    std::vector<std::vector<Index>> groups(at(components.count));
+    for (const Face f : mesh.all_faces())
+        groups[components.label[f]].push_back(f);
+    for (const std::vector<Index>& faces : groups) {
+        const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, result.seam);
+        const Mesh part = atlas::mesh_of(mesh, surface);
+        const double share = part.total_area / mesh.total_area;
+        DevelopableChartsOptions own = options;
+        if (options.charts_number > 0)
+            own.charts_number = std::clamp(
+                static_cast<int>(std::lround(options.charts_number * share)), 1, part.face_count());
+        auto segmenting = progress.part(share);
+        const DevelopableCharts charts = segment_component(part, own, segmenting);
+        for (const Face f : part.all_faces())
+            result.chart[faces[f]] = first + charts.chart[f];
+        for (const HalfEdge h : part.all_half_edges())
+            result.seam[surface.mesh_half_edge(h)] = charts.seam[h];
+        first += 1 + *std::max_element(charts.chart.begin(), charts.chart.end());
+        add_up(charts, result);
+        excess += (charts.l2_stretch * charts.l2_stretch - 1.0) * part.total_area;
+    }
+    result.chart = atlas::make_chart_map(mesh, result.chart, result.seam, false).chart;
+    if (options.charts_number == 0)
+        result.l2_stretch = std::sqrt(1.0 + std::max(0.0, excess) / mesh.total_area);
+    return result;
 }
 
 } // namespace
@@ -268,7 +412,8 @@ OptionRanges<DevelopableChartsOptions> DevelopableChartsOptions::ranges() {
     OptionRanges<O> ranges = {{&O::charts_number, {"charts_number", 0, 1e9}},
                               {&O::merge_threshold, {"merge_threshold", 0.0, 1.0, true}},
                               {&O::max_l2_stretch, {"max_l2_stretch", 1.0, 100.0, true}},
-                              {&O::max_linf_stretch, {"max_linf_stretch", 0.0, 1000.0}}};
+                              {&O::max_linf_stretch, {"max_linf_stretch", 0.0, 1000.0}},
+                              {&O::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}}};
     for (const auto& [field, range] : DChartsOptions::ranges())
         std::visit([&, &r = range](auto f) { ranges.push_back({f, r}); }, field);
     return ranges;
@@ -280,139 +425,20 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
     if (options.charts_number != 0)
         check_charts_number(mesh.face_count(), options.charts_number);
     check_ranges(options);
-    if (options.max_linf_stretch != 0.0 && options.max_linf_stretch <= 1.0)
-        refuse_option("max_linf_stretch", "0 for no bound, or a number above 1",
-                      options.max_linf_stretch);
-    const SegmentationPlan plan = make_plan(mesh, options);
-    auto coarsening = progress.part("coarsening", 0.06);
-    const std::optional<mesh::CoarseMesh> decimation = decimate(
-        mesh, plan.creased, std::max(options.charts_number, tuning.automatic_seeds), coarsening);
-    const Mesh& coarse = decimation ? decimation->mesh : mesh;
-    auto growing = progress.part(0.15);
-    DChartsResult patches = grow_patches(coarse, plan, growing);
-    auto deciding = progress.part(progress.left());
-    DevelopableCharts result;
-    if (options.charts_number == 0)
-        result = find_fewest(mesh, decimation, plan, patches, deciding);
-    else
-        result = finish(mesh, decimation, plan, decide(coarse, plan, std::move(patches), deciding),
-                        Straightening::smooth, deciding);
+    for (const auto& [name, bound] : {std::pair("max_linf_stretch", options.max_linf_stretch),
+                                      std::pair("max_chart_l2_stretch",
+                                                options.max_chart_l2_stretch)})
+        if (bound != 0.0 && bound <= 1.0)
+            refuse_option(name, "0 for no bound, or a number above 1", bound);
+    const mesh::FaceComponents components =
+        mesh::face_components(mesh, [](Index) { return true; });
+    DevelopableCharts result = components.count == 1
+                                   ? segment_component(mesh, options, progress)
+                                   : segment_components(mesh, components, options, progress);
     const Index count = 1 + *std::max_element(result.chart.begin(), result.chart.end());
     result.fitting_error =
         fitting_errors(mesh, result.chart, metrics::fit_conics(mesh, result.chart, count));
     return result;
-}
-
-// The filter
-namespace {
-
-constexpr const char* help =
-    "Cuts the surface into few charts that are nearly developable, so that they can be flattened "
-    "with little distortion: unions of cones, cylinders and planes with a common axis. Charts grow "
-    "from seeds while the <i>fitting error</i> (the squared difference between the cosines of the "
-    "normal's and the chart's angle to the axis) stays below a bound; seeds and axes are improved "
-    "over several rounds. What no chart can reach is filled by the neighbours, or by new charts "
-    "where it is large.<br>"
-    "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
-    "the face's edges that are cut), the same cuts as selected face-edges, the fitting error as "
-    "face quality and a colour for each chart. Every chart is cut to a disk.<br>"
-    "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
-    "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
-    "Computer Graphics Forum (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
-
-FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& options,
-                 Progress& progress) {
-    auto segmenting = progress.part(0.98);
-    DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, segmenting);
-    auto cutting = progress.part("cutting charts to disks", 0.02);
-    const atlas::ChartMap charts =
-        atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
-    atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
-    ResultValues values = {
-        {"charts_number", cuts.charts.count},
-        {"hole_charts_number", segmentation.hole_charts},
-        {"joined_charts_number", segmentation.joins},
-        {"darts_number", segmentation.darts},
-        {"bounds_kept", segmentation.bounds_kept},
-        {"l2_stretch", segmentation.l2_stretch},
-        {"linf_stretch", segmentation.linf_stretch},
-        {"rounds_number", segmentation.rounds},
-        {"converged", segmentation.converged},
-        {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
-    };
-    return chart_output(input.mesh, std::move(cuts.charts), std::move(segmentation.fitting_error),
-                        std::move(values));
-}
-
-} // namespace
-
-std::vector<FilterDeclaration> filters() {
-    using O = DevelopableChartsOptions;
-    return {
-        Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
-                   FilterCategory::remeshing, help)
-            .integer(
-                &O::charts_number, "Number of charts",
-                "The initial estimate of the number of charts, from 1 to the number of faces. "
-                "Large regions that fit no chart get charts of their own, and neighbours that "
-                "flatten well together are joined, so that the final number differs. 0 finds the "
-                "fewest charts whose final map keeps max_l2_stretch and max_linf_stretch.")
-            .real(&O::max_fitting_error, "Largest fitting error",
-                  "Bound of the fitting error while charts grow, without unit, above 0. Smaller "
-                  "charts fit better: 0.2 is usual for free forms, 0.01 for mechanical parts.")
-            .real(&O::alpha, "Weight of developability",
-                  "Exponent of the fitting error in the cost of adding a face, without unit.")
-            .real(&O::beta, "Weight of compactness",
-                  "Exponent of the roundness of the chart in the cost, without unit. Larger values "
-                  "avoid long strips.")
-            .real(&O::gamma, "Weight of straight borders",
-                  "Exponent of the ratio of outer to inner edge length in the cost, without unit. "
-                  "Larger values make smoother borders.")
-            .boolean(
-                &O::straighten_boundaries, "straighten_boundaries", "Straighten borders",
-                "Move the borders between charts to where they are short, within the areas that "
-                "fit both charts.")
-            .boolean(
-                &O::merge_charts, "merge_charts", "Join charts",
-                "Join neighbouring charts, those with long common borders first, where a trial "
-                "flattening of both as one chart stays within the bounds of merge_threshold.")
-            .real(
-                &O::merge_threshold, "Joining threshold",
-                "How far joined charts may be from developable, without unit: at most 1 + t / 2 of "
-                "L2 stretch and 1 + 4 √t of L∞ stretch. 0.01 suits free forms, 0.00001 mechanical "
-                "parts. Darts are cut into charts that exceed the same bounds.")
-            .boolean(
-                &O::add_darts, "add_darts", "Cut darts",
-                "Cut from the border of a chart to the spots where its map is stretched most, as "
-                "far as that is worth the length of the cut.")
-            .real(&O::max_l2_stretch, "Largest L2 stretch",
-                  "Bound of the L2 stretch of the whole map, above 1, without unit; used where "
-                  "charts_number is 0, and measured on the final map of the full surface.")
-            .real(
-                &O::max_linf_stretch, "Largest L∞ stretch",
-                "Bound of the stretch of the worst spot, above 1, without unit; 0 for no bound. Used "
-                "where charts_number is 0.")
-            .integer(
-                &O::max_iterations, "Most rounds",
-                "The rounds of growing and reseeding end here at the latest; usually fewer than "
-                "5 % of the faces change their chart long before.")
-            .integer(
-                &O::random_seed, "Random seed",
-                "0 starts at the face farthest from the centre; other numbers at a random face. "
-                "The same number always gives the same charts.")
-            .command("dcharts")
-            .writes(writes_charts | writes_quality | writes_color)
-            .result("charts_number", "charts, each a disk")
-            .result("hole_charts_number", "charts that were added where no other fitted")
-            .result("joined_charts_number", "joins of two charts")
-            .result("darts_number", "cuts inside charts, to spots of high stretch")
-            .result("bounds_kept", "with charts_number 0: whether the final map keeps the bounds")
-            .result("l2_stretch", "with charts_number 0: L2 stretch of the final map, else 0")
-            .result("linf_stretch", "with charts_number 0: L∞ stretch of the final map, else 0")
-            .result("rounds_number", "rounds of growing and reseeding")
-            .result("converged", "whether fewer than 5 % of the faces changed in the last round")
-            .result("seam_length", "length of all cut edges, model units")
-            .runs(run)};
 }
 
 } // namespace devseg::dcharts

@@ -19,6 +19,8 @@ struct DevelopableChartsOptions : DChartsOptions {
     // With charts_number = 0: the fewest charts whose final map keeps these bounds.
     double max_l2_stretch = 1.01;
     double max_linf_stretch = 0.0; // 0: no bound
+    // Of each chart's final map, whatever the number of charts; 0: no bound, the paper alone.
+    double max_chart_l2_stretch = 1.02;
 
     static OptionRanges<DevelopableChartsOptions> ranges();
 };

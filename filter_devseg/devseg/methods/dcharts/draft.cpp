@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "devseg/atlas/border_path.h"
@@ -62,137 +61,10 @@ Draft make_draft(const Mesh& mesh, const std::vector<Index>& chart,
     return draft;
 }
 
-// Joins
-namespace {
-
-using Pair = std::pair<Index, Index>;        // of charts, the lower number first
-using Borders = std::map<Pair, double>;      // length of the border between two charts
-using JoinedMaps = std::map<Pair, TrialMap>; // what the two would be as one chart
-
-Borders measure_borders(const Mesh& mesh, const std::vector<Index>& chart) {
-    Borders length;
-    for (const HalfEdge h : mesh.all_half_edges()) {
-        const HalfEdge twin = mesh.twin[h];
-        if (twin > h && chart[face_of(h)] != chart[face_of(twin)])
-            length[std::minmax(chart[face_of(h)], chart[face_of(twin)])] += mesh.edge_length(h);
-    }
-    return length;
-}
-
-std::vector<Index> united(const Draft& draft, const Pair& pair) {
-    const std::vector<Index>& a = draft.faces[pair.first];
-    const std::vector<Index>& b = draft.faces[pair.second];
-    std::vector<Index> faces(a.size() + b.size());
-    std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
-    return faces;
-}
-
-// Stretch up to which a joined chart may be worth having.
-StretchBounds joined_bounds(const Mesh& mesh, const MergeOptions& options, const Draft& draft,
-                            const Pair& pair) {
-    const TrialMap& a = draft.map[pair.first];
-    const TrialMap& b = draft.map[pair.second];
-    StretchBounds limit = options.chart;
-    limit.linf = std::max({limit.linf, a.linf, b.linf});
-    if (std::min(a.area, b.area) < options.small_share * mesh.total_area) {
-        limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
-        limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
-        limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
-    }
-    return limit;
-}
-
-void try_new_pairs(const Mesh& mesh, const MergeOptions& options, const Draft& draft,
-                   const Borders& borders, JoinedMaps& joined, Progress& progress) {
-    std::vector<Pair> open;
-    for (const auto& [pair, length] : borders)
-        if (joined.count(pair) == 0)
-            open.push_back(pair);
-    std::vector<TrialMap> maps(open.size());
-    parallel_for(
-        static_cast<int>(open.size()),
-        [&](int i) {
-            const Pair& pair = open[at(i)];
-            TrialEffort effort;
-            effort.wanted_l2 = joined_bounds(mesh, options, draft, pair).l2;
-            effort.give_up = true;
-            maps[at(i)] = judge::try_chart(mesh, united(draft, pair), draft.seam, effort, progress);
-        },
-        progress);
-    for (std::size_t i = 0; i < open.size(); ++i)
-        joined[open[i]] = maps[i];
-}
-
-// The pair whose border is bought off at the lowest price; −1 if there is none.
-Pair cheapest_pair(const Mesh& mesh, const MergeOptions& options, const Draft& draft,
-                   const Borders& borders, const JoinedMaps& joined) {
-    const double excess = draft.excess();
-    Pair best(-1, -1);
-    double lowest = infinite;
-    for (const auto& [pair, length] : borders) {
-        const TrialMap& map = joined.at(pair);
-        const TrialMap& a = draft.map[pair.first];
-        const TrialMap& b = draft.map[pair.second];
-        const double added = map.excess() - a.excess() - b.excess();
-        const double saved = length - map.cut_length + a.cut_length + b.cut_length;
-        const double least_border = options.least_neck * std::sqrt(std::min(a.area, b.area));
-        if (!map.flat || !joined_bounds(mesh, options, draft, pair).hold(map) ||
-            !(excess + added <= options.max_excess) || !(saved > 0.0) || saved < least_border)
-            continue;
-        const double price = (std::max(0.0, added) + tuning.negligible * mesh.total_area) / saved;
-        if (price < lowest) {
-            lowest = price;
-            best = pair;
-        }
-    }
-    return best;
-}
-
-// The same, and its joined map does not lie on itself: overlaps are worth resolving only here.
-Pair choose_pair(const Mesh& mesh, const MergeOptions& options, const Draft& draft,
-                 const Borders& borders, JoinedMaps& joined, const Progress& progress) {
-    while (true) {
-        const Pair best = cheapest_pair(mesh, options, draft, borders, joined);
-        if (best.first < 0 || !joined[best].overlaps)
-            return best;
-        TrialEffort effort;
-        effort.wanted_l2 = joined_bounds(mesh, options, draft, best).l2;
-        effort.push_apart = true;
-        TrialMap& map = joined[best];
-        map = judge::try_chart(mesh, united(draft, best), draft.seam, effort, progress);
-        map.flat = map.flat && !map.overlaps;
-    }
-}
-
-void join(const Pair& pair, Draft& draft, JoinedMaps& joined) {
-    const auto [a, b] = pair;
-    for (const Face f : draft.faces[b])
-        draft.chart[f] = a;
-    draft.faces[a] = united(draft, pair);
-    draft.faces[b].clear();
-    draft.map[a] = joined[pair];
-    ++draft.joins;
-    for (auto it = joined.begin(); it != joined.end();) {
-        const auto [first, second] = it->first;
-        const bool concerned = first == a || second == a || first == b || second == b;
-        it = concerned ? joined.erase(it) : std::next(it);
-    }
-}
-
-} // namespace
-
-void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress) {
-    JoinedMaps joined;
-    while (true) {
-        const Borders borders = measure_borders(mesh, draft.chart);
-        auto trying = progress.part(0.0); // joins say how far it is
-        try_new_pairs(mesh, options, draft, borders, joined, trying);
-        const Pair best = choose_pair(mesh, options, draft, borders, joined, progress);
-        if (best.first < 0)
-            return;
-        join(best, draft, joined);
-        progress.update(static_cast<double>(draft.joins) / static_cast<double>(draft.faces.size()));
-    }
+Mesh mesh_of_chart(const Mesh& mesh, const std::vector<Index>& faces) {
+    const std::vector<std::uint8_t> no_cuts(mesh.twin.size(), 0);
+    return atlas::mesh_of(
+        mesh, atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, no_cuts)));
 }
 
 // Splits
@@ -200,12 +72,6 @@ namespace {
 
 Index count_labels(const std::vector<Index>& label) {
     return 1 + *std::max_element(label.begin(), label.end());
-}
-
-Mesh mesh_of_chart(const Mesh& mesh, const std::vector<Index>& faces) {
-    const std::vector<std::uint8_t> no_cuts(mesh.twin.size(), 0);
-    return atlas::mesh_of(
-        mesh, atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, no_cuts)));
 }
 
 // Label 0 keeps the chart's number. False where there is just one.
@@ -329,7 +195,7 @@ Dart best_dart(const Mesh& mesh, const DartOptions& options, const std::vector<I
         atlas::mark_cuts(mesh, dart.path, with_dart);
         TrialEffort effort;
         effort.wanted_l2 = options.chart.l2;
-        dart.map = judge::try_chart(mesh, faces, with_dart, effort, progress);
+        dart.map = judge::try_chart(mesh, faces, with_dart, effort, progress, map.turns);
         const double value = worth(mesh, options, map, dart);
         if (value > highest) {
             highest = value;

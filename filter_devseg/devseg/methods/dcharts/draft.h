@@ -1,5 +1,5 @@
-// A segmentation while it is being improved, every chart with its trial map; and what improves it:
-// joins, splits and darts [JKS05, section 3.3].
+// A segmentation while it is being improved, every chart with its trial map; and what takes charts
+// apart: splits and darts [JKS05, section 3.3].
 //
 // References
 //   [JKS05] D. Julius, V. Kraevoy, A. Sheffer: D-Charts: Quasi-Developable Mesh Segmentation.
@@ -20,6 +20,7 @@ struct Draft {
     std::vector<Index> chart;       // #F
     std::vector<std::uint8_t> seam; // 3 #F, symmetric: cuts inside charts
     std::vector<Index> tips;        // vertices where darts end, in the order of cutting
+    std::vector<HalfEdge> left;     // cuts that joins left inside charts; some may be healed since
     std::vector<std::vector<Index>>
         faces;                        // of each chart, ascending; empty for charts that are gone
     std::vector<judge::TrialMap> map; // of each chart
@@ -41,24 +42,15 @@ Draft make_untried_draft(const Mesh& mesh, const std::vector<Index>& chart);
 struct StretchBounds {
     double l2 = 1.005;
     double linf = 1.5;
+    double hard_l2 = infinite; // what not even a small chart may exceed
 
     bool hold(const judge::TrialMap& map) const {
         return map.l2_squared <= l2 * l2 && map.linf <= linf;
     }
 };
 
-struct MergeOptions {
-    StretchBounds chart;          // of each joined chart
-    double max_excess = infinite; // of the draft, see Draft::excess
-    // Least length of border that a join saves, over the root of the smaller chart's area: charts
-    // that touch along a short border would hang together by a narrow neck.
-    double least_neck = 0.5;
-    double small_share = 0.01; // of the surface: smaller charts are joined to a neighbour anyway
-};
-
-/// Joins two neighbouring charts at a time, those first whose common border is long and whose
-/// joined map costs little stretch; neighbours are tried again after each.
-void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
+/// The faces of a chart as a mesh of their own, in their order.
+Mesh mesh_of_chart(const Mesh& mesh, const std::vector<Index>& faces);
 
 /// Grows two D-Charts within the chart, far from each other, and gives the second and what it left
 /// over labels of their own. Cuts inside the chart are healed. Returns whether the chart is in

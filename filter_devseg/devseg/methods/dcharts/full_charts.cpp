@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devseg/atlas/disks.h"
 #include "devseg/atlas/fragments.h"
-#include "devseg/flatten/flatten.h"
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/judge/final_map.h"
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/methods/dcharts/tuning.h"
 #include "devseg/methods/growth/borders.h"
 
@@ -47,6 +48,50 @@ void straighten(const Mesh& mesh, const Mesh& coarse, const Draft& draft,
         growth::straighten_borders(mesh, proxies, infinite, 1 + edge, chart, progress);
 }
 
+// The cuts that joins left inside charts (3 #F): those of the coarse surface along the shortest
+// paths between the same vertices.
+std::vector<std::uint8_t> left_cuts(const Mesh& mesh,
+                                    const std::optional<mesh::CoarseMesh>& decimation,
+                                    const Draft& draft, const std::vector<Index>& chart,
+                                    const Progress& progress) {
+    std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    const auto mark = [&](HalfEdge h) {
+        const Face g = mesh.across(h);
+        if (g >= 0 && chart[face_of(h)] == chart[g])
+            seam[h] = seam[mesh.twin[h]] = 1;
+    };
+    std::optional<Buckets<HalfEdge>> leaving;
+    graph::ShortestPaths<> paths(mesh.points.size());
+    for (const HalfEdge cut : draft.left) {
+        if (draft.seam[cut] == 0) // healed since
+            continue;
+        if (!decimation) {
+            mark(cut);
+            continue;
+        }
+        if (!leaving)
+            leaving = make_buckets<HalfEdge>(mesh.vertex_count(), [&](auto put) {
+                for (const HalfEdge h : mesh.all_half_edges())
+                    put(mesh.origin(h), h);
+            });
+        const Vertex from = decimation->vertex[decimation->mesh.origin(cut)];
+        const Vertex to = decimation->vertex[decimation->mesh.target(cut)];
+        paths.clear();
+        paths.add_source(from);
+        paths.run(
+            [&](Vertex v, double distance) {
+                for (const HalfEdge h : (*leaving)[v])
+                    if (mesh.twin[h] >= 0)
+                        paths.reach(mesh.target(h), distance + mesh.edge_length(h), h);
+                return v != to;
+            },
+            progress);
+        for (Vertex v = to; v != from && paths.step[v] >= 0; v = mesh.origin(paths.step[v]))
+            mark(paths.step[v]);
+    }
+    return seam;
+}
+
 } // namespace
 
 std::optional<mesh::CoarseMesh> decimate(const Mesh& mesh, bool creased, Index charts,
@@ -69,74 +114,33 @@ DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMes
                straightening, result.chart, progress);
     result.seam = draft.seam;
     result.darts = static_cast<Index>(draft.tips.size());
-    if (decimation || straightening != Straightening::none) {
+    if (decimation || straightening == Straightening::smooth) {
+        mesh::keep_regions_whole(mesh, tuning.least_chart, result.chart);
         result.chart = atlas::absorb_fragments(mesh, result.chart, tuning.least_chart);
         progress.check();
         std::vector<Index> tips = draft.tips;
         for (Index& tip : tips)
             tip = decimation ? decimation->vertex[tip] : tip;
-        result.seam.assign(mesh.twin.size(), 0);
+        result.seam = left_cuts(mesh, decimation, draft, result.chart, progress);
         result.darts = cut_darts_to(mesh, result.chart, tips, result.seam);
     }
     progress.check();
-    result.chart = atlas::make_chart_map(mesh, result.chart, result.seam, false).chart;
+    // Borders that have moved may meet cuts and take a chart apart.
+    result.chart = atlas::make_chart_map(mesh, result.chart, result.seam, true).chart;
     progress.check();
     return result;
 }
 
-std::vector<double> measure_stretch(const Mesh& mesh, DevelopableCharts& charts,
-                                    Progress& progress) {
-    auto cutting = progress.part("measuring the final map", 0.1);
-    const atlas::ChartMap disks =
-        atlas::cut_charts_to_disks(
-            mesh, atlas::make_chart_map(mesh, charts.chart, charts.seam, false), cutting)
-            .charts;
-    auto flattening = progress.part("measuring the final map", 0.9);
-    std::vector<double> linf(at(1 + *std::max_element(charts.chart.begin(), charts.chart.end())),
-                             1.0);
+void measure_stretch(const Mesh& mesh, DevelopableCharts& charts, Progress& progress) {
+    const Draft draft = make_untried_draft(mesh, charts.chart);
     double excess = 0.0;
-    for (const flatten::FlatChart& flat :
-         flatten::flatten_charts(mesh, disks, flatten::FlattenMethod::symmetric_dirichlet,
-                                 flattening)
-             .flat) {
-        judge::TrialMap map;
-        judge::measure_stretch(flatten::make_flattening_problem(mesh, flat.surface), flat.uv, map);
+    charts.linf_stretch = 1.0;
+    for (const judge::TrialMap& map :
+         judge::final_maps(mesh, draft.faces, charts.seam, progress)) {
         excess += map.excess();
-        double& worst = linf[charts.chart[flat.surface.face.front()]];
-        worst = std::max(worst, map.linf);
+        charts.linf_stretch = std::max(charts.linf_stretch, map.linf);
     }
     charts.l2_stretch = std::sqrt(1.0 + std::max(0.0, excess) / mesh.total_area);
-    charts.linf_stretch = *std::max_element(linf.begin(), linf.end());
-    return linf;
-}
-
-void cut_more_darts(const Mesh& mesh, const DartOptions& options, DevelopableCharts& charts,
-                    Progress& progress) {
-    Draft draft = make_draft(mesh, charts.chart, charts.seam, options.chart.l2, progress);
-    charts.darts += cut_darts(mesh, options, draft, progress);
-    charts.seam = draft.seam;
-}
-
-void split_above(const Mesh& mesh, double linf, const DChartsOptions& options,
-                 DevelopableCharts& charts, Progress& progress) {
-    auto measuring = progress.part(0.2);
-    std::vector<double> reached = measure_stretch(mesh, charts, measuring);
-    while (charts.linf_stretch > linf) { // every round makes charts smaller, down to single faces
-        auto splitting = progress.part(0.2 * progress.left());
-        Draft draft = make_untried_draft(mesh, charts.chart);
-        draft.seam = charts.seam;
-        bool changed = false;
-        for (Index c = 0; c < static_cast<Index>(reached.size()); ++c)
-            if (reached[c] > linf)
-                changed |= split_chart(mesh, options, linf, c, draft, splitting) ||
-                           halve_chart(mesh, linf, c, draft, splitting);
-        if (!changed)
-            break;
-        charts.seam = draft.seam;
-        charts.chart = atlas::make_chart_map(mesh, draft.chart, charts.seam, false).chart;
-        auto again = progress.part(0.2 * progress.left());
-        reached = measure_stretch(mesh, charts, again);
-    }
 }
 
 } // namespace devseg::dcharts

@@ -27,17 +27,7 @@ DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMes
                            double max_fitting_error, Straightening straightening,
                            Progress& progress);
 
-/// Fills in the stretch of the charts' final map; returns L∞ of each chart.
-std::vector<double> measure_stretch(const Mesh& mesh, DevelopableCharts& charts,
-                                    Progress& progress);
-
-/// Darts to spots that a coarse surface does not have.
-void cut_more_darts(const Mesh& mesh, const DartOptions& options, DevelopableCharts& charts,
-                    Progress& progress);
-
-/// Splits charts until no spot of the final map is stretched more than `linf`, or no chart can be
-/// split any more; the stretch is measured then.
-void split_above(const Mesh& mesh, double linf, const DChartsOptions& options,
-                 DevelopableCharts& charts, Progress& progress);
+/// Fills in the stretch of the charts' final map.
+void measure_stretch(const Mesh& mesh, DevelopableCharts& charts, Progress& progress);
 
 } // namespace devseg::dcharts

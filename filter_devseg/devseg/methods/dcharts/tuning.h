@@ -26,6 +26,14 @@ struct Tuning {
     // of the area for each √area of border.
     double negligible = 1e-5;
     double small_allowance = 3.0; // of small charts, over the bounds of others
+    // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
+    // up to one.
+    double corner_defect = 0.2;
+    double least_part = 0.1;      // of a border, over √area, that is closed on its own
+    std::size_t tried_again = 4;  // parts at a time, the best of those with old verdicts
+    // Parts between creases, joined one by one. Where there are more, creases are no guide.
+    Index most_regions = 1000;
+    Index few_regions = 100; // flat faces of such a part that are joined one by one
     double smallest_part = 0.05;  // of a chart: smaller parts are not worth a chart
     std::size_t tried_spots = 3;  // of a chart, for each dart
     double worst_spot_gain = 0.1; // share of the excess over the bound that a dart must take
@@ -47,6 +55,7 @@ struct Tuning {
     double creased_fitting_error = 0.008; // F_max at most
     double creased_length_weight = 0.001;
     double creased_threshold = 0.02; // factor of η
+    double creased_neck = 0.1;       // least hinge of two parts of a net, see MergeOptions
     double bent_cosine = 0.866;      // of 30 degrees
     double sharp_edge_cosine = 0.5;  // of 60 degrees
     double sharp_share = 0.6;        // of the bent edges
@@ -57,8 +66,8 @@ struct Tuning {
     Index automatic_seeds = 10; // where the number of charts is to be found
     int most_splits = 200;
     double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
-    int most_attempts = 5;
-    int most_linf_attempts = 2; // then charts are split until the worst spot is within it
+    int most_attempts = 2;      // on the coarse surface; then the full one decides
+    int few_darts = 4;          // of a chart above its bound; then it is split
     double first_share = 0.9;   // of the allowed stretch that the coarse surface may use
     double chart_excess = 4.0;  // of one chart over that of the whole
     double loose_linf = 8.0;    // worst spots count little where they have no bound

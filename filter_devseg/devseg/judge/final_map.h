@@ -1,0 +1,24 @@
+// The last word on charts: their maps as 'Charts: Flatten' makes them, on the surface itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "devseg/base/progress.h"
+#include "devseg/judge/trial.h"
+
+namespace devseg::judge {
+
+/// The final maps of disjoint charts, each given by its faces (ascending), cut open along the
+/// marked edges (`seam`, 3 #F of the mesh) and to disks: cut, flattened and repaired as the filter
+/// does it. `flat` is false where a chart lies on itself and is cut apart by that; the stretch is
+/// then that of its parts. All cores; only the thread that runs the filter may call it.
+std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                                 const std::vector<std::uint8_t>& seam, Progress& progress);
+
+/// Whether the final map's L2 stretch is at most `l2` beyond doubt, from a bound that costs one
+/// linear system. False says nothing.
+bool is_surely_within(const Mesh& mesh, const std::vector<Index>& faces,
+                      const std::vector<std::uint8_t>& seam, double l2, const Progress& progress);
+
+} // namespace devseg::judge

@@ -1,0 +1,476 @@
+#include "devseg/methods/dcharts/joins.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <utility>
+
+#include "devseg/base/parallel.h"
+#include "devseg/judge/final_map.h"
+#include "devseg/mesh/angle_defects.h"
+#include "devseg/methods/dcharts/tuning.h"
+
+namespace devseg::dcharts {
+
+namespace {
+
+using judge::TrialEffort;
+using judge::TrialMap;
+using Pair = std::pair<Index, Index>; // of charts, the lower number first, or twice the same
+
+// Seam edges that may be closed together, each by its half-edge with the lower number.
+struct Closing {
+    Pair charts;
+    std::vector<Index> edges;
+};
+
+// What a trial has found. Parts of borders are tried again only where an older verdict makes them
+// the best that there is: the more of a chart is closed, the more another part costs.
+struct Verdict {
+    TrialMap map;       // of the joined chart
+    double added = 0.0; // excess
+    double saved = 0.0; // length of seam, internal units
+    bool fresh = false; // found with the charts as they are now
+    bool confirmed = false;
+};
+using Verdicts = std::map<std::vector<Index>, std::pair<Closing, Verdict>>; // by edges, ascending
+
+// Finds the seams: chains of seam edges from node to node. Nodes are vertices where not just two
+// seam edges meet, those on the mesh's boundary, and corners of the surface where these count.
+class SeamChains {
+public:
+    SeamChains(const Mesh& mesh, bool keep_corners)
+        : mesh_(mesh), corner_(mesh::boundary_vertices(mesh)) {
+        if (!keep_corners)
+            return;
+        const std::vector<double> defects = mesh::angle_defects(mesh);
+        for (std::size_t v = 0; v < defects.size(); ++v)
+            if (std::abs(defects[v]) > tuning.corner_defect)
+                corner_[v] = corner;
+    }
+
+    bool is_corner(Vertex v) const { return corner_[v] == corner; }
+
+    // Each in the order of its edges.
+    std::vector<Closing> find(const Draft& draft) const {
+        const auto is_seam = [&](HalfEdge h) {
+            return mesh_.twin[h] >= 0 &&
+                   (draft.seam[h] != 0 ||
+                    draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
+        };
+        std::vector<HalfEdge> seams;
+        for (const HalfEdge h : mesh_.all_half_edges())
+            if (is_seam(h))
+                seams.push_back(h);
+        const Buckets<HalfEdge> leaving = make_buckets<HalfEdge>(
+            mesh_.vertex_count(), [&](auto put) {
+                for (const HalfEdge h : seams)
+                    put(mesh_.origin(h), h);
+            });
+        const auto is_node = [&](Vertex v) {
+            return corner_[v] != 0 || leaving[v].size() != 2;
+        };
+        std::vector<std::uint8_t> seen(mesh_.twin.size(), 0);
+        std::vector<Closing> chains;
+        const auto trace = [&](HalfEdge h) {
+            Closing chain;
+            chain.charts = std::minmax(Index{draft.chart[face_of(h)]},
+                                       Index{draft.chart[mesh_.across(h)]});
+            while (seen[h] == 0) {
+                seen[h] = seen[mesh_.twin[h]] = 1;
+                chain.edges.push_back(std::min<Index>(h, mesh_.twin[h]));
+                const Vertex v = mesh_.target(h);
+                if (is_node(v))
+                    break;
+                const Span<HalfEdge> both = leaving[v];
+                h = *both.begin() == mesh_.twin[h] ? *(both.begin() + 1) : *both.begin();
+            }
+            chains.push_back(std::move(chain));
+        };
+        for (const HalfEdge h : seams)
+            if (seen[h] == 0 && is_node(mesh_.origin(h)))
+                trace(h);
+        for (const HalfEdge h : seams) // loops without a node
+            if (seen[h] == 0)
+                trace(h);
+        return chains;
+    }
+
+private:
+    static constexpr std::uint8_t corner = 2;
+
+    const Mesh& mesh_;
+    std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
+};
+
+class Joining {
+public:
+    Joining(const Mesh& mesh, const MergeOptions& options, Draft& draft)
+        : mesh_(mesh), options_(options), draft_(draft), chains_(mesh, options.keep_corners),
+          open_(options.open) {}
+
+    void run(Progress& progress) {
+        const auto start = static_cast<double>(draft_.charts_number());
+        const Index joins_before = draft_.joins;
+        while (draft_.charts_number() > options_.enough_charts) {
+            auto trying = progress.part(0.0); // joins say how far it is
+            for (propose(); !untried_.empty(); propose())
+                try_again(untried_, trying);
+            Entry* best = choose(progress);
+            const bool may_part = draft_.charts_number() > options_.parts_above;
+            if (best != nullptr)
+                close(best->first, best->second);
+            else if (partly_ || !may_part)
+                return;
+            partly_ = may_part && (partly_ || best == nullptr);
+            progress.update((draft_.joins - joins_before) / start);
+        }
+    }
+
+private:
+    using Entry = std::pair<Closing, Verdict>;
+
+    // All closings that there are now, those known with their verdicts.
+    void propose() {
+        std::map<Pair, std::vector<Closing>> chains;
+        std::vector<Closing> found = chains_.find(draft_);
+        seams_at_corner_.clear();
+        for (const Closing& chain : found)
+            count_at_corners(chain, seams_at_corner_);
+        for (Closing& chain : found)
+            if (is_open(chain.charts.first) || is_open(chain.charts.second))
+                chains[chain.charts].push_back(std::move(chain));
+        const Verdicts last = std::move(verdicts_);
+        verdicts_.clear();
+        untried_.clear();
+        for (auto& [charts, parts] : chains) {
+            if (charts.first != charts.second) {
+                Closing whole{charts, {}};
+                for (const Closing& part : parts)
+                    whole.edges.insert(whole.edges.end(), part.edges.begin(), part.edges.end());
+                add(std::move(whole), true, last);
+            }
+            for (const Closing& part : parts)
+                if (partly_)
+                    add_parts(part, last);
+        }
+    }
+
+    // A chain, and from both ends the longest of its halves, quarters and so on that can be closed.
+    void add_parts(const Closing& chain, const Verdicts& last) {
+        add(chain, false, last);
+        const double least = tuning.least_part * std::sqrt(mesh_.total_area);
+        const double excess = draft_.excess();
+        for (const bool at_end : {false, true})
+            for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {
+                const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
+                                          : chain.edges.begin();
+                Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}};
+                if (length_of(part.edges) < least)
+                    break;
+                const Entry* entry = add(std::move(part), false, last);
+                if (entry == nullptr || price(*entry, excess) < infinite)
+                    break;
+            }
+    }
+
+    double length_of(const std::vector<Index>& edges) const {
+        double length = 0.0;
+        for (const HalfEdge h : edges)
+            length += mesh_.edge_length(h);
+        return length;
+    }
+
+    // Returns what is known of it.
+    const Entry* add(Closing closing, bool whole, const Verdicts& last) {
+        std::vector<Index> key = closing.edges;
+        std::sort(key.begin(), key.end());
+        if (encloses_corner(closing))
+            return nullptr;
+        const auto known = last.find(key);
+        const bool is_known =
+            known != last.end() && (known->second.second.fresh || !whole);
+        const auto [entry, is_new] = verdicts_.try_emplace(
+            std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
+        if (is_known)
+            return &entry->second;
+        if (is_new)
+            untried_.push_back(&entry->second);
+        return nullptr;
+    }
+
+    void count_at_corners(const Closing& closing, std::map<Index, int>& count) const {
+        for (const HalfEdge h : closing.edges)
+            for (const Vertex v : {mesh_.origin(h), mesh_.target(h)})
+                if (chains_.is_corner(v))
+                    ++count[v];
+    }
+
+    // Whether no seam leads to some corner any more: around it the surface is no plane.
+    bool encloses_corner(const Closing& closing) const {
+        std::map<Index, int> closed;
+        count_at_corners(closing, closed);
+        return std::any_of(closed.begin(), closed.end(), [&](const auto& corner) {
+            return seams_at_corner_.at(corner.first) == corner.second;
+        });
+    }
+
+    bool is_open(Index chart) const { return open_.empty() || open_[at(chart)] != 0; }
+
+    void try_again(const std::vector<Entry*>& entries, Progress& progress) {
+        parallel_for(
+            static_cast<int>(entries.size()),
+            [&](int i) {
+                auto& [closing, verdict] = *entries[at(i)];
+                TrialEffort effort;
+                effort.wanted_l2 = bounds_of(closing.charts).l2;
+                effort.give_up = true;
+                assess(closing,
+                       judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
+                                        effort, progress, turns_of(closing)),
+                       verdict);
+            },
+            progress);
+    }
+
+    void assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
+        const auto [first, second] = closing.charts;
+        const TrialMap& a = draft_.map[first];
+        const TrialMap& b = draft_.map[second];
+        const bool is_join = first != second;
+        verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
+        verdict.saved = length_of(closing.edges) - map.cut_length + a.cut_length +
+                        (is_join ? b.cut_length : 0.0);
+        verdict.map = std::move(map);
+        verdict.fresh = true;
+        verdict.confirmed = false;
+    }
+
+    std::vector<Index> united(const Pair& pair) const {
+        const std::vector<Index>& a = draft_.faces[pair.first];
+        if (pair.first == pair.second)
+            return a;
+        const std::vector<Index>& b = draft_.faces[pair.second];
+        std::vector<Index> faces(a.size() + b.size());
+        std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
+        return faces;
+    }
+
+    // Of the faces of both charts, those of the second turned so that the closed edges lie along
+    // each other; empty where a chart has no map.
+    std::vector<Vec2> turns_of(const Closing& closing) const {
+        const auto [a, b] = closing.charts;
+        const std::vector<Vec2>& turns_a = draft_.map[a].turns;
+        const std::vector<Vec2>& turns_b = draft_.map[b].turns;
+        if (a == b || turns_a.empty() || turns_b.empty())
+            return a == b ? turns_a : std::vector<Vec2>();
+        const auto turn_of = [&](Index chart, Face f) {
+            const std::vector<Index>& faces = draft_.faces[chart];
+            return draft_.map[chart].turns[at(static_cast<Index>(
+                std::lower_bound(faces.begin(), faces.end(), Index{f}) - faces.begin()))];
+        };
+        // As complex numbers: the sum over the edges of their direction on one side over that on
+        // the other.
+        std::complex<double> between = 0.0;
+        for (const HalfEdge edge : closing.edges) {
+            const HalfEdge ha = draft_.chart[face_of(edge)] == a ? edge : mesh_.twin[edge];
+            const HalfEdge hb = mesh_.twin[ha];
+            between += laid(turn_of(a, face_of(ha)), ha) * std::conj(-laid(turn_of(b, face_of(hb)), hb));
+        }
+        const double size = std::abs(between);
+        const std::complex<double> turn = size > 0.0 ? between / size : 1.0;
+        std::vector<Vec2> turns;
+        auto ia = draft_.faces[a].begin();
+        auto ib = draft_.faces[b].begin();
+        auto ta = turns_a.begin();
+        auto tb = turns_b.begin();
+        while (ia != draft_.faces[a].end() || ib != draft_.faces[b].end()) {
+            if (ib == draft_.faces[b].end() || (ia != draft_.faces[a].end() && *ia < *ib)) {
+                turns.push_back(*ta++);
+                ++ia;
+            } else {
+                const std::complex<double> turned =
+                    turn * std::complex<double>(tb->x(), tb->y());
+                turns.emplace_back(turned.real(), turned.imag());
+                ++tb;
+                ++ib;
+            }
+        }
+        return turns;
+    }
+
+    // A half-edge in the plane, its face turned so.
+    std::complex<double> laid(const Vec2& turn, HalfEdge h) const {
+        const Face f = face_of(h);
+        std::array<double, 3> length{};
+        for (const HalfEdge e : half_edges_of(f))
+            length[corner_of(e)] = mesh_.edge_length(e);
+        const Eigen::Matrix2d edges = flatten::make_rest_triangle(length, 0.0).edges;
+        const std::array<Vec2, 3> corner{Vec2(0.0, 0.0), edges.col(0), edges.col(1)};
+        const Vec2 edge = corner[corner_of(Mesh::next(h))] - corner[corner_of(h)];
+        return std::complex<double>(turn.x(), turn.y()) *
+               std::complex<double>(edge.x(), edge.y());
+    }
+
+    // The cuts inside the joined chart: those of both, and what is left of the border.
+    std::vector<std::uint8_t> seam_without(const Closing& closing) const {
+        std::vector<std::uint8_t> seam = draft_.seam;
+        for (const HalfEdge h : left_border(closing))
+            seam[h] = seam[mesh_.twin[h]] = 1;
+        for (const HalfEdge h : closing.edges)
+            seam[h] = seam[mesh_.twin[h]] = 0;
+        return seam;
+    }
+
+    std::vector<HalfEdge> left_border(const Closing& closing) const {
+        const auto [a, b] = closing.charts;
+        std::vector<HalfEdge> left;
+        if (a == b)
+            return left;
+        const std::vector<Index>& faces =
+            draft_.faces[draft_.faces[a].size() < draft_.faces[b].size() ? a : b];
+        for (const Face f : faces)
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh_.twin[h];
+                if (twin < 0 || draft_.chart[face_of(twin)] == draft_.chart[f])
+                    continue;
+                const Index other = draft_.chart[face_of(twin)];
+                const Index edge = std::min<Index>(h, twin);
+                if ((other == a || other == b) &&
+                    std::find(closing.edges.begin(), closing.edges.end(), edge) ==
+                        closing.edges.end())
+                    left.push_back(edge);
+            }
+        return left;
+    }
+
+    // Stretch up to which a joined chart may be worth having.
+    StretchBounds bounds_of(const Pair& pair) const {
+        const TrialMap& a = draft_.map[pair.first];
+        const TrialMap& b = draft_.map[pair.second];
+        StretchBounds limit = options_.chart;
+        limit.linf = std::max({limit.linf, a.linf, b.linf});
+        if (std::min(a.area, b.area) < options_.small_share * mesh_.total_area &&
+            pair.first != pair.second) {
+            limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
+            limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
+            limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
+        }
+        limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
+        return limit;
+    }
+
+    // Stretch for each length of seam that the closing saves; infinite where it may not be.
+    double price(const Entry& entry, double excess) const {
+        const auto& [closing, verdict] = entry;
+        const auto [first, second] = closing.charts;
+        const double least =
+            first == second ? 0.0
+                            : options_.least_neck * std::sqrt(std::min(draft_.map[first].area,
+                                                                       draft_.map[second].area));
+        if (!verdict.map.flat || !bounds_of(closing.charts).hold(verdict.map) ||
+            !(excess + verdict.added <= options_.max_excess) || !(verdict.saved > 0.0) ||
+            verdict.saved < least)
+            return infinite;
+        return (std::max(0.0, verdict.added) + tuning.negligible * mesh_.total_area) /
+               verdict.saved;
+    }
+
+    // The seam that is bought off at the lowest price, none if there is none. Overlaps are worth
+    // resolving only here.
+    Entry* choose(Progress& progress) {
+        while (true) {
+            const double excess = draft_.excess();
+            std::vector<std::pair<double, Entry*>> order;
+            for (auto& item : verdicts_)
+                if (const double p = price(item.second, excess); p < infinite)
+                    order.emplace_back(p, &item.second);
+            const std::size_t few = std::min(tuning.tried_again, order.size());
+            // Equals in the order of their edges.
+            std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(few),
+                              order.end(), [](const auto& a, const auto& b) {
+                                  return a.first != b.first
+                                             ? a.first < b.first
+                                             : a.second->first.edges < b.second->first.edges;
+                              });
+            if (order.empty())
+                return nullptr;
+            auto& [closing, verdict] = *order.front().second;
+            if (!verdict.fresh) {
+                std::vector<Entry*> stale;
+                for (std::size_t i = 0; i < few; ++i)
+                    if (!order[i].second->second.fresh)
+                        stale.push_back(order[i].second);
+                auto trying = progress.part(0.0);
+                try_again(stale, trying);
+            } else if (verdict.confirmed || (!options_.confirm && !verdict.map.overlaps)) {
+                return order.front().second;
+            } else {
+                confirm(closing, verdict, progress);
+            }
+        }
+    }
+
+    void confirm(const Closing& closing, Verdict& verdict, Progress& progress) {
+        const std::vector<std::uint8_t> seam = seam_without(closing);
+        if (options_.confirm) {
+            auto judging = progress.part(0.0);
+            TrialMap map =
+                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
+            map.cut_length = verdict.map.cut_length;
+            assess(closing, std::move(map), verdict);
+        } else {
+            TrialEffort effort;
+            effort.wanted_l2 = bounds_of(closing.charts).l2;
+            effort.push_apart = true;
+            TrialMap map =
+                judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
+                                 turns_of(closing));
+            map.flat = map.flat && !map.overlaps;
+            assess(closing, std::move(map), verdict);
+        }
+        verdict.confirmed = true;
+    }
+
+    void close(const Closing& closing, const Verdict& verdict) {
+        const auto [a, b] = closing.charts;
+        draft_.seam = seam_without(closing);
+        const std::vector<HalfEdge> left = left_border(closing);
+        draft_.left.insert(draft_.left.end(), left.begin(), left.end());
+        draft_.map[a] = verdict.map;
+        if (!open_.empty())
+            open_[at(a)] = open_[at(b)] = 1;
+        if (a != b) {
+            draft_.faces[a] = united(closing.charts);
+            for (const Face f : draft_.faces[b])
+                draft_.chart[f] = a;
+            draft_.faces[b].clear();
+            ++draft_.joins;
+        }
+        for (auto& [edges, entry] : verdicts_) {
+            const auto [first, second] = entry.first.charts;
+            if (first == a || second == a || first == b || second == b)
+                entry.second.fresh = false;
+        }
+    }
+
+    const Mesh& mesh_;
+    const MergeOptions& options_;
+    Draft& draft_;
+    SeamChains chains_;
+    std::vector<std::uint8_t> open_; // of each chart; empty: all
+    bool partly_ = false; // parts of borders are closed as well
+    Verdicts verdicts_;
+    std::vector<Entry*> untried_;
+    std::map<Index, int> seams_at_corner_; // seam edges at each corner that has any
+};
+
+} // namespace
+
+void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress) {
+    Joining(mesh, options, draft).run(progress);
+}
+
+} // namespace devseg::dcharts
