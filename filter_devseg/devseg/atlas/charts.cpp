@@ -175,6 +175,7 @@ Mesh mesh_of(const Mesh& mesh, const ChartSurface& surface) {
     for (const Vertex v : surface.vertex)
         part.points.push_back(mesh.points[v]);
     part.unit_length = mesh.unit_length;
+    part.whole_area = mesh.model_area();
     mesh::compute_face_geometry(part);
     return part;
 }

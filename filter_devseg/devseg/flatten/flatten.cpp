@@ -214,7 +214,7 @@ void hand_over_slivers(const Mesh& mesh, FlattenMethod method, FlattenResult& re
     Reattachment reattachment(mesh, result);
     bool joined = false;
     for (const auto& [area, part] : reattachment.parts())
-        if (area < tuning.sliver_share * mesh.total_area)
+        if (area < tuning.sliver_share * mesh.model_area())
             joined = reattachment.glue(part, method, progress) || joined;
     if (joined)
         reattachment.renumber();

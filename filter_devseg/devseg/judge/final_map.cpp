@@ -38,7 +38,6 @@ Extract extract(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                 marks[h] = marks[mesh.twin[h]] = 1;
     const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, marks);
     Extract result{atlas::mesh_of(mesh, surface), {}};
-    result.mesh.total_area = mesh.total_area; // gaps and tolerances refer to the whole model
     for (const Face f : faces)
         result.chart.push_back(chart[f]);
     return result;

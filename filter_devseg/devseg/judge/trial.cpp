@@ -24,6 +24,7 @@ struct Tuning {
     double coarsest = 1e-5;
     int few_rounds = 40;
     int many_rounds = 200;
+    double near_excess = 10.0; // over the wanted one: a start that is farther is not near
     int stitching_rounds = 2; // spread what does not fit over more faces than those at the border
 };
 constexpr Tuning tuning;
@@ -44,8 +45,15 @@ std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const Tria
     if (!turns.empty())
         start = flatten::attempt(
             [&] { return flatten::stitch(problem, turns, tuning.stitching_rounds); });
-    if (start.empty() || flatten::count_flips(problem, start) > 0)
+    if (start.empty() || flatten::count_flips(problem, start) > 0) {
+        if (effort.only_near)
+            return {};
         start = flatten::simple_map(problem);
+    } else if (effort.only_near &&
+               flatten::symmetric_dirichlet_energy(problem, start) - 1.0 >
+                   tuning.near_excess * excess) {
+        return {};
+    }
     std::vector<Vec2> uv =
         flatten::minimise_symmetric_dirichlet(problem, start, options, progress).uv;
     flatten::scale_to_area(problem, uv);

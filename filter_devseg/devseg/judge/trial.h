@@ -33,6 +33,7 @@ struct TrialEffort {
         1.005;               // what the stretch is compared with: decides how exact the map must be
     bool give_up = false;    // stop early if it will be above; what is measured then is too much
     bool push_apart = false; // try to push overlapping parts apart
+    bool only_near = false;  // not flat where `turns` do not nearly fit together
 };
 
 /// Flattens the faces as one chart, cut open along the marked edges (`seam`, 3 #F of the mesh;

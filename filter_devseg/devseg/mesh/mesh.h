@@ -57,9 +57,12 @@ struct Mesh : Connectivity {
     std::vector<Vec3> face_centers; // #F, centroids
     double total_area = 0.0;
     double unit_length = 1.0; // model units per internal unit
+    double whole_area = 0.0;  // of the model that this is a part of; 0 = it is no part
 
     Index vertex_count() const { return static_cast<Index>(points.size()); }
     Range<VertexKind> all_vertices() const { return {0, vertex_count()}; }
+    /// What gaps and tolerances in the plane refer to: the same for all parts of a model.
+    double model_area() const { return whole_area > 0.0 ? whole_area : total_area; }
     double edge_length(HalfEdge h) const { return (points[target(h)] - points[origin(h)]).norm(); }
 };
 

@@ -63,7 +63,7 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     problem.vertex_count = surface.vertex_count();
     problem.faces = surface.faces;
     problem.twin = surface.twin;
-    problem.model_size = std::sqrt(mesh.total_area);
+    problem.model_size = std::sqrt(mesh.model_area());
     for (const HalfEdge h : surface.loops.front()) {
         problem.boundary.push_back(surface.origin(h));
         problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));

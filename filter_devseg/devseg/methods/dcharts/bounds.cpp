@@ -91,10 +91,13 @@ private:
         }
     }
 
+    // Roughness counts apart.
     bool is_above(Index c) const {
         const TrialMap& map = draft_.map[c];
         return known_[c] == Known::map &&
-               ((bounds_.chart_l2 > 0.0 && map.l2_squared > bounds_.chart_l2 * bounds_.chart_l2) ||
+               ((bounds_.chart_l2 > 0.0 &&
+                 map.l2_squared - 1.0 - bounds_.roughness >
+                     bounds_.chart_l2 * bounds_.chart_l2 - 1.0) ||
                 (bounds_.linf > 0.0 && map.linf > bounds_.linf));
     }
 
@@ -205,6 +208,10 @@ private:
         charts_.joins += draft_.joins;
         charts_.seam = draft_.seam;
         charts_.chart = atlas::make_chart_map(mesh_, draft_.chart, charts_.seam, false).chart;
+        for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c)
+            if (!draft_.faces[c].empty() && is_above(c))
+                for (const Face f : draft_.faces[c])
+                    charts_.above[f] = 1;
         if (bounds_.max_excess == infinite && bounds_.linf == 0.0)
             return;
         charts_.l2_stretch = std::sqrt(1.0 + std::max(0.0, draft_.excess()) / mesh_.total_area);

@@ -9,7 +9,8 @@ namespace devseg::dcharts {
 
 /// Bounds of the final map, 0 or infinite where there is none.
 struct FinalBounds {
-    double chart_l2 = 0.0;        // L2 stretch of each chart
+    double chart_l2 = 0.0;        // L2 stretch of each chart, above the roughness
+    double roughness = 0.0;       // l2² − 1 that no segmentation can remove
     double linf = 0.0;            // stretch of the worst spot
     double max_excess = infinite; // Σ A (l2² − 1) over the charts, internal units squared
     bool add_darts = true;        // where they bring a chart within its bound

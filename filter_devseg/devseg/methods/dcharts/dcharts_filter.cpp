@@ -1,8 +1,12 @@
 // The filter of D-Charts.
+#include <algorithm>
+#include <cmath>
+
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/dcharts/developable_charts.h"
+#include "devseg/methods/dcharts/tuning.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::dcharts {
@@ -33,20 +37,36 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
     const atlas::ChartMap charts =
         atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
+    std::vector<std::uint8_t> is_above(at(cuts.charts.count), 0);
+    for (const Face f : input.mesh.all_faces())
+        is_above[cuts.charts.chart[f]] |= segmentation.above[f];
+    const int above = static_cast<int>(std::count(is_above.begin(), is_above.end(), 1));
     ResultValues values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
         {"joined_charts_number", segmentation.joins},
         {"darts_number", segmentation.darts},
-        {"bounds_kept", segmentation.bounds_kept},
+        {"bounds_kept", segmentation.bounds_kept && above == 0},
+        {"charts_above_bound_number", above},
+        {"roughness_l2", std::sqrt(1.0 + segmentation.roughness)},
         {"l2_stretch", segmentation.l2_stretch},
         {"linf_stretch", segmentation.linf_stretch},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
         {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
-    return chart_output(input.mesh, std::move(cuts.charts), std::move(segmentation.fitting_error),
-                        std::move(values));
+    FilterOutput output =
+        chart_output(input.mesh, std::move(cuts.charts), std::move(segmentation.fitting_error),
+                     std::move(values));
+    if (above > 0)
+        output.notes.push_back(std::to_string(above) +
+                               " charts are above their bound of stretch: no smaller part of them "
+                               "could be flattened within it");
+    if (segmentation.roughness > tuning.rough)
+        output.notes.push_back("the surface is rough: its smallest parts have an L2 stretch of " +
+                               std::to_string(std::sqrt(1.0 + segmentation.roughness)) +
+                               ", which counts apart; smooth or simplify it first");
+    return output;
 }
 
 } // namespace
@@ -58,10 +78,11 @@ std::vector<FilterDeclaration> filters() {
                    FilterCategory::remeshing, help)
             .integer(
                 &O::charts_number, "Number of charts",
-                "The initial estimate of the number of charts, from 1 to the number of faces. "
-                "Large regions that fit no chart get charts of their own, and neighbours that "
-                "flatten well together are joined, so that the final number differs. 0 finds the "
-                "fewest charts whose final map keeps max_l2_stretch and max_linf_stretch.")
+                "The aim for the number of charts of the whole mesh, from 1 to the number of faces. "
+                "Components get charts by need, large regions that fit no chart get charts of their "
+                "own, and neighbours that flatten well together are joined, so that the final number "
+                "differs. 0 finds the fewest charts whose final map keeps max_l2_stretch and "
+                "max_linf_stretch.")
             .real(&O::max_fitting_error, "Largest fitting error",
                   "Bound of the fitting error while charts grow, without unit, above 0. Smaller "
                   "charts fit better: 0.2 is usual for free forms, 0.01 for mechanical parts.")
@@ -97,6 +118,10 @@ std::vector<FilterDeclaration> filters() {
                 &O::max_linf_stretch, "Largest L∞ stretch",
                 "Bound of the stretch of the worst spot, above 1, without unit; 0 for no bound. Used "
                 "where charts_number is 0.")
+            .real(&O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
+                  "Bound of the L2 stretch of each chart's final map, above 1, without unit; 0 for "
+                  "no bound, as in the paper. Charts above it get darts or are split, whatever the "
+                  "number of charts. Roughness counts apart.")
             .integer(
                 &O::max_iterations, "Most rounds",
                 "The rounds of growing and reseeding end here at the latest; usually fewer than "
@@ -111,7 +136,11 @@ std::vector<FilterDeclaration> filters() {
             .result("hole_charts_number", "charts that were added where no other fitted")
             .result("joined_charts_number", "joins of two charts")
             .result("darts_number", "cuts inside charts, to spots of high stretch")
-            .result("bounds_kept", "with charts_number 0: whether the final map keeps the bounds")
+            .result("bounds_kept", "whether the final map keeps all bounds, but for roughness")
+            .result("charts_above_bound_number",
+                    "charts above max_chart_l2_stretch by more than the roughness")
+            .result("roughness_l2",
+                    "L2 stretch of small neighbourhoods, which no segmentation removes")
             .result("l2_stretch", "with charts_number 0: L2 stretch of the final map, else 0")
             .result("linf_stretch", "with charts_number 0: L∞ stretch of the final map, else 0")
             .result("rounds_number", "rounds of growing and reseeding")

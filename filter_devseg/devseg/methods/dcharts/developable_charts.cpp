@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "devseg/atlas/fragments.h"
+#include "devseg/judge/roughness.h"
 #include "devseg/mesh/flat_regions.h"
 #include "devseg/methods/dcharts/bounds.h"
 #include "devseg/methods/dcharts/full_charts.h"
@@ -43,6 +45,7 @@ struct SegmentationPlan {
     const DevelopableChartsOptions& options;
     bool creased;
     DChartsOptions growing;
+    double roughness = 0.0; // l2² − 1 that bounds allow on top
 };
 
 SegmentationPlan make_plan(const Mesh& mesh, const DevelopableChartsOptions& options) {
@@ -66,6 +69,7 @@ Aim aim_of(const SegmentationPlan& plan) {
     Aim aim;
     aim.chart =
         bounds_from(plan.options.merge_threshold * (plan.creased ? tuning.creased_threshold : 1.0));
+    aim.chart.l2 = std::sqrt(aim.chart.l2 * aim.chart.l2 + plan.roughness);
     return aim;
 }
 
@@ -147,7 +151,8 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     merging.keep_corners = plan.creased;
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
-        merging.chart.hard_l2 = options.max_chart_l2_stretch;
+        merging.chart.hard_l2 = std::sqrt(
+            options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.roughness);
         merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
     }
     merging.max_excess = aim.max_excess;
@@ -258,6 +263,8 @@ void keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
     const DevelopableChartsOptions& options = plan.options;
     FinalBounds bounds;
     bounds.chart_l2 = options.max_chart_l2_stretch;
+    bounds.roughness = plan.roughness;
+    charts.above.assign(mesh.faces.size(), 0);
     if (options.charts_number == 0) {
         bounds.linf = options.max_linf_stretch;
         bounds.max_excess =
@@ -336,19 +343,31 @@ DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::Coarse
     return best;
 }
 
+double roughness_of(const Mesh& mesh, Progress& progress) {
+    std::vector<Index> faces(mesh.faces.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    return judge::roughness(mesh, faces, progress);
+}
+
 // A surface in one piece.
 DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOptions& options,
                                     Progress& progress) {
-    const SegmentationPlan plan = make_plan(mesh, options);
+    SegmentationPlan plan = make_plan(mesh, options);
     auto coarsening = progress.part("coarsening", 0.06);
     const std::optional<mesh::CoarseMesh> decimation = decimate(
         mesh, plan.creased, std::max(options.charts_number, tuning.automatic_seeds), coarsening);
     const Mesh& coarse = decimation ? decimation->mesh : mesh;
+    auto feeling = progress.part("measuring roughness", 0.02);
+    const double roughness = roughness_of(mesh, feeling);
+    if (roughness > tuning.rough)
+        plan.roughness = roughness;
     auto growing = progress.part(0.15);
     DChartsResult patches = grow_patches(coarse, plan, growing);
     if (options.charts_number == 0) {
         auto deciding = progress.part(progress.left());
-        return find_fewest(mesh, decimation, plan, patches, deciding);
+        DevelopableCharts fewest = find_fewest(mesh, decimation, plan, patches, deciding);
+        fewest.roughness = roughness;
+        return fewest;
     }
     auto deciding = progress.part(0.6);
     DevelopableCharts result =
@@ -356,6 +375,7 @@ DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOpt
                Straightening::smooth, deciding);
     auto keeping = progress.part(progress.left());
     keep_final_bounds(mesh, plan, aim_of(plan), result, keeping);
+    result.roughness = roughness;
     return result;
 }
 
@@ -376,6 +396,7 @@ DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponent
     result.converged = true;
     result.chart.resize(mesh.faces.size());
     result.seam.assign(mesh.twin.size(), 0);
+    result.above.assign(mesh.faces.size(), 0);
     double excess = 0.0;
     Index first = 0; // number of the component's first chart
     std::vector<std::vector<Index>> groups(at(components.count));
@@ -391,8 +412,11 @@ DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponent
                 static_cast<int>(std::lround(options.charts_number * share)), 1, part.face_count());
         auto segmenting = progress.part(share);
         const DevelopableCharts charts = segment_component(part, own, segmenting);
-        for (const Face f : part.all_faces())
+        for (const Face f : part.all_faces()) {
             result.chart[faces[f]] = first + charts.chart[f];
+            result.above[faces[f]] = charts.above[f];
+        }
+        result.roughness += share * charts.roughness;
         for (const HalfEdge h : part.all_half_edges())
             result.seam[surface.mesh_half_edge(h)] = charts.seam[h];
         first += 1 + *std::max_element(charts.chart.begin(), charts.chart.end());

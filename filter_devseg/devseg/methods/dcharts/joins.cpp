@@ -32,6 +32,7 @@ struct Verdict {
     TrialMap map;       // of the joined chart
     double added = 0.0; // excess
     double saved = 0.0; // length of seam, internal units
+    bool whole = false; // the whole border of two charts
     bool fresh = false; // found with the charts as they are now
     bool confirmed = false;
 };
@@ -194,6 +195,8 @@ private:
             known != last.end() && (known->second.second.fresh || !whole);
         const auto [entry, is_new] = verdicts_.try_emplace(
             std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
+        if (is_new)
+            entry->second.second.whole = whole;
         if (is_known)
             return &entry->second;
         if (is_new)
@@ -227,6 +230,7 @@ private:
                 TrialEffort effort;
                 effort.wanted_l2 = bounds_of(closing.charts).l2;
                 effort.give_up = true;
+                effort.only_near = !verdict.whole;
                 assess(closing,
                        judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
                                         effort, progress, turns_of(closing)),
@@ -370,7 +374,8 @@ private:
             first == second ? 0.0
                             : options_.least_neck * std::sqrt(std::min(draft_.map[first].area,
                                                                        draft_.map[second].area));
-        if (!verdict.map.flat || !bounds_of(closing.charts).hold(verdict.map) ||
+        const bool may_overlap = verdict.whole && !options_.keep_corners;
+        if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) || !bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) || !(verdict.saved > 0.0) ||
             verdict.saved < least)
             return infinite;
@@ -379,7 +384,8 @@ private:
     }
 
     // The seam that is bought off at the lowest price, none if there is none. Overlaps are worth
-    // resolving only here.
+    // resolving only here, and only for whole borders of smooth charts: there are not many of these,
+    // and pushing apart bends them little.
     Entry* choose(Progress& progress) {
         while (true) {
             const double excess = draft_.excess();
