@@ -206,7 +206,6 @@ def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
 
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """`devseg run`; parser reports wrong usage."""
-    from devseg.load import release
     from devseg.outputs import to_json
     from devseg.pipeline import RunOptions, run
 
@@ -239,7 +238,6 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         for warning in result["warnings"]:
             print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
         results.append(result)
-        release()
         if not args.json:
             print(_summary(result, args.out))
     if args.json:

@@ -12,6 +12,9 @@ from devseg.errors import DevsegError, host_message
 # What pymeshlab itself reports about a mesh that it changed while loading.
 _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) degenerated faces")
 
+# What is looked at before the host reads a file: its readers trust what files say.
+_CHECKS = {".ply": ply.check_size, ".obj": obj.check_indices}
+
 # pymeshlab's progress callback keeps a pointer to the log of a MeshSet that has loaded a file, and
 # uses it while others load or save: none of them may die. Their meshes may, see release().
 _loggers: list[Any] = []
@@ -40,8 +43,9 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
         raise DevsegError(
             f"{path}: cannot be opened ({error.strerror}); check permissions"
         ) from error
-    if path.suffix.lower() == ".ply":
-        ply.check_size(path)
+    check = _CHECKS.get(path.suffix.lower())
+    if check is not None:
+        check(path)
     pymeshlab = host.pymeshlab()
     try:
         # Verbose, as only its log tells that vertices were dropped.
@@ -56,13 +60,6 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
     warnings = _check(path, meshes, chatter.text)
-    if path.suffix.lower() == ".obj":
-        count, line = obj.faces_without_vertices(path)
-        if count:
-            warnings.append(
-                f"{count} faces name vertices that the file does not have and were left out "
-                f"(the first in line {line})"
-            )
     return meshes, warnings
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from devseg import host
+from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, Method
@@ -126,34 +127,39 @@ def versions() -> dict[str, str]:
 
 
 def run(path: Path, options: RunOptions) -> dict[str, Any]:
-    """Runs the whole pipeline on one file and returns what NAME.json holds.
+    """Runs the whole pipeline on one file, apart, and returns what NAME.json holds.
 
     Raises:
         DevsegError: with nothing written.
     """
-    name = path.stem
     with staged(options.out) as folder:
-        progress = Progress(name)
-        with progress.stage("load"):
-            meshes, warnings = load_mesh(path)
-            load_plugins()
-        mesh = meshes.current_mesh()
-        size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
-        session = Session(path, meshes)
-        measures = flatten_mesh(session, options, progress)
-        outputs = _write(session, options, folder / name, progress)
-        result = {
-            "input": path.name,
-            "method": options.method.name,
-            "mesh": size,
-            **measures,
-            "parameters": {**session.parameters, "pattern": dict(options.pattern)},
-            "versions": versions(),
-            "warnings": warnings + session.warnings,
-            "seconds": progress.seconds,
-            "outputs": outputs,
-        }
-        (folder / outputs["json"]).write_text(to_json(result), encoding="utf-8")
+        return run_apart(str(path), lambda tell: _process(path, options, folder, tell))
+
+
+def _process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+    name = path.stem
+    progress = Progress(name, tell=tell)
+    with progress.stage("start"):
+        load_plugins()
+    with progress.stage(READING):
+        meshes, warnings = load_mesh(path)
+    mesh = meshes.current_mesh()
+    size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
+    session = Session(path, meshes)
+    measures = flatten_mesh(session, options, progress)
+    outputs = _write(session, options, folder / name, progress)
+    result = {
+        "input": path.name,
+        "method": options.method.name,
+        "mesh": size,
+        **measures,
+        "parameters": {**session.parameters, "pattern": dict(options.pattern)},
+        "versions": versions(),
+        "warnings": warnings + session.warnings,
+        "seconds": progress.seconds,
+        "outputs": outputs,
+    }
+    (folder / outputs["json"]).write_text(to_json(result), encoding="utf-8")
     return result
 
 

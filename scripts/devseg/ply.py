@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from devseg.errors import DevsegError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 ATTRIBUTES = ("chart_id", "seam_edges")
 
@@ -43,7 +44,7 @@ class _Element:
         """Bytes that one row takes at least: lists may be empty, a number in text takes two."""
         if not binary:
             return 2 * len(self.properties)
-        return sum(np.dtype(p.length_type or p.type).itemsize for p in self.properties)
+        return sum(int((p.length_type or p.type)[1:]) for p in self.properties)
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def restore_attributes(mesh: Any, path: str | Path) -> list[str]:
         return []
     names = [name for name in ATTRIBUTES if name in (rows.dtype.names or ())]
     for name in names:
-        mesh.add_face_custom_scalar_attribute(rows[name].astype(np.float64), name)
+        mesh.add_face_custom_scalar_attribute(rows[name].astype("f8"), name)
     return names
 
 
@@ -137,6 +138,8 @@ def _face_rows(path: Path) -> np.ndarray | None:
 
 def _fixed_rows(element: _Element, order: str, data: bytes, offset: int) -> np.ndarray | None:
     """Rows whose lists are as long as those of the first row."""
+    import numpy as np
+
     fields: list[tuple[Any, ...]] = []
     lengths: dict[str, int] = {}
     position = offset

@@ -8,7 +8,7 @@ import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 
 class Progress:
@@ -18,14 +18,19 @@ class Progress:
         seconds: of every stage that has ended, in order.
     """
 
-    def __init__(self, name: str, show: bool | None = None) -> None:
+    def __init__(
+        self, name: str, show: bool | None = None, tell: Callable[[str], None] | None = None
+    ) -> None:
         self.seconds: dict[str, float] = {}
         self._name = name
+        self._tell = tell
         self._show = sys.stderr.isatty() if show is None else show
 
     @contextlib.contextmanager
     def stage(self, stage: str) -> Iterator[None]:
         """Times a block; on a terminal one line tells what runs, then how long it took."""
+        if self._tell:
+            self._tell(stage)
         self._write(f"{self._name}: {stage} ...")
         start = time.perf_counter()
         try:
