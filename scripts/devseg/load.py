@@ -6,14 +6,19 @@ import re
 from pathlib import Path
 from typing import Any
 
-from devseg import host, obj, ply
+from devseg import gltf, host, obj, ply
 from devseg.errors import DevsegError, host_message
 
 # What pymeshlab itself reports about a mesh that it changed while loading.
 _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) degenerated faces")
 
 # What is looked at before the host reads a file: its readers trust what files say.
-_CHECKS = {".ply": ply.check_size, ".obj": obj.check_indices}
+_CHECKS = {
+    ".ply": ply.check_size,
+    ".obj": obj.check_indices,
+    ".gltf": gltf.check,
+    ".glb": gltf.check,
+}
 
 # pymeshlab's progress callback keeps a pointer to the log of a MeshSet that has loaded a file, and
 # uses it while others load or save: none of them may die. Their meshes may, see release().
