@@ -81,14 +81,15 @@ def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> d
 
     results: dict[str, Any] = {}
     pictures = []
+    warnings: list[str] = []
     load_plugins()
     for method, parameters in zip(options.methods, options.segmentation, strict=True):
         progress = Progress(f"{path.stem}, {method.name}", tell=tell)
         with progress.stage(READING):
-            meshes, warnings = load_mesh(path)
-        session = Session(path, meshes)
+            loaded = load_mesh(path)
+        session = Session(path, loaded.meshes, loaded.warnings)
         with progress.stage("segment"):
-            session.segment(method.filter, **parameters)
+            session.apply(method.filter, **parameters)
         # Before flattening, which takes charts apart where they would overlap.
         found = {
             "segmentation": session.apply(SEGMENTATION_MEASURES),
@@ -102,7 +103,8 @@ def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> d
             "parameters": session.parameters,
             "seconds": progress.seconds,
         }
-        pictures.append(host.mesh_data(meshes.current_mesh()))
+        warnings += session.warnings
+        pictures.append(host.mesh_data(loaded.meshes.current_mesh()))
     stem = f"{path.stem}-compare"
     titles = [method.name for method in options.methods]
     render_meshes(pictures, titles).save(folder / f"{stem}.png")
@@ -110,7 +112,7 @@ def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> d
         "input": path.name,
         "methods": results,
         "versions": versions(),
-        "warnings": warnings + session.warnings,
+        "warnings": list(dict.fromkeys(warnings)),
         "outputs": {"png": f"{stem}.png", "json": f"{stem}.json"},
     }
     (folder / f"{stem}.json").write_text(to_json(result), encoding="utf-8")

@@ -104,6 +104,23 @@ def _json(text: bytes) -> dict[str, Any]:
     return scene
 
 
+def object_names(path: Path) -> list[str]:
+    """The names of the nodes that have a mesh, or of their meshes, as the host goes through them.
+
+    The file must be in order.
+    """
+    scene, _ = read(path.read_bytes())
+    names = []
+    stack = list(reversed(scene["scenes"][scene.get("scene", 0)].get("nodes", [])))
+    while stack:
+        node = scene["nodes"][stack.pop()]
+        if "mesh" in node:
+            mesh = scene["meshes"][node["mesh"]]
+            names.append(node.get("name") or mesh.get("name") or f"object {len(names)}")
+        stack += reversed(node.get("children", []))
+    return names
+
+
 class _Checker:
     """Follows the references of one file as the host does."""
 

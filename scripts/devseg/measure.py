@@ -25,7 +25,7 @@ def measure(path: Path) -> dict[str, Any]:
 def _measure(path: Path, tell: Tell) -> dict[str, Any]:
     load_plugins()
     tell(READING)
-    meshes, _ = load_mesh(path)
+    meshes = load_mesh(path).meshes
     tell("measure")
     session = Session(path, meshes)
     mesh = meshes.current_mesh()

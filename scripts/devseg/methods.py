@@ -42,6 +42,16 @@ _OPTIONS = {
 }
 METHOD_OPTIONS = tuple(_OPTIONS)
 
+
+def as_option(message: str) -> str:
+    """A filter's message about a parameter, with the option of the command line that sets it."""
+    name, colon, rest = message.partition(": ")
+    options = {parameter: option for option, parameter in _OPTIONS.items()}
+    if not colon or name not in options:
+        return message
+    return f"--{options[name].replace('_', '-')}: {rest}"
+
+
 METHODS = {
     name: Method(
         name,

@@ -74,5 +74,5 @@ def test_more_charts_than_faces_is_one_line(
     assert code == 1
     message = capsys.readouterr().err
     assert message.startswith("devseg: error: ")
-    assert "charts_number: expected a number from 1 to 576" in message
+    assert "--charts: expected a number from 1 to 576" in message
     assert not out.exists()
