@@ -269,7 +269,7 @@ def _labels(charts: np.ndarray) -> list[_Label]:
     labels = []
     for pixels, depth in zip(np.split(order, starts[1:]), deepest, strict=True):
         chart = image.flat[pixels[0]]
-        radius = float(depth) * step
+        radius = (depth - 0.5) * step
         if chart < 0 or radius * LABEL_SHARE < LEAST_LABEL:
             continue
         place = np.stack(np.divmod(pixels, image.shape[1]), axis=1) + 0.5
