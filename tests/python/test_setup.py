@@ -136,7 +136,8 @@ def test_locks_of_apt_are_waited_for(tmp_path: Path) -> None:
     script = (
         f"setup_log={tmp_path}/log; lock_pause=0; system_packages=(one); ensure_system_packages"
     )
-    done = shell(script, PATH=f"{tmp_path}:/usr/bin:/bin", CALLS=str(calls))
+    path = f"{tmp_path}:/usr/bin:/bin"
+    done = shell(f"{variables}; ensure_system_packages", PATH=path, CALLS=str(calls))
     assert done.returncode == 0
     assert done.stderr.count("waiting for other software") == 2
     updates, installs = calls.read_text().splitlines()[:-1], calls.read_text().splitlines()[-1]
