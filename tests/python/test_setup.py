@@ -133,9 +133,7 @@ def test_locks_of_apt_are_waited_for(tmp_path: Path) -> None:
     ):
         (tmp_path / name).write_text(text)
         (tmp_path / name).chmod(0o755)
-    script = (
-        f"setup_log={tmp_path}/log; lock_pause=0; system_packages=(one); ensure_system_packages"
-    )
+    variables = f"setup_log={tmp_path}/log; lock_pause=0; system_packages=(one)"
     path = f"{tmp_path}:/usr/bin:/bin"
     done = shell(f"{variables}; ensure_system_packages", PATH=path, CALLS=str(calls))
     assert done.returncode == 0
