@@ -66,7 +66,8 @@ def load_mesh(path: Path, objects: Sequence[str] = ()) -> Loaded:
             parts, warnings = scene.join(path, meshes, objects)
     except host.pymeshlab().PyMeshLabException as error:
         raise DevsegError(f"{path}: objects cannot be joined ({host_message(error)})") from error
-    return Loaded(meshes, warnings + _check(path, meshes, log), read_frame(path), parts)
+    warnings += _check(path, meshes, log) + _turn_outside(meshes)
+    return Loaded(meshes, warnings, read_frame(path), parts)
 
 
 def list_objects(path: Path) -> dict[str, int]:
@@ -113,6 +114,18 @@ def _read(path: Path) -> tuple[Any, str]:
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
     return meshes, chatter.text
+
+
+def _turn_outside(meshes: Any) -> list[str]:
+    """Turns the faces of a solid that look inwards; says so."""
+    from devseg.orient import is_inside_out
+
+    mesh = meshes.current_mesh()
+    if not is_inside_out(mesh.vertex_matrix(), mesh.face_matrix()):
+        return []
+    with host.captured():
+        meshes.meshing_invert_face_orientation(forceflip=True)
+    return ["the solid is inside out: its faces looked inwards and were turned"]
 
 
 def _load_message(path: Path, error: BaseException) -> str:

@@ -41,16 +41,8 @@ _OPTIONS = {
     "max_iterations": "max_iterations",
 }
 METHOD_OPTIONS = tuple(_OPTIONS)
-
-
-def as_option(message: str) -> str:
-    """A filter's message about a parameter, with the option of the command line that sets it."""
-    name, colon, rest = message.partition(": ")
-    options = {parameter: option for option, parameter in _OPTIONS.items()}
-    if not colon or name not in options:
-        return message
-    return f"--{options[name].replace('_', '-')}: {rest}"
-
+# The other way round, as users know them.
+OPTION_OF = {parameter: f"--{name.replace('_', '-')}" for name, parameter in _OPTIONS.items()}
 
 METHODS = {
     name: Method(

@@ -108,6 +108,16 @@ _PARAMETERS = (
     "labels",
 )
 
+# The option that sets a parameter of the export filter.
+OPTION_OF = {
+    **{name: f"--{name.replace('_', '-')}" for name in (*_PARAMETERS, "preset", "corner_style")},
+    **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
+    "tiling": "--no-tiling",
+    "labels": "--no-labels",
+    "cover": "--no-cover",
+    "dxf_kind": "--dxf",
+}
+
 _CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS}
 
 

@@ -16,11 +16,12 @@ from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
 from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, Method, as_option
+from devseg.methods import FLATTENINGS, OPTION_OF, Method
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
 from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
+from devseg.pattern import OPTION_OF as PATTERN_OPTION_OF
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -43,6 +44,8 @@ PNG_COMPRESSION = 1
 # What a verbose host prints for each line of a filter's log, and for its progress.
 _LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
 _PROGRESS = re.compile(r"\[ +\d+% \]$")
+# What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
+_HINT = re.compile(r" \('[A-Z][^()]*\)$")
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
 
 
@@ -117,7 +120,7 @@ class Session:
         results = self._guard(self.meshes.apply_filter, name, **parameters) or {}
         values = tuple(f"{result}: " for result in results)
         for logged in _LOGGED.findall(self._chatter):
-            note = logged.rstrip()
+            note = _HINT.sub("", logged.rstrip())
             # Every filter that reads the mesh tells of its faults again.
             if not (_PROGRESS.search(note) or note.startswith(values) or note in self.warnings):
                 self.warnings.append(note)
@@ -137,6 +140,13 @@ class Session:
             raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
         finally:
             self.meshes.set_verbosity(False)
+
+
+def as_option(message: str) -> str:
+    """A filter's message about a parameter, with the option of the command line that sets it."""
+    name, colon, rest = message.partition(": ")
+    option = {**PATTERN_OPTION_OF, **OPTION_OF}.get(name)
+    return f"{option}: {rest}" if colon and option else message
 
 
 def versions() -> dict[str, str]:

@@ -287,3 +287,41 @@ def test_a_small_mesh_with_a_double_face_runs(obj: Callable, tmp_path: Path, cap
     result = run_json(capfd, path, "-o", tmp_path / "out")
     assert any("lies on the vertices of another" in w for w in result["warnings"])
     assert 1 <= result["parametrization"]["charts_number"] <= 7
+
+
+def test_a_solid_that_is_inside_out_is_turned(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+    vertices, faces = meshes.cube()
+    told = {}
+    for name, these in (("out", faces), ("in", faces[:, ::-1]), ("open", faces[1:, ::-1])):
+        # As STL files have it: each face with vertices of its own.
+        separate = 90 * vertices[these].reshape(-1, 3), np.arange(3 * len(these)).reshape(-1, 3)
+        loaded = load_mesh(obj(separate, name))
+        told[name] = loaded.warnings
+        assert (volume(loaded.meshes.current_mesh()) > 0) == (name != "open")
+    assert told["out"] == told["open"] == []
+    assert told["in"] == ["the solid is inside out: its faces looked inwards and were turned"]
+
+
+def test_notes_of_the_export_are_warnings(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+    vertices, faces = meshes.cylinder(20, 100)
+    path = obj((vertices, faces))
+    limits = ["--max-piece-mm", "5", "--charts", "1", "--preset", "plain"]
+    warnings = run_json(capfd, path, "-o", tmp_path / "out", *limits)["warnings"]
+    assert any("larger than max_piece_mm" in warning for warning in warnings)
+    assert main(["run", str(path), "-o", str(tmp_path / "out"), *limits]) == 0
+    assert "devseg: warning: " in capfd.readouterr().err
+
+
+def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[..., str]) -> None:
+    path = obj((90 * meshes.cube()[0], meshes.cube()[1]))
+    error = fails("run", path, "-o", tmp_path / "out", "--charts", "13")
+    assert ": --charts: expected" in error
+    error = fails("run", path, "-o", tmp_path / "out", "--page", "a4", "--page-margin-mm", "100")
+    assert ": --page-margin-mm: expected margins" in error
+
+
+def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+    vertices, faces = meshes.three_fins()
+    warnings = run_json(capfd, obj((90 * vertices, faces)), "-o", tmp_path / "out")["warnings"]
+    assert any("more than two faces" in warning for warning in warnings)
+    assert not any("Repair" in warning for warning in warnings)
