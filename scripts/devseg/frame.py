@@ -7,6 +7,8 @@ import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from devseg import gltf
+
 # Millimetres of the units that 3MF knows.
 _3MF_UNITS = {
     "micron": 0.001,
@@ -44,7 +46,7 @@ class Frame:
 def read_frame(path: Path) -> Frame:
     """The frame of a file, whose format is known by its extension."""
     extension = path.suffix.lower()
-    if extension in (".gltf", ".glb"):
+    if extension in gltf.EXTENSIONS:
         return Frame(1000.0, "y")  # both are fixed by the format
     if extension == ".3mf":
         return Frame(_unit_of_3mf(path), "z")

@@ -10,11 +10,14 @@ import base64
 import binascii
 import json
 import struct
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
 from devseg.errors import DevsegError
+
+EXTENSIONS = (".gltf", ".glb")
 
 _MODES = {
     0: "points",
@@ -104,21 +107,57 @@ def _json(text: bytes) -> dict[str, Any]:
     return scene
 
 
-def object_names(path: Path) -> list[str]:
-    """The names of the nodes that have a mesh, or of their meshes, as the host goes through them.
+@dataclass(frozen=True)
+class Object:
+    """A node that has a mesh.
 
-    The file must be in order.
+    Attributes:
+        name: of the node, or of its mesh.
+        materials: names of the materials of its primitives and their numbers of triangles.
     """
+
+    name: str
+    materials: list[tuple[str, int]]
+
+
+def objects(path: Path) -> list[Object]:
+    """The objects of a file, as the host goes through them. The file must be in order."""
     scene, _ = read(path.read_bytes())
-    names = []
+    names = _material_names(scene)
+    found = []
     stack = list(reversed(scene["scenes"][scene.get("scene", 0)].get("nodes", [])))
     while stack:
         node = scene["nodes"][stack.pop()]
         if "mesh" in node:
             mesh = scene["meshes"][node["mesh"]]
-            names.append(node.get("name") or mesh.get("name") or f"object {len(names)}")
+            materials = [
+                (names[p["material"]] if "material" in p else "", _triangles(scene, p))
+                for p in mesh["primitives"]
+            ]
+            name = node.get("name") or mesh.get("name") or f"object {len(found)}"
+            found.append(Object(name, materials))
         stack += reversed(node.get("children", []))
-    return names
+    return found
+
+
+def material_colors(path: Path) -> dict[str, tuple[float, float, float]]:
+    """Red, green and blue of each material by its name; the file must be in order."""
+    scene, _ = read(path.read_bytes())
+    colors = {}
+    for name, material in zip(_material_names(scene), scene.get("materials", []), strict=True):
+        factor = material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1.0, 1.0, 1.0])
+        colors[name] = tuple(float(part) for part in factor[:3])
+    return colors
+
+
+def _material_names(scene: dict[str, Any]) -> list[str]:
+    materials = scene.get("materials", [])
+    return [str(m.get("name") or f"material {i}") for i, m in enumerate(materials)]
+
+
+def _triangles(scene: dict[str, Any], primitive: dict[str, Any]) -> int:
+    index = primitive.get("indices", primitive["attributes"]["POSITION"])
+    return scene["accessors"][index]["count"] // 3
 
 
 class _Checker:

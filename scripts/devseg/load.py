@@ -21,8 +21,7 @@ _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) dege
 _CHECKS = {
     ".ply": ply.check_size,
     ".obj": obj.check_indices,
-    ".gltf": gltf.check,
-    ".glb": gltf.check,
+    **dict.fromkeys(gltf.EXTENSIONS, gltf.check),
 }
 
 # pymeshlab's progress callback keeps a pointer to the log of a MeshSet that has loaded a file, and

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-_NAMES = re.compile(rb"^[ \t]*(?:o|g|usemtl)[ \t]", re.MULTILINE)
+_NAMES = {
+    kind: re.compile(rb"^[ \t]*%b[ \t]+(.*?)\s*$" % kind, re.MULTILINE)
+    for kind in (b"o", b"g", b"usemtl")
+}
 
 
 @dataclass(frozen=True)
@@ -37,8 +40,9 @@ class NamedFaces:
 def read(path: Path) -> NamedFaces:
     """Reads names, and the faces where there is more than one part."""
     data = path.read_bytes()
-    if not _NAMES.search(data):
-        return NamedFaces([Part("", "", "")], [], [])
+    named = [{*_NAMES[kind].findall(data)} for kind in (b"o", b"g", b"usemtl")]
+    if max(map(len, named)) <= 1:
+        return NamedFaces([_part(*(one.pop() if one else b"" for one in named))], [], [])
     names = {b"o": b"", b"g": b"", b"usemtl": b""}
     index: dict[tuple[bytes, ...], int] = {}
     part: list[int] = []
@@ -59,8 +63,11 @@ def read(path: Path) -> NamedFaces:
             names[kind] = rest.strip()
             if kind == b"o":
                 names[b"g"] = b""  # groups are parts of objects
-    parts = [Part(*(text.decode("utf-8", "replace") for text in key)) for key in index]
-    return NamedFaces(parts or [Part("", "", "")], part, corners)
+    return NamedFaces([_part(*key) for key in index], part, corners)
+
+
+def _part(*names: bytes) -> Part:
+    return Part(*(name.decode("utf-8", "replace") for name in names))
 
 
 def parts_of_faces(named: NamedFaces, faces: Any) -> Any:

@@ -6,18 +6,12 @@ borders of charts, and knows no names.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from devseg.materials import library
 from devseg.obj_parts import Part
-
-# Statements of a material that name an image: they fit the old texture coordinates.
-_IMAGES = re.compile(r"\s*(map_\w+|bump|disp|decal|refl|norm)\s", re.IGNORECASE)
-_LIBRARY = re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.MULTILINE)
-# A material that no library describes.
-_PLAIN = "Kd 0.8 0.8 0.8\nillum 1\n"
 
 
 def write_obj(file: Path, mesh: Any, parts: Sequence[Part], part_ids: Any, source: Path) -> None:
@@ -36,10 +30,10 @@ def write_obj(file: Path, mesh: Any, parts: Sequence[Part], part_ids: Any, sourc
     if any(part.material for part in parts):
         materials = [part.material or "none" for part in parts]
         names = [materials[i] for i in part_ids]
-        library = _kept_materials(source, list(dict.fromkeys(materials)))
+        text = library(source, list(dict.fromkeys(materials)))
     else:
         names = [f"chart_{chart + 1}" for chart in charts]
-        library = _chart_materials(charts, mesh.face_color_matrix())
+        text = _chart_materials(charts, mesh.face_color_matrix())
     lines = [f"# devseg: texture coordinates of {int(charts.max()) + 1} charts"]
     lines.append(f"mtllib {file.name}.mtl")
     lines += _vertex_lines(mesh)
@@ -49,7 +43,7 @@ def write_obj(file: Path, mesh: Any, parts: Sequence[Part], part_ids: Any, sourc
     lines += [f"vt {u:.9g} {v:.9g}" for u, v in coordinates.tolist()]
     lines += _face_lines(mesh, corners.reshape(-1, 3), parts, part_ids, names)
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    Path(f"{file}.mtl").write_text(library, encoding="utf-8")
+    Path(f"{file}.mtl").write_text(text, encoding="utf-8")
 
 
 def _vertex_lines(mesh: Any) -> list[str]:
@@ -97,24 +91,4 @@ def _chart_materials(charts: Any, colors: Any) -> str:
     return "\n".join(
         f"newmtl chart_{i + 1}\nKd {r:.6g} {g:.6g} {b:.6g}\nillum 1\n"
         for i, (r, g, b) in enumerate(rows)
-    )
-
-
-def _kept_materials(source: Path, names: Sequence[str]) -> str:
-    """The materials of the input without their images."""
-    described: dict[str, list[str]] = {}
-    for library in _LIBRARY.findall(source.read_bytes()):
-        file = source.parent / library.decode("utf-8", "replace").replace("\\", "/")
-        if not file.is_file():
-            continue
-        rows: list[str] = []
-        for line in file.read_text(encoding="utf-8", errors="replace").splitlines():
-            words = line.split(None, 1)
-            if words[:1] == ["newmtl"] and len(words) == 2:
-                rows = described.setdefault(words[1].strip(), [])
-            elif words and not _IMAGES.match(line) and not words[0].startswith("#"):
-                rows.append(line.strip())
-    return "\n".join(
-        f"newmtl {name}\n" + ("".join(f"{row}\n" for row in described.get(name, [])) or _PLAIN)
-        for name in names
     )

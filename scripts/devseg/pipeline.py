@@ -35,6 +35,8 @@ MESH_FORMATS = ("ply", "obj")
 
 # A finished object of another size than these was hardly meant, unless it is asked for.
 SMALLEST_MM, LARGEST_MM = 20.0, 5000.0
+# The export's own limit.
+LEAST_MM_PER_UNIT = 1e-9
 # A model that is so much longer than high may lie.
 TALL = 1.1
 # Higher levels take several times as long for a tenth of the size.
@@ -312,6 +314,11 @@ def scaled(
             )
     elif options.longest_mm is not None:
         mm = pattern["mm_per_unit"] = options.longest_mm / max(extents)
+        if mm < LEAST_MM_PER_UNIT:
+            raise DevsegError(
+                f"{session.path}: expected a model that is smaller, found {max(extents):.3g} "
+                "units; give a larger --longest-mm, or repair the file"
+            )
     else:
         given = "mm_per_unit" in pattern
         mm = pattern.setdefault("mm_per_unit", frame.mm_per_unit or 1.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,25 +21,35 @@ _SHOWN = 12  # names in an error
 
 @dataclass(frozen=True)
 class Layer:
-    """A mesh of the host that one file has filled."""
+    """A mesh of the host.
+
+    Attributes:
+        id: of the host.
+        name: of the object.
+        faces: their number.
+        materials: the names of its materials and their numbers of faces, in order, if known.
+    """
 
     id: int
     name: str
     faces: int
+    materials: list[tuple[str, int]]
 
 
 def layers(path: Path, meshes: Any) -> list[Layer]:
     """The layers of a file with the names of their objects, as far as the file has names."""
-    found = [(mesh.id(), mesh.label(), mesh.face_number()) for mesh in meshes]
-    names = [label for _, label, _ in found]
-    if path.suffix.lower() in (".gltf", ".glb"):
+    found = [Layer(mesh.id(), mesh.label(), mesh.face_number(), []) for mesh in meshes]
+    if path.suffix.lower() in gltf.EXTENSIONS:
         # The host makes a layer of each node that has a mesh, and calls it as the mesh.
-        named = gltf.object_names(path)
-        if len(named) == len(found):
-            names = named
-    if len(found) == 1 and names[0] == path.name:
-        names = [""]  # the host has called it as the file
-    return [Layer(i, name, faces) for (i, _, faces), name in zip(found, names, strict=True)]
+        objects = gltf.objects(path)
+        if len(objects) == len(found):
+            return [
+                replace(layer, name=one.name, materials=one.materials)
+                for layer, one in zip(found, objects, strict=True)
+            ]
+    if len(found) == 1 and found[0].name == path.name:
+        found = [replace(found[0], name="")]  # the host has called it as the file
+    return found
 
 
 def join(path: Path, meshes: Any, chosen: Sequence[str]) -> tuple[list[Part], list[str]]:
@@ -126,13 +136,11 @@ def _count(meshes: Any) -> int:
 
 def _label(path: Path, meshes: Any, found: list[Layer]) -> tuple[list[Part], list[str]]:
     """Gives the faces of all layers the numbers of their parts."""
-    import numpy as np
-
     parts: list[Part] = []
     warnings = []
     for layer in found:
         mesh = meshes.mesh(layer.id)
-        own, ids = [Part(layer.name, "", "")], np.zeros(layer.faces)
+        own, ids = _by_material(layer)
         if path.suffix.lower() == ".obj":
             named = obj_parts.read(path)
             followed = obj_parts.parts_of_faces(named, mesh.face_matrix())
@@ -147,6 +155,18 @@ def _label(path: Path, meshes: Any, found: list[Layer]) -> tuple[list[Part], lis
             mesh.add_face_custom_scalar_attribute(ids + float(len(parts)), _LAYER_ATTRIBUTE)
         parts += own
     return parts, warnings
+
+
+def _by_material(layer: Layer) -> tuple[list[Part], Any]:
+    """The parts of a layer, and for each face the index of its part."""
+    import numpy as np
+
+    names = list(dict.fromkeys(name for name, _ in layer.materials))
+    counts = [count for _, count in layer.materials]
+    if not names or sum(counts) != layer.faces:
+        return [Part(layer.name, "", "")], np.zeros(layer.faces)
+    ids = np.repeat([float(names.index(name)) for name, _ in layer.materials], counts)
+    return [Part(layer.name, "", name) for name in names], ids
 
 
 def _leave_out(path: Path, meshes: Any, parts: list[Part], chosen: Sequence[str]) -> None:

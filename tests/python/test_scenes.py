@@ -171,6 +171,28 @@ def test_obj_keeps_names_and_no_stale_texture(
     assert (again.face_matrix() == written.meshes.current_mesh().face_matrix()).all()
 
 
+def test_materials_of_gltf_reach_obj(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    document, data = gltf_files.document(meshes.cube(), meshes.cylinder())
+    document["materials"] = [
+        {"name": "red felt", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0.25, 1]}},
+        {},
+    ]
+    cube, tube = (mesh["primitives"] for mesh in document["meshes"])
+    tube[0]["material"] = 1
+    cube[0]["material"] = 0
+    tube.append({**cube[0]})  # a tube with a red cube in one object
+    path = gltf_files.write_glb(tmp_path / "a.glb", document, data)
+    out = tmp_path / "out"
+    result = run_json(capfd, path, "-o", out, "--formats", "obj", "--longest-mm", 90)
+    assert [tuple(part.values()) for part in result["parts"]] == [
+        ("object 0", "", "red felt", 12),
+        ("object 1", "", "material 1", 1152),
+        ("object 1", "", "red felt", 12),
+    ]
+    assert "newmtl red felt\nKd 1 0 0.25\n" in (out / "a.obj.mtl").read_text()
+    assert (out / "a.obj").read_text().count("usemtl ") == 3
+
+
 def test_ply_keeps_the_old_coordinates_if_asked(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], pymeshlab: ModuleType
 ) -> None:
