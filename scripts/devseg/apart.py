@@ -13,11 +13,13 @@ import pickle
 import resource
 import signal
 import sys
+import threading
 import traceback
 from collections.abc import Callable, Iterator
 from typing import IO, Any, TypeVar
 
 from devseg.errors import DevsegError, one_line
+from devseg.progress import CLEAR_LINE
 
 T = TypeVar("T")
 
@@ -61,6 +63,7 @@ def run_apart(what: str, work: Callable[[Tell], T]) -> T:
                     raise value
     finally:
         status = _wait(child)
+    _clear_line()
     raise DevsegError(f"{what}: {_how_it_ended(status, stage)}")
 
 
@@ -68,7 +71,8 @@ def _be_the_child(parent: int, out: int, work: Callable[[Tell], Any]) -> None:
     """Works, sends the answer and ends without the clean-up of what the parent still uses."""
     # The parent tells of Ctrl+C, and ends this process; it also ends with its parent.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
     resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:
@@ -110,20 +114,17 @@ def _messages(pipe: IO[bytes]) -> Iterator[tuple[str, Any]]:
 
 @contextlib.contextmanager
 def _ended_by_signals() -> Iterator[None]:
-    """SIGTERM is as Ctrl+C while the block runs, so that what was begun is cleared away."""
+    """What ends a program is as Ctrl+C while the block runs: what was begun is cleared away."""
 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    try:
-        before = signal.signal(signal.SIGTERM, interrupt)
-    except ValueError:  # not in the main thread, which alone gets signals
+    with contextlib.ExitStack() as stack:
+        # Signals are for the main thread alone.
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGTERM, signal.SIGHUP):
+                stack.callback(signal.signal, number, signal.signal(number, interrupt))
         yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def _wait(child: int) -> int:
@@ -131,7 +132,14 @@ def _wait(child: int) -> int:
     if sys.exc_info()[0] is not None:
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, signal.SIGKILL)
+        _clear_line()
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+def _clear_line() -> None:
+    # It told the stage, and has no end.
+    if sys.stderr.isatty():
+        sys.stderr.write(CLEAR_LINE)
 
 
 def _how_it_ended(status: int, stage: str) -> str:

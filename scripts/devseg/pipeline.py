@@ -310,7 +310,7 @@ def scaled(
         if options.up is None and frame.up is None and TALL * extents[1] < max(extents):
             session.warnings.append(
                 f"the height is along y, where the model measures {extents[1]:.4g} of "
-                f"{max(extents):.4g} units; if z points up in it, give --up z"
+                f"{max(extents):.4g} units; give --up z if z points up in it, else --up y"
             )
     elif options.longest_mm is not None:
         mm = pattern["mm_per_unit"] = options.longest_mm / max(extents)

@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 
+# Back to the line's start, and erase what was there.
+CLEAR_LINE = "\r\x1b[K"
+
+
 class Progress:
     """Measures the stages of one input.
 
@@ -44,6 +48,5 @@ class Progress:
 
     def _write(self, text: str) -> None:
         if self._show:
-            # Back to the line's start, and erase what was there.
-            sys.stderr.write("\r\x1b[K" + text)
+            sys.stderr.write(CLEAR_LINE + text)
             sys.stderr.flush()

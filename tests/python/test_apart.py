@@ -85,7 +85,7 @@ finally:
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_the_child_ends_with_its_parent(number: int) -> None:
     parent = subprocess.Popen(
         [sys.executable, "-c", SLEEPER], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
@@ -99,6 +99,23 @@ def test_the_child_ends_with_its_parent(number: int) -> None:
             return
         time.sleep(0.05)
     pytest.fail("the child goes on")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_leaves_nothing(number: int, obj: Callable, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "devseg", "run", obj(meshes.sphere(300, 200)), "-o", out]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    for _ in range(200):
+        if out.is_dir() and any(out.iterdir()):
+            break
+        time.sleep(0.02)
+    time.sleep(0.5)  # by now it works
+    process.send_signal(number)
+    printed, error = process.communicate(timeout=10)
+    assert (process.returncode, printed) == (1, "")
+    assert error.startswith("devseg: error: interrupted") and error.count("\n") == 1
+    assert not out.exists()
 
 
 def _runs(pid: int) -> bool:
