@@ -3,22 +3,11 @@
 from __future__ import annotations
 
 import re
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from devseg import gltf
+from devseg import gltf, threemf
 
-# Millimetres of the units that 3MF knows.
-_3MF_UNITS = {
-    "micron": 0.001,
-    "millimeter": 1.0,
-    "centimeter": 10.0,
-    "inch": 25.4,
-    "foot": 304.8,
-    "meter": 1000.0,
-}
-_3MF_MODEL = "3D/3dmodel.model"
 # Both stand near the beginning.
 _HEAD = 1 << 16
 
@@ -49,21 +38,10 @@ def read_frame(path: Path) -> Frame:
     if extension in gltf.EXTENSIONS:
         return Frame(1000.0, "y")  # both are fixed by the format
     if extension == ".3mf":
-        return Frame(_unit_of_3mf(path), "z")
+        return Frame(threemf.read_unit(path), "z")
     if extension == ".dae":
         return _frame_of_collada(path)
     return Frame()
-
-
-def _unit_of_3mf(path: Path) -> float | None:
-    try:
-        with zipfile.ZipFile(path) as archive, archive.open(_3MF_MODEL) as file:
-            head = file.read(_HEAD)
-    except (zipfile.BadZipFile, KeyError, OSError):
-        return None  # the host says what is wrong, or finds the model elsewhere
-    model = re.search(rb"<(?:\w+:)?model\b[^>]*>", head)
-    unit = re.search(rb"\bunit\s*=\s*[\"'](\w+)", model[0]) if model else None
-    return _3MF_UNITS.get(unit[1].decode() if unit else "millimeter")
 
 
 def _frame_of_collada(path: Path) -> Frame:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from devseg import gltf, obj_parts
+from devseg import gltf, obj_parts, threemf
 from devseg.errors import DevsegError
 from devseg.frame import UPRIGHT
 from devseg.obj_parts import Part
@@ -47,6 +47,10 @@ def layers(path: Path, meshes: Any) -> list[Layer]:
                 replace(layer, name=one.name, materials=one.materials)
                 for layer, one in zip(found, objects, strict=True)
             ]
+    if path.suffix.lower() == ".3mf":
+        names = threemf.object_names(path)
+        if len(names) == len(found):
+            return [replace(layer, name=n) for layer, n in zip(found, names, strict=True)]
     if len(found) == 1 and found[0].name == path.name:
         found = [replace(found[0], name="")]  # the host has called it as the file
     return found

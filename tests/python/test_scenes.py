@@ -237,14 +237,54 @@ def test_parts_survive_simplification(tmp_path: Path, capfd: pytest.CaptureFixtu
     assert [part["faces"] for part in result["parts"]] == pytest.approx([300, 300], abs=30)
 
 
-def write_3mf(path: Path, unit: str) -> Path:
+TYPES = """<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels"
+ ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+</Types>"""
+RELATIONS = """<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="a"
+ Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"""
+CORE_3MF = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+
+
+def write_3mf(path: Path, unit: str, content: str = "") -> Path:
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("3D/3dmodel.model", f'<?xml version="1.0"?>\n<model{unit}></model>')
+        archive.writestr("[Content_Types].xml", TYPES)
+        archive.writestr("_rels/.rels", RELATIONS)
+        archive.writestr(
+            "3D/3dmodel.model",
+            f'<?xml version="1.0" encoding="UTF-8"?>\n'
+            f'<model{unit} xml:lang="en-US" xmlns="{CORE_3MF}">{content}</model>',
+        )
     return path
 
 
+def test_objects_of_3mf(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    vertices, faces = meshes.cube()
+    rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*v) for v in vertices)
+    cells = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in faces)
+    mesh = f"<mesh><vertices>{rows}</vertices><triangles>{cells}</triangles></mesh>"
+    content = (
+        f'<resources><object id="1" name="Lid" type="model">{mesh}</object>'
+        f'<object id="2" type="model">{mesh}</object><object id="3" name="Set" type="model">'
+        '<components><component objectid="1" transform="1 0 0 0 1 0 0 0 1 0 5 0"/>'
+        '<component objectid="2" transform="1 0 0 0 1 0 0 0 1 0 0 9"/></components></object>'
+        '</resources><build><item objectid="2" transform="2 0 0 0 2 0 0 0 3 10 0 0"/>'
+        '<item objectid="3"/></build>'
+    )
+    path = write_3mf(tmp_path / "a.3mf", ' unit="inch"', content)
+    assert list_objects(path) == {"object 0": 12, "Set": 24}
+    result = run_json(capfd, path, "-o", tmp_path / "out", "--object", "object 0")
+    assert result["size_mm"] == pytest.approx([50.8, 50.8, 76.2])
+    points = load_mesh(path, ["Set"]).meshes.current_mesh().vertex_matrix()
+    assert points.max(axis=0).tolist() == [1, 6, 10]
+
+
 def test_frames_of_formats(tmp_path: Path) -> None:
-    for unit, mm in ((' unit="inch"', 25.4), (' xml:lang="en"', 1.0), (" unit='meter'", 1000.0)):
+    for unit, mm in ((' unit="inch"', 25.4), ("", 1.0), (" unit='meter'", 1000.0)):
         assert read_frame(write_3mf(tmp_path / "a.3mf", unit)) == Frame(mm, "z")
     collada = tmp_path / "a.dae"
     collada.write_text('<asset><unit name="inch" meter="0.0254"/><up_axis>Z_UP</up_axis></asset>')
