@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -139,17 +142,25 @@ def textured_obj(folder: Path) -> Path:
     return path
 
 
-def run_json(capfd: pytest.CaptureFixture[str], *arguments: str | Path) -> dict[str, Any]:
-    capfd.readouterr()
-    assert main(["run", *map(str, arguments), "--json", "--no-picture"]) == 0
-    return json.loads(capfd.readouterr().out)
+def run_json(*arguments: str | float | Path) -> dict[str, Any]:
+    """What `devseg run --json` prints, in a process whose host has not seen other meshes."""
+    command = [sys.executable, "-m", "devseg", "run", *map(str, arguments)]
+    done = subprocess.run(
+        [*command, "--json", "--no-picture"],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    result = json.loads(done.stdout)
+    told = [line.split(": ", 3)[3] for line in done.stderr.splitlines()]
+    assert told == result["warnings"]
+    return result
 
 
-def test_obj_keeps_names_and_no_stale_texture(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_obj_keeps_names_and_no_stale_texture(tmp_path: Path) -> None:
     path, out = textured_obj(tmp_path), tmp_path / "out"
-    result = run_json(capfd, path, "-o", out, "--formats", "obj,ply")
+    result = run_json(path, "-o", out, "--formats", "obj,ply")
     replaced = [w for w in result["warnings"] if "texture coordinates" in w]
     assert len(replaced) == 1 and "wood.png" in replaced[0]
     text = (out / "a.obj").read_text(encoding="utf-8")
@@ -171,7 +182,7 @@ def test_obj_keeps_names_and_no_stale_texture(
     assert (again.face_matrix() == written.meshes.current_mesh().face_matrix()).all()
 
 
-def test_materials_of_gltf_reach_obj(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_materials_of_gltf_reach_obj(tmp_path: Path) -> None:
     document, data = gltf_files.document(meshes.cube(), meshes.cylinder())
     document["materials"] = [
         {"name": "red felt", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0.25, 1]}},
@@ -183,7 +194,7 @@ def test_materials_of_gltf_reach_obj(tmp_path: Path, capfd: pytest.CaptureFixtur
     tube.append({**cube[0]})  # a tube with a red cube in one object
     path = gltf_files.write_glb(tmp_path / "a.glb", document, data)
     out = tmp_path / "out"
-    result = run_json(capfd, path, "-o", out, "--formats", "obj", "--longest-mm", 90)
+    result = run_json(path, "-o", out, "--formats", "obj", "--longest-mm", 90)
     assert [tuple(part.values()) for part in result["parts"]] == [
         ("object 0", "", "red felt", 12),
         ("object 1", "", "material 1", 1152),
@@ -193,11 +204,9 @@ def test_materials_of_gltf_reach_obj(tmp_path: Path, capfd: pytest.CaptureFixtur
     assert (out / "a.obj").read_text().count("usemtl ") == 3
 
 
-def test_ply_keeps_the_old_coordinates_if_asked(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str], pymeshlab: ModuleType
-) -> None:
+def test_ply_keeps_the_old_coordinates_if_asked(tmp_path: Path, pymeshlab: ModuleType) -> None:
     path, out = textured_obj(tmp_path), tmp_path / "out"
-    result = run_json(capfd, path, "-o", out, "--keep-texcoords")
+    result = run_json(path, "-o", out, "--keep-texcoords")
     assert any("PLY has them as texcoord_before" in w for w in result["warnings"])
     header, _, data = (out / "a.ply").read_bytes().partition(b"end_header\n")
     assert header.endswith(b"property list uchar float texcoord_before\n")
@@ -211,13 +220,13 @@ def test_ply_keeps_the_old_coordinates_if_asked(
     assert meshset.current_mesh().face_number() == 12
 
 
-def test_vertex_colors_reach_obj_and_ply(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_vertex_colors_reach_obj_and_ply(tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     lines = ["v {} {} {} 1 {} 0".format(*(90 * v), v[0]) for v in vertices]
     lines += ["f {} {} {}".format(*(f + 1)) for f in faces]
     path = tmp_path / "c.obj"
     path.write_text("\n".join(lines) + "\n")
-    result = run_json(capfd, path, "-o", tmp_path / "out", "--formats", "obj,ply")
+    result = run_json(path, "-o", tmp_path / "out", "--formats", "obj,ply")
     assert result["warnings"] == []
     for extension in ("obj", "ply"):
         mesh = load_mesh(tmp_path / "out" / f"c.{extension}").meshes.current_mesh()
@@ -225,14 +234,14 @@ def test_vertex_colors_reach_obj_and_ply(tmp_path: Path, capfd: pytest.CaptureFi
         assert colors[:, 1] == pytest.approx(vertices[:, 0], abs=0.01)
 
 
-def test_parts_survive_simplification(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_parts_survive_simplification(tmp_path: Path) -> None:
     (first, faces), (second, _) = meshes.sphere(), meshes.sphere()
     lines = ["v {} {} {}".format(*v) for v in 90 * np.vstack([first, second + np.eye(3)[0] * 3])]
     for name, shift in (("left", 1), ("right", 1 + len(first))):
         lines += [f"o {name}", *("f {} {} {}".format(*(f + shift)) for f in faces)]
     path = tmp_path / "balls.obj"
     path.write_text("\n".join(lines) + "\n")
-    result = run_json(capfd, path, "-o", tmp_path / "out", "--target-faces", 600)
+    result = run_json(path, "-o", tmp_path / "out", "--target-faces", 600)
     assert [part["object"] for part in result["parts"]] == ["left", "right"]
     assert [part["faces"] for part in result["parts"]] == pytest.approx([300, 300], abs=30)
 
@@ -262,7 +271,7 @@ def write_3mf(path: Path, unit: str, content: str = "") -> Path:
     return path
 
 
-def test_objects_of_3mf(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_objects_of_3mf(tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*v) for v in vertices)
     cells = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in faces)
@@ -277,7 +286,7 @@ def test_objects_of_3mf(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> No
     )
     path = write_3mf(tmp_path / "a.3mf", ' unit="inch"', content)
     assert list_objects(path) == {"object 0": 12, "Set": 24}
-    result = run_json(capfd, path, "-o", tmp_path / "out", "--object", "object 0")
+    result = run_json(path, "-o", tmp_path / "out", "--object", "object 0")
     assert result["size_mm"] == pytest.approx([50.8, 50.8, 76.2])
     points = load_mesh(path, ["Set"]).meshes.current_mesh().vertex_matrix()
     assert points.max(axis=0).tolist() == [1, 6, 10]
@@ -307,11 +316,11 @@ def test_frames_of_formats(tmp_path: Path) -> None:
     ],
 )
 def test_sizes_of_a_vase(
-    options: list[str], size: tuple[float, ...], obj: Callable, tmp_path: Path, capfd: Any
+    options: list[str], size: tuple[float, ...], obj: Callable, tmp_path: Path
 ) -> None:
     vertices, faces = meshes.cylinder(20, 100)
     path = obj((vertices[:, [0, 2, 1]] * (1, -1, 1), faces))
-    result = run_json(capfd, path, "-o", tmp_path / "out", *options)
+    result = run_json(path, "-o", tmp_path / "out", *options)
     assert result["size_mm"] == pytest.approx(size, rel=0.01)
     assert result["warnings"] == []
     written = load_mesh(tmp_path / "out" / "mesh.ply").meshes.current_mesh()
@@ -322,36 +331,36 @@ def test_sizes_of_a_vase(
     assert height >= max(size)
 
 
-def test_surprising_sizes_are_told(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+def test_surprising_sizes_are_told(obj: Callable, tmp_path: Path) -> None:
     vertices, faces = meshes.cylinder(20, 100)
     lying = obj((vertices[:, [0, 2, 1]] * (1, -1, 1), faces), "lying")
-    warnings = run_json(capfd, lying, "-o", tmp_path / "out", "--height-mm", 250)["warnings"]
+    warnings = run_json(lying, "-o", tmp_path / "out", "--height-mm", 250)["warnings"]
     assert len(warnings) == 1 and "40 of 100 units" in warnings[0] and "--up z" in warnings[0]
     for factor, words in ((0.001, "0.04 x 0.1 x 0.04 mm"), (100, "4,000 x 10,000 x 4,000 mm")):
         path = obj((factor * vertices, faces), "tube")
-        told = run_json(capfd, path, "-o", tmp_path / "out")["warnings"]
+        told = run_json(path, "-o", tmp_path / "out")["warnings"]
         assert any(words in w and "--longest-mm" in w for w in told)
-        quiet = run_json(capfd, path, "-o", tmp_path / "out", "--mm-per-unit", 1)["warnings"]
+        quiet = run_json(path, "-o", tmp_path / "out", "--mm-per-unit", 1)["warnings"]
         assert not any(words in w for w in quiet)
 
 
-def test_gltf_is_in_metres(tree: Path, tmp_path: Path, capfd: Any) -> None:
-    result = run_json(capfd, tree, "-o", tmp_path / "out", "--object", "object 0")
+def test_gltf_is_in_metres(tree: Path, tmp_path: Path) -> None:
+    result = run_json(tree, "-o", tmp_path / "out", "--object", "object 0")
     assert result["size_mm"] == pytest.approx([2000, 3000, 4000])
-    result = run_json(capfd, tree, "-o", tmp_path / "out", "--object", "object 0", "--height", "1m")
+    result = run_json(tree, "-o", tmp_path / "out", "--object", "object 0", "--height", "1m")
     assert result["size_mm"] == pytest.approx([2000 / 3, 1000, 4000 / 3])
 
 
-def test_a_small_mesh_with_a_double_face_runs(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+def test_a_small_mesh_with_a_double_face_runs(obj: Callable, tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     few = faces[:7]
     path = obj((90 * vertices, np.vstack([few, few[:1]])))
-    result = run_json(capfd, path, "-o", tmp_path / "out")
+    result = run_json(path, "-o", tmp_path / "out")
     assert any("lies on the vertices of another" in w for w in result["warnings"])
     assert 1 <= result["parametrization"]["charts_number"] <= 7
 
 
-def test_a_solid_that_is_inside_out_is_turned(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+def test_a_solid_that_is_inside_out_is_turned(obj: Callable, tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     told = {}
     for name, these in (("out", faces), ("in", faces[:, ::-1]), ("open", faces[1:, ::-1])):
@@ -364,14 +373,12 @@ def test_a_solid_that_is_inside_out_is_turned(obj: Callable, tmp_path: Path, cap
     assert told["in"] == ["the solid is inside out: its faces looked inwards and were turned"]
 
 
-def test_notes_of_the_export_are_warnings(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+def test_notes_of_the_export_are_warnings(obj: Callable, tmp_path: Path) -> None:
     vertices, faces = meshes.cylinder(20, 100)
     path = obj((vertices, faces))
     limits = ["--max-piece-mm", "5", "--charts", "1", "--preset", "plain"]
-    warnings = run_json(capfd, path, "-o", tmp_path / "out", *limits)["warnings"]
+    warnings = run_json(path, "-o", tmp_path / "out", *limits)["warnings"]
     assert any("larger than max_piece_mm" in warning for warning in warnings)
-    assert main(["run", str(path), "-o", str(tmp_path / "out"), *limits]) == 0
-    assert "devseg: warning: " in capfd.readouterr().err
 
 
 def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[..., str]) -> None:
@@ -382,8 +389,8 @@ def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[...,
     assert ": --page-margin-mm: expected margins" in error
 
 
-def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path, capfd: Any) -> None:
+def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path) -> None:
     vertices, faces = meshes.three_fins()
-    warnings = run_json(capfd, obj((90 * vertices, faces)), "-o", tmp_path / "out")["warnings"]
+    warnings = run_json(obj((90 * vertices, faces)), "-o", tmp_path / "out")["warnings"]
     assert any("more than two faces" in warning for warning in warnings)
     assert not any("Repair" in warning for warning in warnings)
