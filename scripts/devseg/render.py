@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -47,9 +48,11 @@ def render_pair(data: MeshData, size: int = 800) -> Image.Image:
         size: height of the picture in pixels; it is twice as wide.
     """
     canvas = np.ones((size, 2 * size, 3), dtype=np.float32)
-    canvas[:, :size] = _mesh_panel(data, size)
-    pattern, labels = _pattern_panel(data, size)
-    canvas[:, size:] = pattern
+    # NumPy lets other threads work while it does.
+    with ThreadPoolExecutor(1) as pool:
+        mesh = pool.submit(_mesh_panel, data, size)
+        canvas[:, size:], labels = _pattern_panel(data, size)
+        canvas[:, :size] = mesh.result()
     image = _image(canvas)
     _draw_numbers(image, labels, (size, 0))
     return image
@@ -105,8 +108,8 @@ def _fit(points: np.ndarray, size: int) -> np.ndarray:
 
 def _mesh_panel(data: MeshData, size: int) -> np.ndarray:
     rotation = view_rotation(data.vertices, data.faces)
-    used = np.unique(data.faces)
-    seen = (data.vertices - data.vertices[used].mean(axis=0)) @ rotation.T
+    # Far from the origin, differences would drown in large coordinates.
+    seen = (data.vertices - data.vertices[data.faces[0, 0]]) @ rotation.T
     corners = seen[data.faces]
     points = _fit(corners[:, :, :2], size)
     visible = rasterize(points, -corners[:, :, 2], size, size)
@@ -186,8 +189,8 @@ def _shade(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     key = np.clip(normals @ light, 0, 1)
     sky = 0.5 + 0.5 * normals[..., 1]
     half = light + np.array([0.0, 0.0, 1.0])
-    gloss = np.clip(normals @ (half / np.linalg.norm(half)), 0, 1) ** 40
-    return 0.5 + 0.16 * sky + 0.42 * key, 0.10 * gloss
+    gloss = np.clip(normals @ (half / np.linalg.norm(half)), 0, 1) ** 8
+    return 0.5 + 0.16 * sky + 0.42 * key, 0.10 * (gloss * gloss * gloss * gloss * gloss)
 
 
 def _edge_lines(
