@@ -23,6 +23,11 @@ from devseg.progress import CLEAR_LINE
 
 T = TypeVar("T")
 
+# Processor seconds that reading may take, and more for each megabyte of a file. Reading takes a
+# hundredth of it, unless a reader follows a loop in a damaged file.
+READING_SECONDS = 30.0
+READING_SECONDS_PER_MB = 2.0
+
 # Tells the parent which stage the child is in.
 Tell = Callable[[str], None]
 
@@ -67,8 +72,30 @@ def run_apart(what: str, work: Callable[[Tell], T]) -> T:
     raise DevsegError(f"{what}: {_how_it_ended(status, stage)}")
 
 
+@contextlib.contextmanager
+def limited_reading(size: int) -> Iterator[None]:
+    """Ends the child where the block takes much longer than a file of so many bytes can take.
+
+    Other processes are left alone.
+    """
+    if not _is_child:
+        yield
+        return
+    limit = READING_SECONDS + READING_SECONDS_PER_MB * size / 1e6
+    signal.setitimer(signal.ITIMER_PROF, limit)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+
+
+_is_child = False
+
+
 def _be_the_child(parent: int, out: int, work: Callable[[Tell], Any]) -> None:
     """Works, sends the answer and ends without the clean-up of what the parent still uses."""
+    global _is_child
+    _is_child = True
     # The parent tells of Ctrl+C, and ends this process; it also ends with its parent.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):
@@ -148,7 +175,9 @@ def _how_it_ended(status: int, stage: str) -> str:
             f"ended by the system in stage {stage}, most likely for lack of memory; close other "
             "programs, or simplify the mesh (--target-faces N)"
         )
-    if status >= 0:
+    if status == -signal.SIGPROF:
+        how = "did not come to an end"
+    elif status >= 0:
         how = f"ended with status {status}"
     else:
         name = signal.Signals(-status).name

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from devseg import gltf, host, obj, ply, scene
+from devseg.apart import limited_reading
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame, read_frame
 from devseg.obj_parts import Part
@@ -106,7 +107,8 @@ def _read(path: Path) -> tuple[Any, str]:
             meshes = pymeshlab.MeshSet(True)
             _loggers.append(meshes)
             try:
-                meshes.load_new_mesh(str(path))
+                with limited_reading(path.stat().st_size):
+                    meshes.load_new_mesh(str(path))
             finally:
                 # All plugins would go on logging to this MeshSet after its end.
                 meshes.set_verbosity(False)

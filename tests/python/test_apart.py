@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import meshes
+from devseg import apart
 from devseg.apart import Tell, run_apart
 from devseg.errors import DevsegError
 
@@ -70,6 +71,36 @@ def test_a_crash_leaves_nothing(
     error = fails("run", obj(meshes.cube()), "-o", tmp_path / "out", "--charts", 3)
     assert "mesh.obj: crashed with SIGSEGV" in error and f"stage {stage}" in error
     assert not (tmp_path / "out").exists()
+
+
+def test_reading_without_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(apart, "READING_SECONDS", 0.2)
+
+    def read(tell: Tell) -> None:
+        tell(apart.READING)
+        with apart.limited_reading(1000):
+            while True:
+                pass
+
+    with pytest.raises(DevsegError, match="did not come to an end in stage load"):
+        run_apart("a.obj", read)
+    # What comes after reading may take its time, and so may readers in other processes.
+    with apart.limited_reading(1000):
+        spend(0.4)
+
+    def work(_: Tell) -> str:
+        with apart.limited_reading(1000):
+            pass
+        spend(0.4)
+        return "done"
+
+    assert run_apart("a.obj", work) == "done"
+
+
+def spend(seconds: float) -> None:
+    start = time.process_time()
+    while time.process_time() - start < seconds:
+        pass
 
 
 SLEEPER = """
