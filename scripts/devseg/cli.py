@@ -81,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--out", type=Path, default=Path(), metavar="DIR", help="for the picture; default: ."
     )
     compare.add_argument(
-        "--charts", type=_integer(1), default=20, metavar="N", help="for all methods; default: 20"
+        "--charts", type=_integer(1), metavar="N", help="for all methods; default: 20"
     )
     compare.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
     compare.add_argument(

@@ -17,12 +17,16 @@ from devseg.pipeline import (
     PARAMETRIZATION_MEASURES,
     SEGMENTATION_MEASURES,
     Session,
+    segment,
     versions,
 )
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
 CIRCLE_MEASURES = "get_circle_map_measures"
+
+# The number of charts that all methods get where nobody asks for one.
+CHARTS = 20
 
 # Rows of the table: group and name of a measure, and how it is called.
 ROWS = (
@@ -89,7 +93,7 @@ def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> d
             loaded = load_mesh(path)
         session = Session(path, loaded.meshes, loaded.warnings)
         with progress.stage("segment"):
-            session.apply(method.filter, **parameters)
+            segment(session, method, parameters, CHARTS)
         # Before flattening, which takes charts apart where they would overlap.
         found = {
             "segmentation": session.apply(SEGMENTATION_MEASURES),

@@ -216,7 +216,7 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         with progress.stage("simplify"):
             found["simplification"] = simplify(session, options.target_faces)
     with progress.stage("segment"):
-        made = _segment(session, options)
+        made = segment(session, options.method, options.segmentation)
     found["method_results"] = made
     if not made.get("bounds_kept", True):
         session.warnings.append(
@@ -280,17 +280,29 @@ def _deform(session: Session) -> dict[str, Any]:
     }
 
 
-def _segment(session: Session, options: RunOptions) -> dict[str, Any]:
-    """Applies the method; nobody asked for its default number of charts."""
-    parameters = dict(options.segmentation)
+def segment(
+    session: Session, method: Method, given: Mapping[str, Any], charts: int | None = None
+) -> dict[str, Any]:
+    """Applies a method and returns its results.
+
+    Args:
+        session: with the mesh.
+        method: the method.
+        given: the parameters that somebody asked for.
+        charts: a number of charts that nobody asked for; None: the filter's own. A mesh of fewer
+            faces gets as many charts as faces.
+    """
+    parameters = dict(given)
+    if charts is not None and "charts" in method.options:
+        parameters.setdefault("charts_number", charts)
     try:
-        return session.apply(options.method.filter, **parameters)
+        return session.apply(method.filter, **parameters)
     except DevsegError as error:
         # Only the filter knows how many faces are left of a mesh with faults.
         most = _MOST_CHARTS.search(str(error))
-        if most is None or "charts_number" in parameters:
+        if most is None or "charts_number" in given:
             raise
-        return session.apply(options.method.filter, **parameters, charts_number=int(most[1]))
+        return session.apply(method.filter, **{**parameters, "charts_number": int(most[1])})
 
 
 def scaled(
