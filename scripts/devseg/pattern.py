@@ -68,6 +68,10 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--tab-depth-mm", type=millimetres(0.5), metavar="D", help="of glue tabs; default: 5"
     )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
+    _add_switches(group)
+
+
+def _add_switches(group: argparse._ArgumentGroup) -> None:
     for name, text in (
         ("glue-tabs", "flaps to glue the pieces with"),
         ("fold-lines", "mountain and valley folds"),
