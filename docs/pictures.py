@@ -39,7 +39,7 @@ FONT = 17
 def sample(name: str) -> Session:
     """A sample mesh of the pymeshlab wheel."""
     path = sample_mesh().parent / name
-    meshes, _ = load_mesh(path)
+    meshes = load_mesh(path).meshes
     load_plugins()
     return Session(path, meshes)
 
@@ -125,7 +125,7 @@ def titled(panels: list[Image.Image], titles: list[str]) -> Image.Image:
 def segmented(session: Session, method: str, **parameters: Any) -> Session:
     """The session after a method, deformation where the method asks for it, and flattening."""
     chosen = METHODS[method]
-    session.segment(chosen.filter, **parameters)
+    session.apply(chosen.filter, **parameters)
     if chosen.deforms:
         session.apply(DEFORM_FILTER)
     session.apply(FLATTEN_FILTER, method=FLATTENINGS[chosen.flatten])
@@ -236,7 +236,7 @@ def packing() -> None:
     panels = []
     for count in (20, 90):
         session = sample("bunny.obj")
-        session.segment(METHODS["t-flooding"].filter, charts_number=count)
+        session.apply(METHODS["t-flooding"].filter, charts_number=count)
         session.apply(FLATTEN_FILTER)
         panels.append(pattern_side(session, SIZE))
     save(titled(panels, ["20 charts: nested", "90 charts: first fit"]), "packing")
@@ -245,7 +245,7 @@ def packing() -> None:
 def deformation() -> None:
     """Charts before and after they became exactly developable."""
     before = small(sample("bunny.obj"), 1200)
-    before.segment(METHODS["papercraft"].filter, charts_number=12)
+    before.apply(METHODS["papercraft"].filter, charts_number=12)
     start = data(segmented(small(sample("bunny.obj"), 1200), "vsa", charts_number=1))
     before.apply(FLATTEN_FILTER)
     after = segmented(small(sample("bunny.obj"), 1200), "papercraft", charts_number=12)

@@ -19,6 +19,11 @@ system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev
     libgtest-dev libcgal-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
     python3-dev)
 
+# Fresh machines install their own updates for minutes: so many seconds we wait for apt's locks, and
+# look again after each pause.
+lock_timeout=900
+lock_pause=10
+
 # All messages go to stderr: stdout belongs to the results (devseg run --json).
 say() { printf 'devseg: %s\n' "$*" >&2; }
 die() {
@@ -65,10 +70,22 @@ ensure_system_packages() {
         as_root=(sudo)
     fi
     say "installing system packages: ${missing[*]}"
-    # A third-party source that does not answer must not stop us: the install decides.
-    logged "${as_root[@]}" apt-get update || true
+    update_lists "${as_root[@]}"
     or_die "installing the system packages" "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y --no-install-recommends "${missing[@]}"
+        apt-get -o "DPkg::Lock::Timeout=$lock_timeout" install -y --no-install-recommends \
+        "${missing[@]}"
+}
+
+# update_lists [sudo]: apt waits for the lock of its packages, but not for that of its lists.
+update_lists() {
+    local start=$SECONDS
+    until logged "$@" env LC_ALL=C apt-get -o "DPkg::Lock::Timeout=$lock_timeout" update; do
+        # A third-party source that does not answer must not stop us: the install decides.
+        tail -n 5 "$setup_log" | grep -q 'Could not get lock' || return 0
+        ((SECONDS - start < lock_timeout)) || return 0
+        say "waiting for other software that is installing packages"
+        sleep "$lock_pause"
+    done
 }
 
 # Prints the first Python that has a wheel of the given pymeshlab.

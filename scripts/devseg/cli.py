@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -11,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from devseg.errors import DevsegError, one_line
+from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS
 from devseg.pattern import (
     PATTERN_FORMATS,
     PRESETS,
     add_pattern_options,
-    length,
     pattern_parameters,
 )
 
@@ -65,7 +64,7 @@ def _parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="segment, flatten, pack and export meshes")
     run.add_argument("input", nargs="+", type=Path, metavar="INPUT", help="a mesh file")
-    run.add_argument("-o", "--out", type=Path, required=True, metavar="DIR", help="for the files")
+    run.add_argument("-o", "--out", type=Path, metavar="DIR", help="for the files")
     add_run_options(run)
     run.set_defaults(command=run_command, subparser=run)
 
@@ -82,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--out", type=Path, default=Path(), metavar="DIR", help="for the picture; default: ."
     )
     compare.add_argument(
-        "--charts", type=_integer(1), default=20, metavar="N", help="for all methods; default: 20"
+        "--charts", type=_integer(1), metavar="N", help="for all methods; default: 20"
     )
     compare.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
     compare.add_argument(
@@ -141,16 +140,52 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         metavar="LIST",
         help=f"of {','.join(FORMATS)}; default: svg,ply",
     )
-    scale = parser.add_mutually_exclusive_group()
-    scale.add_argument(
-        "--height-mm", type=_positive, metavar="H", help="height (y) of the finished object"
-    )
-    scale.add_argument(
-        "--mm-per-unit", type=_positive, metavar="S", help="size of a model unit; default: 1"
-    )
+    _add_input_options(parser)
     add_pattern_options(parser)
     parser.add_argument(
+        "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
+    )
+    parser.add_argument(
+        "--keep-texcoords",
+        action="store_true",
+        help="PLY: the file's own texture coordinates as well, as texcoord_before",
+    )
+    parser.add_argument(
         "--json", action="store_true", help="print the results as JSON (a list for several inputs)"
+    )
+
+
+def _add_input_options(parser: argparse.ArgumentParser) -> None:
+    scale = parser.add_argument_group("size of the finished object").add_mutually_exclusive_group()
+    for side, help_text in (
+        ("height", "along the axis that is up"),
+        ("longest", "its longest side"),
+    ):
+        scale.add_argument(f"--{side}-mm", type=_size_mm, metavar="L", help=help_text)
+        scale.add_argument(
+            f"--{side}", type=size, dest=f"{side}_mm", metavar="L", help="such as 250mm or 10in"
+        )
+    scale.add_argument(
+        "--mm-per-unit",
+        type=_positive,
+        metavar="S",
+        help="size of a model unit; default: as 3mf, dae and gltf say, else 1",
+    )
+    parser.add_argument(
+        "--up",
+        choices=("y", "z"),
+        help="axis of the file that points up; default: as 3mf, dae and gltf say, else y",
+    )
+    parser.add_argument(
+        "--object",
+        action="append",
+        default=[],
+        dest="objects",
+        metavar="NAME",
+        help="take this object of the file; may be given again; default: all",
+    )
+    parser.add_argument(
+        "--list-objects", action="store_true", help="only print the objects of the file"
     )
 
 
@@ -172,19 +207,25 @@ def _charts(text: str) -> int:
 
 
 def _above(least: float) -> Callable[[str], float]:
-    def number(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (value > least and math.isfinite(value)):
+    def parse(text: str) -> float:
+        value = number(text)
+        if not value > least:
             raise argparse.ArgumentTypeError(f"expected a number above {least:g}, found '{text}'")
         return value
 
-    return number
+    return parse
 
 
 _positive = _above(0)
+
+
+def _size_mm(text: str) -> float:
+    value = millimetres()(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError(f"expected a length above 0, found '{text}'")
+    return value
+
+
 _stretch = _above(1)
 
 
@@ -206,10 +247,16 @@ def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
 
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """`devseg run`; parser reports wrong usage."""
-    from devseg.load import release
     from devseg.outputs import to_json
     from devseg.pipeline import RunOptions, run
 
+    if args.list_objects:
+        _list_objects(args)
+        return
+    if args.out is None:
+        parser.error("the following arguments are required: -o/--out")
+    if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
+        parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
     method = METHODS[args.method]
     given = {name: getattr(args, name) for name in METHOD_OPTIONS}
     segmentation: dict[str, Any] = {}
@@ -231,7 +278,18 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         pattern.setdefault("preset", PRESETS[method.preset])
     flattening = args.flatten or method.flatten
     options = RunOptions(
-        args.out, method, segmentation, flattening, args.formats, pattern, args.target_faces
+        args.out,
+        method,
+        segmentation,
+        flattening,
+        args.formats,
+        pattern,
+        args.target_faces,
+        args.longest_mm,
+        args.up,
+        tuple(args.objects),
+        args.picture,
+        args.keep_texcoords,
     )
     results = []
     for path in args.input:
@@ -239,11 +297,29 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         for warning in result["warnings"]:
             print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
         results.append(result)
-        release()
         if not args.json:
             print(_summary(result, args.out))
     if args.json:
         sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
+
+
+def _list_objects(args: argparse.Namespace) -> None:
+    from devseg.apart import READING, run_apart
+    from devseg.load import list_objects
+    from devseg.outputs import to_json
+
+    def read(path: Path, tell: Callable[[str], None]) -> dict[str, int]:
+        tell(READING)
+        return list_objects(path)
+
+    found = {str(p): run_apart(str(p), lambda tell, p=p: read(p, tell)) for p in args.input}
+    if args.json:
+        sys.stdout.write(to_json(found))
+        return
+    for path, objects in found.items():
+        for name, faces in objects.items():
+            head = f"{path}: " if len(found) > 1 else ""
+            print(f"{head}{name or '(no name)'}\t{faces} faces")
 
 
 def _check_names(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
@@ -274,6 +350,7 @@ _LABELS = {
 
 def _summary(result: dict[str, Any], out: Path) -> str:
     lines = [f"{_LABELS[kind]:<9} {out / name}" for kind, name in result["outputs"].items()]
+    lines.append(f"{'size':<9} {shown(result['size_mm'])}")
     flat = result["parametrization"]
     figures = [
         f"{flat['charts_number']} charts",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from devseg import host
+from devseg.apart import READING, Tell, run_apart
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, Method
 from devseg.outputs import staged, to_json
@@ -16,12 +17,16 @@ from devseg.pipeline import (
     PARAMETRIZATION_MEASURES,
     SEGMENTATION_MEASURES,
     Session,
+    segment,
     versions,
 )
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
 CIRCLE_MEASURES = "get_circle_map_measures"
+
+# The number of charts that all methods get where nobody asks for one.
+CHARTS = 20
 
 # Rows of the table: group and name of a measure, and how it is called.
 ROWS = (
@@ -71,44 +76,50 @@ def compare(path: Path, options: CompareOptions) -> dict[str, Any]:
     Raises:
         DevsegError: with nothing written.
     """
+    with staged(options.out) as folder:
+        return run_apart(str(path), lambda tell: _compare(path, options, folder, tell))
+
+
+def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> dict[str, Any]:
     from devseg.render import render_meshes
 
     results: dict[str, Any] = {}
     pictures = []
-    with staged(options.out) as folder:
-        for method, parameters in zip(options.methods, options.segmentation, strict=True):
-            progress = Progress(f"{path.stem}, {method.name}")
-            with progress.stage("load"):
-                meshes, warnings = load_mesh(path)
-                load_plugins()
-            session = Session(path, meshes)
-            with progress.stage("segment"):
-                session.segment(method.filter, **parameters)
-            # Before flattening, which takes charts apart where they would overlap.
-            found = {
-                "segmentation": session.apply(SEGMENTATION_MEASURES),
-                "circle": session.apply(CIRCLE_MEASURES),
-            }
-            with progress.stage("flatten"):
-                session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
-            found["parametrization"] = session.apply(PARAMETRIZATION_MEASURES)
-            results[method.name] = {
-                **found,
-                "parameters": session.parameters,
-                "seconds": progress.seconds,
-            }
-            pictures.append(host.mesh_data(meshes.current_mesh()))
-        stem = f"{path.stem}-compare"
-        titles = [method.name for method in options.methods]
-        render_meshes(pictures, titles).save(folder / f"{stem}.png")
-        result = {
-            "input": path.name,
-            "methods": results,
-            "versions": versions(),
-            "warnings": warnings + session.warnings,
-            "outputs": {"png": f"{stem}.png", "json": f"{stem}.json"},
+    warnings: list[str] = []
+    load_plugins()
+    for method, parameters in zip(options.methods, options.segmentation, strict=True):
+        progress = Progress(f"{path.stem}, {method.name}", tell=tell)
+        with progress.stage(READING):
+            loaded = load_mesh(path)
+        session = Session(path, loaded.meshes, loaded.warnings)
+        with progress.stage("segment"):
+            segment(session, method, parameters, CHARTS)
+        # Before flattening, which takes charts apart where they would overlap.
+        found = {
+            "segmentation": session.apply(SEGMENTATION_MEASURES),
+            "circle": session.apply(CIRCLE_MEASURES),
         }
-        (folder / f"{stem}.json").write_text(to_json(result), encoding="utf-8")
+        with progress.stage("flatten"):
+            session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
+        found["parametrization"] = session.apply(PARAMETRIZATION_MEASURES)
+        results[method.name] = {
+            **found,
+            "parameters": session.parameters,
+            "seconds": progress.seconds,
+        }
+        warnings += session.warnings
+        pictures.append(host.mesh_data(loaded.meshes.current_mesh()))
+    stem = f"{path.stem}-compare"
+    titles = [method.name for method in options.methods]
+    render_meshes(pictures, titles).save(folder / f"{stem}.png")
+    result = {
+        "input": path.name,
+        "methods": results,
+        "versions": versions(),
+        "warnings": list(dict.fromkeys(warnings)),
+        "outputs": {"png": f"{stem}.png", "json": f"{stem}.json"},
+    }
+    (folder / f"{stem}.json").write_text(to_json(result), encoding="utf-8")
     return result
 
 

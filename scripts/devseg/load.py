@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import host, obj, ply
+from devseg import gltf, host, obj, ply, scene
+from devseg.apart import limited_reading
 from devseg.errors import DevsegError, host_message
+from devseg.frame import Frame, read_frame
+from devseg.obj_parts import Part
 
 # What pymeshlab itself reports about a mesh that it changed while loading.
 _CORRECTED = re.compile(r"contains (\d+) vertices with NAN coords and (\d+) degenerated faces")
+
+# What is looked at before the host reads a file: its readers trust what files say.
+_CHECKS = {
+    ".ply": ply.check_size,
+    ".obj": obj.check_indices,
+    **dict.fromkeys(gltf.EXTENSIONS, gltf.check),
+}
 
 # pymeshlab's progress callback keeps a pointer to the log of a MeshSet that has loaded a file, and
 # uses it while others load or save: none of them may die. Their meshes may, see release().
@@ -23,13 +36,57 @@ def release() -> None:
         meshes.clear()
 
 
-def load_mesh(path: Path) -> tuple[Any, list[str]]:
-    """A MeshSet that holds the mesh of a file, and warnings about what the loader changed.
+@dataclass(frozen=True)
+class Loaded:
+    """What a file has become.
+
+    Attributes:
+        meshes: a MeshSet with one mesh, which holds all objects of the file that were asked for.
+        warnings: what was changed on the way, or may surprise.
+        frame: the unit and the upward axis, as far as the format tells them.
+        parts: objects, groups and materials; the face attribute part_id counts them.
+    """
+
+    meshes: Any
+    warnings: list[str]
+    frame: Frame
+    parts: list[Part]
+
+
+def load_mesh(path: Path, objects: Sequence[str] = ()) -> Loaded:
+    """Reads the objects of a file, all or those of the given names, as one mesh.
 
     Raises:
-        DevsegError: for a file that is missing, cannot be read, holds no faces, several meshes or
-            coordinates that are no finite numbers.
+        DevsegError: for a file that is missing, cannot be read, holds no faces, not the objects
+            that are asked for, or coordinates that are no finite numbers.
     """
+    meshes, log = _read(path)
+    try:
+        with host.captured():
+            parts, warnings = scene.join(path, meshes, objects)
+    except host.pymeshlab().PyMeshLabException as error:
+        raise DevsegError(f"{path}: objects cannot be joined ({host_message(error)})") from error
+    warnings += _check(path, meshes, log) + _turn_outside(meshes)
+    return Loaded(meshes, warnings, read_frame(path), parts)
+
+
+def list_objects(path: Path) -> dict[str, int]:
+    """The names of the objects of a file, and their faces.
+
+    Raises:
+        DevsegError: as load_mesh.
+    """
+    loaded = load_mesh(path)
+    ids = scene.part_ids(loaded.meshes.current_mesh(), loaded.parts).tolist()
+    found: dict[str, int] = {}
+    for part, faces in Counter(ids).items():
+        name = loaded.parts[part].object
+        found[name] = found.get(name, 0) + faces
+    return found
+
+
+def _read(path: Path) -> tuple[Any, str]:
+    """A MeshSet with the layers of a file, and what the host said."""
     if not path.is_file():
         found = "a folder" if path.is_dir() else "nothing"
         raise DevsegError(f"{path}: expected a mesh file, found {found}; check the name")
@@ -40,8 +97,9 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
         raise DevsegError(
             f"{path}: cannot be opened ({error.strerror}); check permissions"
         ) from error
-    if path.suffix.lower() == ".ply":
-        ply.check_size(path)
+    check = _CHECKS.get(path.suffix.lower())
+    if check is not None:
+        check(path)
     pymeshlab = host.pymeshlab()
     try:
         # Verbose, as only its log tells that vertices were dropped.
@@ -49,21 +107,26 @@ def load_mesh(path: Path) -> tuple[Any, list[str]]:
             meshes = pymeshlab.MeshSet(True)
             _loggers.append(meshes)
             try:
-                meshes.load_new_mesh(str(path))
+                with limited_reading(path.stat().st_size):
+                    meshes.load_new_mesh(str(path))
             finally:
                 # All plugins would go on logging to this MeshSet after its end.
                 meshes.set_verbosity(False)
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
-    warnings = _check(path, meshes, chatter.text)
-    if path.suffix.lower() == ".obj":
-        count, line = obj.faces_without_vertices(path)
-        if count:
-            warnings.append(
-                f"{count} faces name vertices that the file does not have and were left out "
-                f"(the first in line {line})"
-            )
-    return meshes, warnings
+    return meshes, chatter.text
+
+
+def _turn_outside(meshes: Any) -> list[str]:
+    """Turns the faces of a solid that look inwards; says so."""
+    from devseg.orient import is_inside_out
+
+    mesh = meshes.current_mesh()
+    if not is_inside_out(mesh.vertex_matrix(), mesh.face_matrix()):
+        return []
+    with host.captured():
+        meshes.meshing_invert_face_orientation(forceflip=True)
+    return ["the solid is inside out: its faces looked inwards and were turned"]
 
 
 def _load_message(path: Path, error: BaseException) -> str:
@@ -81,17 +144,9 @@ def _load_message(path: Path, error: BaseException) -> str:
 def _check(path: Path, meshes: Any, log: str) -> list[str]:
     import numpy as np
 
-    # pymeshlab 2022.2 calls it number_meshes.
-    count = (getattr(meshes, "mesh_number", None) or meshes.number_meshes)()
-    if count != 1:
-        raise DevsegError(
-            f"{path}: expected one mesh, found {count}; join them first "
-            "(generate_by_merging_visible_meshes)"
-        )
     mesh = meshes.current_mesh()
-    dropped = [0, 0]
-    if match := _CORRECTED.search(log):
-        dropped = [int(match[1]), int(match[2])]
+    found = _CORRECTED.findall(log)  # once for each object
+    dropped = [sum(int(one[k]) for one in found) for k in (0, 1)]
     if dropped[0] or not np.isfinite(mesh.vertex_matrix()).all():
         raise DevsegError(
             f"{path}: expected finite coordinates, found NaN or infinite ones (vertices: "
@@ -100,8 +155,7 @@ def _check(path: Path, meshes: Any, log: str) -> list[str]:
     if mesh.face_number() == 0:
         raise DevsegError(
             f"{path}: expected a triangle mesh, found no faces ({mesh.vertex_number()} points); "
-            "a point cloud needs a surface reconstruction first "
-            "(generate_surface_reconstruction_screened_poisson)"
+            "make a surface of the points first, in MeshLab for example"
         )
     if dropped[1]:
         return [f"{dropped[1]} faces that repeat a vertex were dropped while loading"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError
 from devseg.load import load_mesh
 from devseg.pipeline import PARAMETRIZATION_MEASURES, SEGMENTATION_MEASURES, Session
@@ -18,8 +19,14 @@ def measure(path: Path) -> dict[str, Any]:
     Raises:
         DevsegError: for a mesh without texture coordinates.
     """
-    meshes, _ = load_mesh(path)
+    return run_apart(str(path), lambda tell: _measure(path, tell))
+
+
+def _measure(path: Path, tell: Tell) -> dict[str, Any]:
     load_plugins()
+    tell(READING)
+    meshes = load_mesh(path).meshes
+    tell("measure")
     session = Session(path, meshes)
     mesh = meshes.current_mesh()
     if not mesh.has_wedge_tex_coord():

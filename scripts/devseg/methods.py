@@ -41,6 +41,8 @@ _OPTIONS = {
     "max_iterations": "max_iterations",
 }
 METHOD_OPTIONS = tuple(_OPTIONS)
+# The other way round, as users know them.
+OPTION_OF = {parameter: f"--{name.replace('_', '-')}" for name, parameter in _OPTIONS.items()}
 
 METHODS = {
     name: Method(

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Callable
 from typing import Any
+
+from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
 # Formats that the export filter writes.
@@ -16,55 +16,48 @@ DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
-def length(least: float = 0.0) -> Callable[[str], float]:
-    """A parser of finite numbers of at least `least`."""
-
-    def parse(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (value >= least and math.isfinite(value)):
-            raise argparse.ArgumentTypeError(
-                f"expected a number of at least {least:g}, found '{text}'"
-            )
-        return value
-
-    return parse
-
-
 def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     """The options that shape svg, pdf and dxf files, beside the scale."""
     group = parser.add_argument_group("pattern files (svg, pdf, dxf)")
     group.add_argument("--preset", choices=PRESETS, help="what to make; default: plain")
     group.add_argument(
-        "--page", metavar="PAGE", help="none, a4, letter, a3 or WxH in mm; default: none"
+        "--page",
+        type=page,
+        metavar="PAGE",
+        help="none, letter, legal, tabloid, a4 to a0 (also a4-landscape), WxH in mm, or such as "
+        "24x36in; default: none",
     )
-    group.add_argument("--page-margin-mm", type=length(), metavar="M", help="default: 10")
+    group.add_argument("--page-margin-mm", type=millimetres(), metavar="M", help="default: 10")
     group.add_argument(
-        "--seam-allowance-mm", type=length(), metavar="A", help="along seams; default: 0"
+        "--seam-allowance-mm", type=millimetres(), metavar="A", help="along seams; default: 0"
     )
     group.add_argument(
         "--hem-allowance-mm",
-        type=length(),
+        type=millimetres(),
         metavar="A",
         help="along open borders; default: as seams",
     )
     group.add_argument(
-        "--notch-spacing-mm", type=length(), metavar="D", help="between notches; default: 0, none"
+        "--notch-spacing-mm",
+        type=millimetres(),
+        metavar="D",
+        help="between notches; default: 0, none",
     )
     group.add_argument(
         "--fold-angle", type=length(), metavar="DEG", help="least angle of a fold; default: 22.5"
     )
     group.add_argument(
-        "--max-piece-mm", type=length(), metavar="L", help="split larger pieces; default: 0, none"
+        "--max-piece-mm",
+        type=millimetres(),
+        metavar="L",
+        help="split larger pieces; default: 0, none",
     )
     group.add_argument(
-        "--simplify-mm", type=length(), metavar="T", help="of outlines; default: 0.1"
+        "--simplify-mm", type=millimetres(), metavar="T", help="of outlines; default: 0.1"
     )
     group.add_argument(
         "--curve-mm",
-        type=length(),
+        type=millimetres(),
         metavar="T",
         help="outlines as curves; default: 0, none",
     )
@@ -72,9 +65,13 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--corner-style", choices=CORNERS, help="corners of the allowance; default: miter"
     )
     group.add_argument(
-        "--tab-depth-mm", type=length(0.5), metavar="D", help="of glue tabs; default: 5"
+        "--tab-depth-mm", type=millimetres(0.5), metavar="D", help="of glue tabs; default: 5"
     )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
+    _add_switches(group)
+
+
+def _add_switches(group: argparse._ArgumentGroup) -> None:
     for name, text in (
         ("glue-tabs", "flaps to glue the pieces with"),
         ("fold-lines", "mountain and valley folds"),
@@ -115,11 +112,21 @@ _PARAMETERS = (
     "labels",
 )
 
+# The option that sets a parameter of the export filter.
+OPTION_OF = {
+    **{name: f"--{name.replace('_', '-')}" for name in (*_PARAMETERS, "preset", "corner_style")},
+    **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
+    "tiling": "--no-tiling",
+    "labels": "--no-labels",
+    "cover": "--no-cover",
+    "dxf_kind": "--dxf",
+}
+
 _CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
-    """The parameters of the export filter that were given; the scale always is."""
+    """The parameters of the export filter that were given."""
     given = {name: getattr(args, name) for name in _PARAMETERS}
     parameters = {name: value for name, value in given.items() if value is not None}
     for name, values in _CHOICES.items():
@@ -127,6 +134,6 @@ def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
             parameters[name] = values[value]
     if args.height_mm:
         parameters["height_mm"] = args.height_mm
-    else:
-        parameters["mm_per_unit"] = args.mm_per_unit or 1.0
+    elif args.mm_per_unit:
+        parameters["mm_per_unit"] = args.mm_per_unit
     return parameters

@@ -5,17 +5,23 @@ from __future__ import annotations
 import importlib.metadata
 import platform
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import host
+from devseg import host, ply, scene
+from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
+from devseg.frame import Frame
+from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, Method
+from devseg.methods import FLATTENINGS, OPTION_OF, Method
+from devseg.obj_parts import Part
+from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
 from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
+from devseg.pattern import OPTION_OF as PATTERN_OPTION_OF
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -25,11 +31,24 @@ DEFORM_FILTER = "apply_coord_developable_charts"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
+MESH_FORMATS = ("ply", "obj")
+
+# A finished object of another size than these was hardly meant, unless it is asked for.
+SMALLEST_MM, LARGEST_MM = 20.0, 5000.0
+# The export's own limit.
+LEAST_MM_PER_UNIT = 1e-9
+# A model that is so much longer than high may lie.
+TALL = 1.1
+# Higher levels take several times as long for a tenth of the size.
+PNG_COMPRESSION = 1
 
 
 # What a verbose host prints for each line of a filter's log, and for its progress.
 _LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
 _PROGRESS = re.compile(r"\[ +\d+% \]$")
+# What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
+_HINT = re.compile(r" \('[A-Z][^()]*\)$")
+_MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
 
 
 @dataclass(frozen=True)
@@ -44,6 +63,11 @@ class RunOptions:
         formats: svg, pdf, dxf, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
         target_faces: simplify the mesh to so many faces first; None: leave it.
+        longest_mm: the longest side of the finished object; None: see pattern.
+        up: axis of the file that points up, y or z; None: as its format says, else y.
+        objects: names of the objects of the file to take; none: all.
+        picture: whether to draw one.
+        keep_texcoords: whether PLY files keep the coordinates of the file beside the new ones.
     """
 
     out: Path
@@ -53,20 +77,25 @@ class RunOptions:
     formats: tuple[str, ...]
     pattern: Mapping[str, Any]
     target_faces: int | None = None
+    longest_mm: float | None = None
+    up: str | None = None
+    objects: tuple[str, ...] = ()
+    picture: bool = True
+    keep_texcoords: bool = False
 
 
 class Session:
     """The filters applied to one mesh, with the parameters that were in force."""
 
-    def __init__(self, path: Path, meshes: Any) -> None:
+    def __init__(self, path: Path, meshes: Any, warnings: Sequence[str] = ()) -> None:
         self.path = path
         self.meshes = meshes
         self.parameters: dict[str, dict[str, Any]] = {}
-        self.warnings: list[str] = []
+        self.warnings = list(warnings)
         self._chatter = ""  # what the host printed last
 
     def apply(self, name: str, **parameters: Any) -> dict[str, Any]:
-        """Applies a filter and returns its results.
+        """Applies a filter of ours and returns its results; its notes are warnings.
 
         Raises:
             DevsegError: with the filter's own message.
@@ -74,21 +103,7 @@ class Session:
         values = self._guard(self.meshes.filter_parameter_values, name, **parameters)
         if values:
             self.parameters[name] = values
-        return self._guard(self.meshes.apply_filter, name, **parameters) or {}
-
-    def segment(self, name: str, **parameters: Any) -> dict[str, Any]:
-        """The same for the filter that reads the mesh first; what it worked around is a warning.
-
-        The host drops texts from results, but logs them.
-        """
-        results = self.apply(name, **parameters)
-        values = tuple(f"{result}: " for result in results)
-        self.warnings += [
-            note.rstrip()
-            for note in _LOGGED.findall(self._chatter)
-            if not _PROGRESS.search(note.rstrip()) and not note.startswith(values)
-        ]
-        return results
+        return self._noted(name, **parameters)
 
     def call(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter of the host that shapes no result, without noting its parameters."""
@@ -96,11 +111,22 @@ class Session:
 
     def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
         """Writes the pattern, in the format of the file's extension."""
-        self._guard(self.meshes.apply_filter, EXPORT_FILTER, output_file=str(file), **parameters)
+        self._noted(EXPORT_FILTER, output_file=str(file), **parameters)
 
     def save(self, file: Path, **parameters: Any) -> None:
         """Saves the current mesh, in the format of the file's extension."""
         self._guard(self.meshes.save_current_mesh, str(file), **parameters)
+
+    def _noted(self, name: str, **parameters: Any) -> dict[str, Any]:
+        # The host drops texts from results, but logs them, with the results.
+        results = self._guard(self.meshes.apply_filter, name, **parameters) or {}
+        values = tuple(f"{result}: " for result in results)
+        for logged in _LOGGED.findall(self._chatter):
+            note = _HINT.sub("", logged.rstrip())
+            # Every filter that reads the mesh tells of its faults again.
+            if not (_PROGRESS.search(note) or note.startswith(values) or note in self.warnings):
+                self.warnings.append(note)
+        return results
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
         errors = (host.pymeshlab().PyMeshLabException, RuntimeError, MemoryError)
@@ -113,9 +139,16 @@ class Session:
             self._chatter = chatter.text
             return result
         except errors as error:
-            raise DevsegError(f"{self.path}: {host_message(error)}") from error
+            raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
         finally:
             self.meshes.set_verbosity(False)
+
+
+def as_option(message: str) -> str:
+    """A filter's message about a parameter, with the option of the command line that sets it."""
+    name, colon, rest = message.partition(": ")
+    option = {**PATTERN_OPTION_OF, **OPTION_OF}.get(name)
+    return f"{option}: {rest}" if colon and option else message
 
 
 def versions() -> dict[str, str]:
@@ -126,34 +159,49 @@ def versions() -> dict[str, str]:
 
 
 def run(path: Path, options: RunOptions) -> dict[str, Any]:
-    """Runs the whole pipeline on one file and returns what NAME.json holds.
+    """Runs the whole pipeline on one file, apart, and returns what NAME.json holds.
 
     Raises:
         DevsegError: with nothing written.
     """
-    name = path.stem
     with staged(options.out) as folder:
-        progress = Progress(name)
-        with progress.stage("load"):
-            meshes, warnings = load_mesh(path)
-            load_plugins()
-        mesh = meshes.current_mesh()
-        size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
-        session = Session(path, meshes)
-        measures = flatten_mesh(session, options, progress)
-        outputs = _write(session, options, folder / name, progress)
-        result = {
-            "input": path.name,
-            "method": options.method.name,
-            "mesh": size,
-            **measures,
-            "parameters": {**session.parameters, "pattern": dict(options.pattern)},
-            "versions": versions(),
-            "warnings": warnings + session.warnings,
-            "seconds": progress.seconds,
-            "outputs": outputs,
-        }
-        (folder / outputs["json"]).write_text(to_json(result), encoding="utf-8")
+        return run_apart(str(path), lambda tell: _process(path, options, folder, tell))
+
+
+def _process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+    name = path.stem
+    progress = Progress(name, tell=tell)
+    with progress.stage("start"):
+        load_plugins()
+    with progress.stage(READING):
+        loaded = load_mesh(path, options.objects)
+        up = options.up or loaded.frame.up or "y"
+        scene.turn(loaded.meshes, up)
+    mesh = loaded.meshes.current_mesh()
+    size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
+    session = Session(path, loaded.meshes, loaded.warnings)
+    texcoords = old_texcoords(session, options)
+    measures = flatten_mesh(session, options, progress)
+    pattern, extents = scaled(session, options, loaded.frame, up)
+    writer = _Writer(session, options, folder / name, progress)
+    writer.write_patterns(pattern)
+    scene.turn(loaded.meshes, up, back=True)
+    writer.write_meshes(loaded.parts, texcoords)
+    writer.outputs["json"] = f"{name}.json"
+    result = {
+        "input": path.name,
+        "method": options.method.name,
+        "mesh": size,
+        "parts": scene.counted(session.meshes.current_mesh(), loaded.parts),
+        "size_mm": extents,
+        **measures,
+        "parameters": {**session.parameters, "pattern": pattern},
+        "versions": versions(),
+        "warnings": session.warnings,
+        "seconds": progress.seconds,
+        "outputs": writer.outputs,
+    }
+    (folder / writer.outputs["json"]).write_text(to_json(result), encoding="utf-8")
     return result
 
 
@@ -168,7 +216,7 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         with progress.stage("simplify"):
             found["simplification"] = simplify(session, options.target_faces)
     with progress.stage("segment"):
-        made = session.segment(options.method.filter, **_segmentation(session, options))
+        made = segment(session, options.method, options.segmentation)
     found["method_results"] = made
     if not made.get("bounds_kept", True):
         session.warnings.append(
@@ -194,11 +242,13 @@ def simplify(session: Session, target_faces: int) -> dict[str, Any]:
     Deviations are shares of the diagonal of the model's box.
     """
     meshes = session.meshes
-    original = meshes.current_mesh_id()
+    # A copy lacks the attributes of the original.
+    simplified = meshes.current_mesh_id()
     diagonal = meshes.current_mesh().bounding_box().diagonal()
     session.call("generate_copy_of_current_mesh")
-    copy = meshes.current_mesh_id()
-    session.apply(
+    original = meshes.current_mesh_id()
+    meshes.set_current_mesh(simplified)
+    session.call(
         SIMPLIFY_FILTER,
         targetfacenum=target_faces,
         preserveboundary=True,
@@ -207,11 +257,11 @@ def simplify(session: Session, target_faces: int) -> dict[str, Any]:
     )
     ways = [
         session.call(DISTANCE_FILTER, sampledmesh=one, targetmesh=other, samplevert=True)
-        for one, other in ((original, copy), (copy, original))
+        for one, other in ((original, simplified), (simplified, original))
     ]
     meshes.set_current_mesh(original)
     session.call("delete_current_mesh")
-    meshes.set_current_mesh(copy)
+    meshes.set_current_mesh(simplified)
     return {
         "faces": meshes.current_mesh().face_number(),
         "mean_deviation": max(way["mean"] for way in ways) / diagonal,
@@ -230,41 +280,145 @@ def _deform(session: Session) -> dict[str, Any]:
     }
 
 
-def _segmentation(session: Session, options: RunOptions) -> dict[str, Any]:
-    """Parameters of the segmentation filter; nobody asked for more charts than faces."""
-    parameters = dict(options.segmentation)
-    if "charts" in options.method.options and "charts_number" not in parameters:
-        default = session.meshes.filter_parameter_values(options.method.filter)["charts_number"]
-        parameters["charts_number"] = min(default, session.meshes.current_mesh().face_number())
-    return parameters
+def segment(
+    session: Session, method: Method, given: Mapping[str, Any], charts: int | None = None
+) -> dict[str, Any]:
+    """Applies a method and returns its results.
+
+    Args:
+        session: with the mesh.
+        method: the method.
+        given: the parameters that somebody asked for.
+        charts: a number of charts that nobody asked for; None: the filter's own. A mesh of fewer
+            faces gets as many charts as faces.
+    """
+    parameters = dict(given)
+    if charts is not None and "charts" in method.options:
+        parameters.setdefault("charts_number", charts)
+    try:
+        return session.apply(method.filter, **parameters)
+    except DevsegError as error:
+        # Only the filter knows how many faces are left of a mesh with faults.
+        most = _MOST_CHARTS.search(str(error))
+        if most is None or "charts_number" in given:
+            raise
+        return session.apply(method.filter, **{**parameters, "charts_number": int(most[1])})
 
 
-def _write(session: Session, options: RunOptions, stem: Path, progress: Progress) -> dict[str, str]:
-    """Writes all files but the JSON; returns the names of all, by kind."""
-    from devseg.render import render_pair
+def scaled(
+    session: Session, options: RunOptions, frame: Frame, up: str
+) -> tuple[dict[str, Any], list[float]]:
+    """The parameters of the export, with a scale, and the size of the finished object.
 
-    outputs = {}
-    # with_suffix would cut a name such as "part.v2".
-    file = stem.parent / (stem.name + ".")
-    for extension in options.formats:
-        target = Path(f"{file}{extension}")
-        with progress.stage(extension):
-            if extension in PATTERN_FORMATS:
-                session.export(target, options.pattern)
-            elif extension == "ply":
-                session.save(
-                    target,
-                    binary=True,
-                    save_textures=False,
-                    __ca_fs__chart_id=True,
-                    __ca_fs__seam_edges=True,
-                )
-            else:
-                session.save(target, save_textures=False)
-        outputs[extension] = target.name
-    with progress.stage("picture"):
-        target = Path(f"{file}png")
-        render_pair(host.mesh_data(session.meshes.current_mesh())).save(target)
-        outputs["png"] = target.name
-    outputs["json"] = Path(f"{file}json").name
-    return outputs
+    The size is along x, y and z of the file, in mm. What may surprise becomes a warning.
+    """
+    mesh = session.meshes.current_mesh()
+    corners = mesh.vertex_matrix()[mesh.face_matrix().ravel()]
+    extents = [float(e) for e in corners.max(axis=0) - corners.min(axis=0)]
+    pattern = dict(options.pattern)
+    given = True
+    if "height_mm" in pattern:
+        mm = pattern["height_mm"] / extents[1] if extents[1] else 0.0
+        if options.up is None and frame.up is None and TALL * extents[1] < max(extents):
+            session.warnings.append(
+                f"the height is along y, where the model measures {extents[1]:.4g} of "
+                f"{max(extents):.4g} units; give --up z if z points up in it, else --up y"
+            )
+    elif options.longest_mm is not None:
+        mm = pattern["mm_per_unit"] = options.longest_mm / max(extents)
+        if mm < LEAST_MM_PER_UNIT:
+            raise DevsegError(
+                f"{session.path}: expected a model that is smaller, found {max(extents):.3g} "
+                "units; give a larger --longest-mm, or repair the file"
+            )
+    else:
+        given = "mm_per_unit" in pattern
+        mm = pattern.setdefault("mm_per_unit", frame.mm_per_unit or 1.0)
+    size = [mm * extents[k] for k in ((0, 1, 2) if up == "y" else (0, 2, 1))]
+    if not given and not SMALLEST_MM <= max(size) <= LARGEST_MM:
+        unit = "a unit of the file is" if frame.mm_per_unit else "without a scale a unit is"
+        session.warnings.append(
+            f"{unit} {mm:g} mm, so that the finished object measures "
+            f"{shown(size)}; give its size by --height-mm, --longest-mm or "
+            "--mm-per-unit (1000 for a model in metres)"
+        )
+    return pattern, size
+
+
+def old_texcoords(session: Session, options: RunOptions) -> Any:
+    """The texture coordinates of the file, #F by 6; None where they are not kept.
+
+    One warning says that they are replaced.
+    """
+    mesh = session.meshes.current_mesh()
+    if not mesh.has_wedge_tex_coord() and mesh.has_vertex_tex_coord():
+        session.call("compute_texcoord_transfer_vertex_to_wedge")
+    if not mesh.has_wedge_tex_coord():
+        return None
+    coordinates = mesh.wedge_tex_coord_matrix().reshape(-1, 6)
+    if not coordinates.any():
+        return None
+    # The host takes the last one for images that it cannot read.
+    textures = ", ".join(name for name in mesh.textures() if name != "dummy.png")
+    lost = f"; its textures ({textures}) do not fit the new ones" if textures else ""
+    kept = options.keep_texcoords
+    advice = "PLY has them as texcoord_before" if kept else "--keep-texcoords keeps them in PLY"
+    if set(MESH_FORMATS) & set(options.formats):
+        session.warnings.append(f"the texture coordinates of the file are replaced{lost}; {advice}")
+    return coordinates if kept else None
+
+
+class _Writer:
+    """Writes all files but the JSON, and keeps their names by kind."""
+
+    def __init__(
+        self, session: Session, options: RunOptions, stem: Path, progress: Progress
+    ) -> None:
+        self.session = session
+        self.options = options
+        self.stem = stem
+        self.progress = progress
+        self.outputs: dict[str, str] = {}
+
+    def _target(self, extension: str) -> Path:
+        # with_suffix would cut a name such as "part.v2".
+        return self.stem.parent / f"{self.stem.name}.{extension}"
+
+    def write_patterns(self, pattern: Mapping[str, Any]) -> None:
+        """What shows the mesh upright: patterns and the picture."""
+        for extension in self._formats(PATTERN_FORMATS):
+            self.session.export(self._target(extension), pattern)
+        if self.options.picture:
+            with self.progress.stage("picture"):
+                from devseg.render import render_pair
+
+                data = host.mesh_data(self.session.meshes.current_mesh())
+                render_pair(data).save(self._target("png"), compress_level=PNG_COMPRESSION)
+                self.outputs["png"] = self._target("png").name
+
+    def write_meshes(self, parts: Sequence[Part], texcoords: Any) -> None:
+        """What has the frame of the file."""
+        mesh = self.session.meshes.current_mesh()
+        for extension in self._formats(MESH_FORMATS):
+            target = self._target(extension)
+            if extension == "obj":
+                ids = scene.part_ids(mesh, parts)
+                write_obj(target, mesh, parts, ids, self.session.path)
+                continue
+            attributes = ["chart_id", "seam_edges"]
+            attributes += [scene.PART_ATTRIBUTE] if len(parts) > 1 else []
+            self.session.save(
+                target,
+                binary=True,
+                save_textures=False,
+                **{f"__ca_fs__{name}": True for name in attributes},
+            )
+            ply.finish(target, scene.comments(parts), texcoords)
+
+    def _formats(self, known: Sequence[str]) -> Iterator[str]:
+        """Those of the formats that are asked for, each as a stage of its own."""
+        for extension in self.options.formats:
+            if extension in known:
+                with self.progress.stage(extension):
+                    yield extension
+                self.outputs[extension] = self._target(extension).name

@@ -1,18 +1,20 @@
-"""The two things about PLY files that the host does not do.
+"""What the host does not do about PLY files.
 
-It believes a header that promises more than the file holds, and fills the memory; and it writes
-custom face attributes, but does not read them back.
+It believes a header that promises more than the file holds, and fills the memory. It writes custom
+face attributes, but does not read them back. It goes on naming textures of other coordinates.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from devseg.errors import DevsegError, one_line
 
-from devseg.errors import DevsegError
+if TYPE_CHECKING:
+    import numpy as np
 
 ATTRIBUTES = ("chart_id", "seam_edges")
 
@@ -43,7 +45,7 @@ class _Element:
         """Bytes that one row takes at least: lists may be empty, a number in text takes two."""
         if not binary:
             return 2 * len(self.properties)
-        return sum(np.dtype(p.length_type or p.type).itemsize for p in self.properties)
+        return sum(int((p.length_type or p.type)[1:]) for p in self.properties)
 
 
 @dataclass(frozen=True)
@@ -115,28 +117,75 @@ def restore_attributes(mesh: Any, path: str | Path) -> list[str]:
         return []
     names = [name for name in ATTRIBUTES if name in (rows.dtype.names or ())]
     for name in names:
-        mesh.add_face_custom_scalar_attribute(rows[name].astype(np.float64), name)
+        mesh.add_face_custom_scalar_attribute(rows[name].astype("f8"), name)
     return names
+
+
+def finish(path: Path, comments: Sequence[str], texcoords: np.ndarray | None = None) -> None:
+    """Completes a binary file that the host has written.
+
+    Its textures are not named any more, as they do not fit the new coordinates.
+
+    Args:
+        path: the file.
+        comments: lines for its header.
+        texcoords: #F by 6, other texture coordinates, written as the list texcoord_before.
+    """
+    import numpy as np
+
+    header, rows, offset = _find_faces(path)
+    if rows is None:
+        raise DevsegError(f"{path}: expected a binary file with triangles, found another one")
+    data = path.read_bytes()
+    lines = data[: header.size].decode("utf-8", "replace").splitlines()
+    lines = [
+        line
+        for line in lines
+        if not line.startswith("comment TextureFile") and not line.endswith(" texnumber")
+    ]
+    fields = [(n, rows.dtype[n]) for n in rows.dtype.names if n != "texnumber"]
+    if texcoords is not None:
+        fields += [("texcoord_before length", "u1"), ("texcoord_before", header.order + "f4", (6,))]
+        # Properties of faces, the last element of what the host writes, end with the header.
+        lines.insert(len(lines) - 1, "property list uchar float texcoord_before")
+    lines[2:2] = [f"comment {one_line(comment)}" for comment in comments]
+    new = np.empty(len(rows), dtype=fields)
+    for name in rows.dtype.names:
+        if name != "texnumber":
+            new[name] = rows[name]
+    if texcoords is not None:
+        new["texcoord_before length"] = 6
+        new["texcoord_before"] = texcoords
+    text = "\n".join(lines) + "\n"
+    rest = data[offset + rows.nbytes :]
+    path.write_bytes(text.encode() + data[header.size : offset] + new.tobytes() + rest)
 
 
 def _face_rows(path: Path) -> np.ndarray | None:
     """The face element as records; None where its rows are not all of one length."""
+    return _find_faces(path)[1]
+
+
+def _find_faces(path: Path) -> tuple[_Header | None, np.ndarray | None, int]:
+    """The header, the face element as records, and where it begins."""
     header = _read_header(path)
     if header is None or not header.order:
-        return None
+        return header, None, 0
     data = path.read_bytes()
     offset = header.size
     for element in header.elements:
         if element.name == "face":
-            return _fixed_rows(element, header.order, data, offset)
+            return header, _fixed_rows(element, header.order, data, offset), offset
         if any(p.length_type for p in element.properties):
-            return None
+            break
         offset += element.count * element.least_size(binary=True)
-    return None
+    return header, None, offset
 
 
 def _fixed_rows(element: _Element, order: str, data: bytes, offset: int) -> np.ndarray | None:
     """Rows whose lists are as long as those of the first row."""
+    import numpy as np
+
     fields: list[tuple[Any, ...]] = []
     lengths: dict[str, int] = {}
     position = offset

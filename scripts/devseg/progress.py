@@ -8,7 +8,11 @@ import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+
+# Back to the line's start, and erase what was there.
+CLEAR_LINE = "\r\x1b[K"
 
 
 class Progress:
@@ -18,14 +22,19 @@ class Progress:
         seconds: of every stage that has ended, in order.
     """
 
-    def __init__(self, name: str, show: bool | None = None) -> None:
+    def __init__(
+        self, name: str, show: bool | None = None, tell: Callable[[str], None] | None = None
+    ) -> None:
         self.seconds: dict[str, float] = {}
         self._name = name
+        self._tell = tell
         self._show = sys.stderr.isatty() if show is None else show
 
     @contextlib.contextmanager
     def stage(self, stage: str) -> Iterator[None]:
         """Times a block; on a terminal one line tells what runs, then how long it took."""
+        if self._tell:
+            self._tell(stage)
         self._write(f"{self._name}: {stage} ...")
         start = time.perf_counter()
         try:
@@ -39,6 +48,5 @@ class Progress:
 
     def _write(self, text: str) -> None:
         if self._show:
-            # Back to the line's start, and erase what was there.
-            sys.stderr.write("\r\x1b[K" + text)
+            sys.stderr.write(CLEAR_LINE + text)
             sys.stderr.flush()

@@ -6,12 +6,16 @@ proportional to the pixels covered, for a million small triangles as for twelve 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 # Pixels that are worked on at once: bounds the memory, whatever the mesh.
 _CHUNK = 1 << 21
+# Pixels of all triangles together, seen or hidden, that are worth drawing: where hundreds of sheets
+# lie behind each other, pixels are drawn as blocks, so that a picture takes no longer than others.
+_MOST_PIXELS = 2e6
 
 
 @dataclass(frozen=True)
@@ -20,15 +24,13 @@ class Visible:
 
     Attributes:
         triangle: height by width, index of the triangle in front, -1 for background.
-        rows: of the covered pixels, #P.
-        columns: of the covered pixels, #P.
+        pixels: that are covered, #P, counted along the rows.
         shown: their triangles, #P.
         barycentric: of the pixel centres in their triangles, #P by 3, in screen space.
     """
 
     triangle: np.ndarray
-    rows: np.ndarray
-    columns: np.ndarray
+    pixels: np.ndarray
     shown: np.ndarray
     barycentric: np.ndarray
 
@@ -40,92 +42,147 @@ def _repeat_ranges(first: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np
     return owner, np.arange(len(owner)) - before[owner] + first[owner]
 
 
-def rasterize(points: np.ndarray, depth: np.ndarray, width: int, height: int) -> Visible:
+def rasterize(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> Visible:
     """Renders triangles into a z-buffer; a pixel belongs to the triangle at its centre.
 
     Args:
         points: #T by 3 by 2, corners in pixels, x to the right and y down.
-        depth: #T by 3, smaller is nearer.
+        depth: #T by 3, smaller is nearer; None: later triangles lie on earlier ones.
         width: of the image.
         height: of the image.
     """
-    # Sorted from top to bottom, an edge has the same ends in both of its triangles: the same
-    # crossings, no gaps.
-    order = np.argsort(points[:, :, 1], axis=1, kind="stable")
-    p = np.take_along_axis(points, order[:, :, None], axis=1)
-    plane = _plane(points, depth)
-    nearest, farthest = depth.min(axis=1), depth.max(axis=1)
-    top = np.clip(np.ceil(p[:, 0, 1] - 0.5), 0, height).astype(np.int64)
-    bottom = np.clip(np.ceil(p[:, 2, 1] - 0.5), 0, height).astype(np.int64)
-    zbuffer = np.full(width * height, np.inf)
-    owner = np.full(width * height, -1, dtype=np.int64)
+    x0, x1, x2, y0, y1, y2 = (points[:, k, c] for c in (0, 1) for k in range(3))
+    area = 0.5 * float(np.abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)).sum())
+    coarseness = math.ceil(math.sqrt(area / _MOST_PIXELS)) or 1
+    owner = _owners(points / coarseness, depth, -(-width // coarseness), -(-height // coarseness))
+    if coarseness > 1:
+        owner = owner.repeat(coarseness, axis=0).repeat(coarseness, axis=1)[:height, :width]
+    covered = np.flatnonzero(owner >= 0)
+    rows, columns = np.divmod(covered, width)
+    shown = owner.ravel()[covered]
+    barycentric = _barycentric(_weights(points), shown, columns + 0.5, rows + 0.5)
+    return Visible(owner, covered, shown, barycentric)
+
+
+def _owners(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> np.ndarray:
+    """The triangle in front at the centre of each pixel, height by width, -1 for none."""
+    hidden = _HiddenSurfaces(_weights(points), depth, width * height)
+    edges = _Edges.of(points)
+    top = np.clip(np.ceil(edges.top - 0.5), 0, height).astype(np.int64)
+    bottom = np.clip(np.ceil(edges.bottom - 0.5), 0, height).astype(np.int64)
     for chunk in _chunks(bottom - top, points, width):
         which, row = _repeat_ranges(top[chunk], (bottom - top)[chunk])
         which = chunk[which]
-        left, right = _spans(p[which], row + 0.5)
+        y = row + 0.5
+        left, right = edges.span(which, y)
         first = np.clip(np.ceil(left - 0.5), 0, width).astype(np.int64)
         last = np.clip(np.ceil(right - 0.5), 0, width).astype(np.int64)
-        span, column = _repeat_ranges(first, np.maximum(last - first, 0))
-        which, row = which[span], row[span]
-        z = _evaluate(plane, which, column + 0.5, row + 0.5)
+        count = np.maximum(last - first, 0)
+        span, column = _repeat_ranges(first, count)
+        hidden.draw(which, y, span, column, np.repeat(row * width, count) + column)
+    return hidden.owner.reshape(height, width)
+
+
+class _HiddenSurfaces:
+    """Which triangle is in front at each pixel, -1 for none."""
+
+    def __init__(self, weights: np.ndarray, depth: np.ndarray | None, pixels: int) -> None:
+        self.owner = np.full(pixels, -1, dtype=np.int64)
+        self.plane = None
+        if depth is not None:
+            # The depth of a triangle is a x + b y + c.
+            parts = weights[0] * (depth[:, 0] - depth[:, 2]) + weights[1] * (
+                depth[:, 1] - depth[:, 2]
+            )
+            parts[2] += depth[:, 2]
+            self.plane = parts
+            self.nearest = np.minimum(np.minimum(depth[:, 0], depth[:, 1]), depth[:, 2])
+            self.farthest = np.maximum(np.maximum(depth[:, 0], depth[:, 1]), depth[:, 2])
+            self.zbuffer = np.full(pixels, np.inf)
+
+    def draw(
+        self,
+        which: np.ndarray,
+        y: np.ndarray,
+        span: np.ndarray,
+        column: np.ndarray,
+        pixel: np.ndarray,
+    ) -> None:
+        """Draws spans of rows: their triangles and heights, and of each pixel its span."""
+        if self.plane is None:
+            self.owner[pixel] = which[span]
+            return
+        start = self.plane[1][which] * y + self.plane[2][which]
+        z = start[span] + self.plane[0][which][span] * (column + 0.5)
         # Slivers have wild planes; between its corners a triangle cannot leave their depths.
-        z = np.clip(z, nearest[which], farthest[which])
-        pixel = row * width + column
-        np.minimum.at(zbuffer, pixel, z)
-        front = z == zbuffer[pixel]
-        owner[pixel[front]] = which[front]
-    covered = np.flatnonzero(owner >= 0)
-    rows, columns = np.divmod(covered, width)
-    shown = owner[covered]
-    barycentric = _barycentric(points, shown, columns + 0.5, rows + 0.5)
-    return Visible(owner.reshape(height, width), rows, columns, shown, barycentric)
+        z = np.clip(z, self.nearest[which][span], self.farthest[which][span])
+        np.minimum.at(self.zbuffer, pixel, z)
+        front = np.flatnonzero(z == self.zbuffer[pixel])
+        self.owner[pixel[front]] = which[span[front]]
 
 
 def _chunks(rows: np.ndarray, points: np.ndarray, width: int) -> list[np.ndarray]:
     """Groups of triangles that together cover at most about _CHUNK pixels."""
-    extent = np.clip(np.ptp(points[:, :, 0], axis=1), 1, width)
+    x0, x1, x2 = points[:, :, 0].T
+    extent = np.maximum(np.maximum(x0, x1), x2) - np.minimum(np.minimum(x0, x1), x2)
+    extent = np.clip(extent, 1, width)
     total = np.cumsum(rows * (extent + 1))
     alive = np.flatnonzero(rows > 0)
     group = (total[alive] // _CHUNK).astype(np.int64)
     return np.split(alive, np.flatnonzero(np.diff(group)) + 1)
 
 
-def _spans(p: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of the intersection of triangles, corners sorted by y, with horizontal lines."""
+@dataclass(frozen=True)
+class _Edges:
+    """The edges of triangles as lines x = x0 + slope (y - y0), each from its upper end."""
 
-    def crossing(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        rise = b[:, 1] - a[:, 1]
-        t = (y - a[:, 1]) / np.where(rise > 0, rise, 1.0)
-        return a[:, 0] + t * (b[:, 0] - a[:, 0])
+    top: np.ndarray  # #T, the least y
+    bottom: np.ndarray  # #T
+    middle: np.ndarray  # #T, y of the corner between
+    # From the upper to the lower corner, and the two others, one below the other: 3 #T.
+    x: np.ndarray
+    y: np.ndarray
+    slope: np.ndarray
 
-    upper = y < p[:, 1, 1]
-    long = crossing(p[:, 0], p[:, 2])
-    short = crossing(
-        np.where(upper[:, None], p[:, 0], p[:, 1]), np.where(upper[:, None], p[:, 1], p[:, 2])
-    )
-    return np.minimum(long, short), np.maximum(long, short)
+    @classmethod
+    def of(cls, points: np.ndarray) -> _Edges:
+        # Sorted from top to bottom, an edge has the same ends in both of its triangles: the same
+        # crossings, no gaps.
+        order = np.argsort(points[:, :, 1], axis=1, kind="stable")
+        corner = (order + 3 * np.arange(len(points))[:, None]).T
+        x, y = points[:, :, 0].ravel()[corner], points[:, :, 1].ravel()[corner]
+        upper, lower = [0, 0, 1], [2, 1, 2]
+        rise = y[lower] - y[upper]
+        slope = (x[lower] - x[upper]) / np.where(rise > 0, rise, 1.0)
+        return cls(y[0], y[2], y[1], x[upper].ravel(), y[upper].ravel(), slope.ravel())
+
+    def span(self, which: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Ends of the intersection of triangles with horizontal lines."""
+        below = np.where(y < self.middle[which], 1, 2)
+        long = self._crossing(which, y)
+        short = self._crossing(which + below * len(self.top), y)
+        return np.minimum(long, short), np.maximum(long, short)
+
+    def _crossing(self, edge: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return self.x[edge] + self.slope[edge] * (y - self.y[edge])
 
 
-def _plane(points: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Linear functions over triangles, #T by 3: value = a x + b y + c."""
-    e1, e2 = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
-    d1, d2 = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
-    area = e1[:, 0] * e2[:, 1] - e1[:, 1] * e2[:, 0]
-    area = np.where(area == 0, 1.0, area)
-    a = (d1 * e2[:, 1] - d2 * e1[:, 1]) / area
-    b = (d2 * e1[:, 0] - d1 * e2[:, 0]) / area
-    return np.stack([a, b, values[:, 0] - a * points[:, 0, 0] - b * points[:, 0, 1]], axis=1)
+def _weights(points: np.ndarray) -> np.ndarray:
+    """The first two barycentric coordinates as functions a x + b y + c: 2 by 3 by #T."""
+    (x0, y0), (x1, y1), (x2, y2) = (np.ascontiguousarray(points[:, k].T) for k in range(3))
+    area = (x0 - x2) * (y1 - y2) - (x1 - x2) * (y0 - y2)
+    inverse = 1.0 / np.where(area == 0, 1.0, area)
+    a0, b0 = (y1 - y2) * inverse, (x2 - x1) * inverse
+    a1, b1 = (y2 - y0) * inverse, (x0 - x2) * inverse
+    return np.array([[a0, b0, -a0 * x2 - b0 * y2], [a1, b1, -a1 * x2 - b1 * y2]])
 
 
-def _evaluate(plane: np.ndarray, which: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return plane[which, 0] * x + plane[which, 1] * y + plane[which, 2]
-
-
-def _barycentric(points: np.ndarray, shown: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    out = np.empty((len(shown), 3))
-    for k in (0, 1):
-        corner = np.zeros(points.shape[:2])
-        corner[:, k] = 1.0
-        out[:, k] = _evaluate(_plane(points, corner), shown, x, y)
-    out[:, 2] = 1.0 - out[:, 0] - out[:, 1]
+def _barycentric(
+    weights: np.ndarray, shown: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> np.ndarray:
+    out = np.empty((len(shown), 3), dtype=np.float32)
+    for k, (a, b, c) in enumerate(weights):
+        # Rounding must not carry slivers out of their corners.
+        out[:, k] = np.clip(a[shown] * x + b[shown] * y + c[shown], 0, 1)
+    out[:, 2] = np.maximum(1 - out[:, 0] - out[:, 1], 0)
     return out

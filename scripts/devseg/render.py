@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,13 +18,13 @@ if TYPE_CHECKING:
 
     from devseg.host import MeshData
 
-# Pixels are rendered this much finer in both directions and averaged.
-SUPERSAMPLING = 2
 # Share of a panel's side that stays empty on each side.
 MARGIN = 0.04
-# Half the width of a seam line, in pixels of the finished picture.
+# Half the width of a seam line, in pixels.
 LINE = 0.7
-INK = np.array([0.13, 0.13, 0.16])
+# What a line of one pixel keeps of its darkness where it is drawn softly: it looks 1.5 wide.
+SOFT_LINE = 1.6
+INK = np.array([0.13, 0.13, 0.16], dtype=np.float32)
 # Three-quarter views: turns about y (0 looks along -z), seen from this much above.
 AZIMUTHS = (-35.0, 35.0, -145.0, 145.0)
 ELEVATION = 18.0
@@ -30,15 +32,12 @@ ELEVATION = 18.0
 FRONT_BONUS = 1.15
 # A vertex whose faces bend further than this from its normal lies on a crease.
 SMOOTH_COSINE = math.cos(math.radians(40.0))
+# Numbers of pieces are placed on a grid of so many cells; their size is this share of the room's
+# radius. Smaller ones than the least nobody can read.
+LABEL_CELLS = 200
+LABEL_SHARE = 1.1
+LEAST_LABEL = 7.0
 LIGHT = np.array([-0.45, 0.65, 0.61])
-
-
-@dataclass(frozen=True)
-class _Panel:
-    """Triangles placed in a square image, ready to be shaded."""
-
-    points: np.ndarray
-    visible: Visible
 
 
 def render_pair(data: MeshData, size: int = 800) -> Image.Image:
@@ -48,11 +47,13 @@ def render_pair(data: MeshData, size: int = 800) -> Image.Image:
         data: a mesh with charts and texture coordinates.
         size: height of the picture in pixels; it is twice as wide.
     """
-    canvas = np.ones((size, 2 * size, 3))
-    canvas[:, :size] = _reduce(_mesh_panel(data, size * SUPERSAMPLING))
-    pattern, labels = _pattern_panel(data, size * SUPERSAMPLING)
-    canvas[:, size:] = _reduce(pattern)
-    image = Image.fromarray(np.round(canvas * 255).astype(np.uint8))
+    canvas = np.ones((size, 2 * size, 3), dtype=np.float32)
+    # NumPy lets other threads work while it does.
+    with ThreadPoolExecutor(1) as pool:
+        mesh = pool.submit(_mesh_panel, data, size)
+        canvas[:, size:], labels = _pattern_panel(data, size)
+        canvas[:, :size] = mesh.result()
+    image = _image(canvas)
     _draw_numbers(image, labels, (size, 0))
     return image
 
@@ -66,10 +67,10 @@ def render_meshes(data: Sequence[MeshData], titles: Sequence[str], size: int = 6
         size: width of each mesh in pixels.
     """
     foot = size // 10
-    panels = [_reduce(_mesh_panel(one, size * SUPERSAMPLING)) for one in data]
-    canvas = np.ones((size + foot, size * len(panels), 3))
+    panels = [_mesh_panel(one, size) for one in data]
+    canvas = np.ones((size + foot, size * len(panels), 3), dtype=np.float32)
     canvas[:size] = np.concatenate(panels, axis=1)
-    image = Image.fromarray(np.round(canvas * 255).astype(np.uint8))
+    image = _image(canvas)
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(size=foot // 2)
     for i, title in enumerate(titles):
@@ -92,17 +93,14 @@ def view_rotation(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return chosen
 
 
-def _reduce(image: np.ndarray) -> np.ndarray:
-    """Averages the finer pixels."""
-    s = SUPERSAMPLING
-    parts = [image[row::s, column::s] for row in range(s) for column in range(s)]
-    return np.add.reduce(parts) / len(parts)
+def _image(canvas: np.ndarray) -> Image.Image:
+    return Image.fromarray((canvas * 255 + 0.5).astype(np.uint8))
 
 
 def _fit(points: np.ndarray, size: int) -> np.ndarray:
     """Points (any shape, last axis x y with y up), centred in a square image with y down."""
-    flat = points.reshape(-1, 2)
-    low, high = flat.min(axis=0), flat.max(axis=0)
+    sides = points[..., 0].ravel(), points[..., 1].ravel()
+    low, high = (np.array([end(side) for side in sides]) for end in (np.min, np.max))
     extent = float((high - low).max()) or 1.0
     scaled = (points - (low + high) / 2) * (size * (1 - 2 * MARGIN) / extent)
     return scaled * np.array([1.0, -1.0]) + size / 2
@@ -110,36 +108,53 @@ def _fit(points: np.ndarray, size: int) -> np.ndarray:
 
 def _mesh_panel(data: MeshData, size: int) -> np.ndarray:
     rotation = view_rotation(data.vertices, data.faces)
-    used = np.unique(data.faces)
-    seen = (data.vertices - data.vertices[used].mean(axis=0)) @ rotation.T
+    # Far from the origin, differences would drown in large coordinates.
+    seen = (data.vertices - data.vertices[data.faces[0, 0]]) @ rotation.T
     corners = seen[data.faces]
     points = _fit(corners[:, :, :2], size)
     visible = rasterize(points, -corners[:, :, 2], size, size)
-    panel = _Panel(points, visible)
-    normals = _pixel_normals(seen, data.faces, visible)
-    color = _shade(data.colors[visible.shown], normals)
-    line = _edge_mask(panel, data.seams) | _change_mask(data.charts, visible)
-    return _compose(visible, color, line, size)
+    light = _corner_light(seen, data.faces)
+    brightness, gloss = (_interpolated(visible, part) for part in light)
+    color = data.colors.astype(np.float32)[visible.shown] * brightness[:, None]
+    color = np.clip(color + gloss[:, None], 0, 1)
+    return _compose(points, visible, _charts(visible, data), color, data)
 
 
 def _pattern_panel(data: MeshData, size: int) -> tuple[np.ndarray, list[_Label]]:
     points = _fit(data.texcoords, size)
-    visible = rasterize(points, np.zeros(points.shape[:2]), size, size)
-    outline = data.seams | _mesh_border(data.faces)
-    line = _edge_mask(_Panel(points, visible), outline) | _change_mask(data.charts, visible)
-    image = _compose(visible, data.colors[visible.shown], line, size)
-    charts = np.where(visible.triangle >= 0, data.charts[visible.triangle], -1)
-    return image, _labels(charts)
+    visible = rasterize(points, None, size, size)
+    color = data.colors.astype(np.float32)[visible.shown]
+    charts = _charts(visible, data)
+    return _compose(points, visible, charts, color, data), _labels(charts)
 
 
-def _compose(visible: Visible, color: np.ndarray, line: np.ndarray, size: int) -> np.ndarray:
-    image = np.ones((size, size, 3))
-    image[visible.rows, visible.columns] = np.where(line[:, None], INK, color)
-    return image
+def _charts(visible: Visible, data: MeshData) -> np.ndarray:
+    """The chart that each pixel shows, -1 for background."""
+    charts = np.full(visible.triangle.shape, -1, dtype=np.int32)
+    charts.ravel()[visible.pixels] = data.charts[visible.shown]
+    return charts
 
 
-def _pixel_normals(seen: np.ndarray, faces: np.ndarray, visible: Visible) -> np.ndarray:
-    """Interpolated normals of the visible pixels, #P by 3, turned to the viewer."""
+def _compose(
+    points: np.ndarray, visible: Visible, charts: np.ndarray, color: np.ndarray, data: MeshData
+) -> np.ndarray:
+    """Colours of the visible pixels on white, with lines around charts and along seams."""
+    line = _soft(_changes(charts)).ravel()
+    near, darkness = _edge_lines(points, visible, data.seams)
+    line[near] = np.maximum(line[near], darkness)
+    image = np.ones((line.size, 3), dtype=np.float32)
+    image[visible.pixels] = color
+    drawn = np.flatnonzero(line)
+    image[drawn] += line[drawn, None] * (INK - image[drawn])
+    return image.reshape(*charts.shape, 3)
+
+
+def _corner_light(seen: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Brightness and highlight at the corners of the faces, each #F by 3.
+
+    Corners have the normal of their vertex, or of their face where the vertex lies on a crease;
+    faces that show their back are lit as their front.
+    """
     corners = seen[faces]
     weighted = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     of_face = _normalized(weighted)
@@ -147,23 +162,20 @@ def _pixel_normals(seen: np.ndarray, faces: np.ndarray, visible: Visible) -> np.
         [np.bincount(faces.ravel(), np.repeat(weighted[:, k], 3), len(seen)) for k in range(3)],
         axis=1,
     )
-    of_vertex = _normalized(of_vertex)
+    of_corner = _normalized(of_vertex)[faces]
     # A vertex on a crease has no normal that serves both of its sides.
     straightness = np.ones(len(seen))
-    for k in range(3):
-        cosine = (of_vertex[faces[:, k]] * of_face).sum(axis=1)
-        np.minimum.at(straightness, faces[:, k], cosine)
-    creased = straightness < SMOOTH_COSINE
-    shown = visible.shown
-    weights = np.clip(visible.barycentric, 0, 1)
-    flat = of_face[shown]
-    total = np.zeros((len(shown), 3))
-    for k in range(3):
-        corner = faces[shown, k]
-        normal = np.where(creased[corner, None], flat, of_vertex[corner])
-        total += weights[:, k, None] * normal
-    total = _normalized(total)
-    return total * np.where(flat[:, 2] < 0, -1.0, 1.0)[:, None]
+    cosine = np.einsum("fkx,fx->fk", of_corner, of_face)
+    np.minimum.at(straightness, faces.ravel(), cosine.ravel())
+    creased = (straightness < SMOOTH_COSINE)[faces]
+    normals = np.where(creased[:, :, None], of_face[:, None, :], of_corner)
+    normals *= np.where(of_face[:, 2] < 0, -1.0, 1.0)[:, None, None]
+    return _shade(normals)
+
+
+def _interpolated(visible: Visible, values: np.ndarray) -> np.ndarray:
+    """Values at the corners of triangles, #T by 3, at the visible pixels."""
+    return np.einsum("pk,pk->p", visible.barycentric, values.astype(np.float32)[visible.shown])
 
 
 def _normalized(vectors: np.ndarray) -> np.ndarray:
@@ -171,62 +183,55 @@ def _normalized(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.where(length > 0, length, 1.0)
 
 
-def _shade(color: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """A key light from the upper left, light from the sky, and a soft highlight."""
-    key = np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
-    sky = 0.5 + 0.5 * normals[:, 1]
-    half = LIGHT / np.linalg.norm(LIGHT) + np.array([0.0, 0.0, 1.0])
-    gloss = np.clip(normals @ (half / np.linalg.norm(half)), 0, 1) ** 40
-    brightness = 0.5 + 0.16 * sky + 0.42 * key
-    return np.clip(color * brightness[:, None] + 0.10 * gloss[:, None], 0, 1)
+def _shade(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A key light from the upper left with light from the sky, and a soft highlight."""
+    light = LIGHT / np.linalg.norm(LIGHT)
+    key = np.clip(normals @ light, 0, 1)
+    sky = 0.5 + 0.5 * normals[..., 1]
+    half = light + np.array([0.0, 0.0, 1.0])
+    gloss = np.clip(normals @ (half / np.linalg.norm(half)), 0, 1) ** 8
+    return 0.5 + 0.16 * sky + 0.42 * key, 0.10 * (gloss * gloss * gloss * gloss * gloss)
 
 
-def _edge_mask(panel: _Panel, edges: np.ndarray) -> np.ndarray:
-    """Visible pixels near an edge of their own triangle that is marked in `edges` (#T by 3)."""
-    visible = panel.visible
-    mask = np.zeros(len(visible.shown), dtype=bool)
-    near = np.flatnonzero(edges[visible.shown].any(axis=1))
+def _edge_lines(
+    points: np.ndarray, visible: Visible, edges: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pixels of triangles with edges that are marked in #T by 3, and how dark they make them."""
+    near = np.flatnonzero(edges.any(axis=1)[visible.shown])
     shown = visible.shown[near]
-    p = panel.points
+    p = points[shown]
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     area = np.abs(e1[:, 0] * e2[:, 1] - e1[:, 1] * e2[:, 0])
+    line = np.zeros(len(near), dtype=np.float32)
     for k in range(3):
         length = np.linalg.norm(p[:, (k + 1) % 3] - p[:, k], axis=1)
-        height = area / np.where(length > 0, length, 1)
         # The corner opposite of the edge from k to k+1 is k+2.
-        distance = visible.barycentric[near, (k + 2) % 3] * height[shown]
-        mask[near] |= edges[shown, k] & (distance < LINE * SUPERSAMPLING)
-    return mask
+        height = area / np.where(length > 0, length, 1)
+        distance = visible.barycentric[near, (k + 2) % 3] * height
+        darkness = np.clip(LINE + 0.5 - distance, 0, 1) * edges[shown, k]
+        line = np.maximum(line, darkness)
+    return visible.pixels[near], line
 
 
-def _change_mask(charts: np.ndarray, visible: Visible) -> np.ndarray:
-    """Visible pixels beside one of another chart or of the background.
+def _changes(image: np.ndarray) -> np.ndarray:
+    """Pixels that differ from the one to their right or below: lines of one pixel.
 
     Where triangles are smaller than a pixel, the distance to their own edges misses lines.
     """
-    image = np.where(visible.triangle >= 0, charts[visible.triangle], -1)
     changes = np.zeros(image.shape, dtype=bool)
-    for neighbor in _neighbors(image, SUPERSAMPLING):
-        changes |= neighbor != image
-    return changes[visible.rows, visible.columns]
+    changes[:, :-1] = image[:, :-1] != image[:, 1:]
+    changes[:-1] |= image[:-1] != image[1:]
+    return changes
 
 
-def _neighbors(image: np.ndarray, distance: int) -> list[np.ndarray]:
-    """The image moved up, down, left and right, with background moving in."""
-    d = distance
-    padded = np.pad(image, d, constant_values=-1)
-    height, width = image.shape
-    starts = ((0, d), (2 * d, d), (d, 0), (d, 2 * d))
-    return [padded[row : row + height, column : column + width] for row, column in starts]
-
-
-def _mesh_border(faces: np.ndarray) -> np.ndarray:
-    """Whether the edges of the faces have no second face, #F by 3."""
-    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    ends = np.sort(ends, axis=1)
-    key = ends[:, 0] * (int(faces.max()) + 1) + ends[:, 1]
-    _, index, count = np.unique(key, return_inverse=True, return_counts=True)
-    return (count[index.ravel()] == 1).reshape(-1, 3)
+def _soft(mask: np.ndarray) -> np.ndarray:
+    """A mask with soft edges, from 0 to 1; nothing comes in from outside of the image."""
+    soft = mask.astype(np.float32)
+    for axis in (0, 1):
+        padded = np.pad(soft, [(1, 1) if k == axis else (0, 0) for k in (0, 1)])
+        before, after = np.split(padded, [2], axis=axis)[1], np.split(padded, [-2], axis=axis)[0]
+        soft = 0.5 * soft + 0.25 * (before + after)
+    return np.minimum(SOFT_LINE * soft, 1)
 
 
 @dataclass(frozen=True)
@@ -240,39 +245,54 @@ class _Label:
 
 
 def _labels(charts: np.ndarray) -> list[_Label]:
-    """The innermost pixel of every chart, by peeling layers off the charts' pixels."""
-    step = 2 * SUPERSAMPLING
+    """The innermost pixel of every chart, by peeling layers off the charts' pixels.
+
+    Charts that are too small for a number that can be read are left out.
+    """
+    step = max(1, len(charts) // LABEL_CELLS)
     image = charts[step // 2 :: step, step // 2 :: step]
-    inside = image >= 0
     layers = np.zeros(image.shape, dtype=np.int64)
+    inside = image >= 0
+    padded = np.pad(image, 1, constant_values=-1)
+    for row, column in ((0, 1), (2, 1), (1, 0), (1, 2)):
+        inside &= padded[row : row + image.shape[0], column : column + image.shape[1]] == image
+    layers += image >= 0
     while inside.any():
         layers += inside
-        peeled = np.where(inside, image, -1)
-        inside = inside & np.logical_and.reduce([n == image for n in _neighbors(peeled, 1)])
+        # What is inside has neighbours of its own chart only.
+        core = inside.copy()
+        core[1:] &= inside[:-1]
+        core[:-1] &= inside[1:]
+        core[:, 1:] &= inside[:, :-1]
+        core[:, :-1] &= inside[:, 1:]
+        inside = core
     order = np.argsort(image.ravel(), kind="stable")
     starts = np.flatnonzero(np.diff(image.ravel()[order], prepend=-2))
+    deepest = np.maximum.reduceat(layers.ravel()[order], starts)
     labels = []
-    for pixels in np.split(order, starts[1:]):
+    for pixels, depth in zip(np.split(order, starts[1:]), deepest, strict=True):
         chart = image.flat[pixels[0]]
-        if chart >= 0:
-            depth = layers.flat[pixels]
-            place = np.stack(np.divmod(pixels, image.shape[1]), axis=1) + 0.5
-            # Of the pixels that lie about as deep, the one nearest to the middle.
-            off_center = np.linalg.norm(place - place.mean(axis=0), axis=1)
-            chosen = np.argmin(np.where(depth >= 0.8 * depth.max(), off_center, np.inf))
-            scale = step // SUPERSAMPLING
-            y, x = place[chosen] * scale
-            labels.append(_Label(str(chart + 1), x, y, float(depth[chosen]) * scale))
+        radius = (depth - 0.5) * step
+        if chart < 0 or radius * LABEL_SHARE < LEAST_LABEL:
+            continue
+        place = np.stack(np.divmod(pixels, image.shape[1]), axis=1) + 0.5
+        # Of the pixels that lie about as deep, the one nearest to the middle.
+        off_center = np.linalg.norm(place - place.mean(axis=0), axis=1)
+        chosen = np.argmin(np.where(layers.flat[pixels] >= 0.8 * depth, off_center, np.inf))
+        y, x = place[chosen] * step
+        labels.append(_Label(str(chart + 1), x, y, radius))
     return labels
 
 
 def _draw_numbers(image: Image.Image, labels: list[_Label], origin: tuple[int, int]) -> None:
     draw = ImageDraw.Draw(image)
+    fill = tuple(int(255 * part) for part in INK)
     for label in labels:
-        size = min(1.1 * label.radius, 0.035 * image.height)
-        # Smaller than this nobody can read it.
-        if size >= 7:
-            font = ImageFont.load_default(size=size)
-            position = (origin[0] + label.x, origin[1] + label.y)
-            fill = tuple(int(255 * part) for part in INK)
-            draw.text(position, label.text, fill=fill, font=font, anchor="mm")
+        size = round(min(LABEL_SHARE * label.radius, 0.035 * image.height))
+        position = (origin[0] + label.x, origin[1] + label.y)
+        draw.text(position, label.text, fill=fill, font=_font(size), anchor="mm")
+
+
+@functools.cache
+def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    return ImageFont.load_default(size=size)

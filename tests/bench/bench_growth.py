@@ -64,7 +64,7 @@ def measure(file: Path) -> dict[str, float]:
     """All stages on one file, in this process."""
     devseg.load_plugins()
     marks = [time.perf_counter()]
-    meshes, _ = load_mesh(file)
+    meshes = load_mesh(file).meshes
     marks.append(time.perf_counter())
     with host.captured():
         meshes.apply_filter("compute_segmentation_dcharts_per_face", charts_number=12)

@@ -60,7 +60,7 @@ def main() -> None:
     args = parser.parse_args()
     load_plugins()
     for path in args.mesh:
-        session = Session(path, load_mesh(path)[0])
+        session = Session(path, load_mesh(path).meshes)
         options = RunOptions(
             Path(tempfile.gettempdir()),
             METHODS["papercraft"],

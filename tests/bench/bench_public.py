@@ -56,7 +56,7 @@ def mesh_files(chosen: list[Path]) -> list[Path]:
 def row(path: Path, options: RunOptions, evaluator: Any) -> str:
     progress = Progress(path.stem)
     with progress.stage("load"):
-        meshset, _ = load_mesh(path)
+        meshset = load_mesh(path).meshes
     flatten_mesh(Session(path, meshset), options, progress)
     mesh = meshset.current_mesh()
     found = evaluator.evaluate(

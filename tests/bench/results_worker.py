@@ -103,7 +103,7 @@ def take_step(session: Session, name: str, filter_name: str, **parameters: Any) 
 
 def main(path: Path, run: str) -> None:
     load_plugins()
-    meshes, _ = load_mesh(path)
+    meshes = load_mesh(path).meshes
     session = Session(Path(path.name), meshes)
     method = METHODS[RUNS[run][0]]
     if not take_step(session, "segment", method.filter, **RUNS[run][1]):

@@ -103,7 +103,7 @@ class Corpus:
 
         def load() -> dict[str, Any]:
             try:
-                self.meshset, self.warnings = load_mesh(path)
+                self.meshset = load_mesh(path).meshes
             except Exception as error:
                 return {"error": f"{type(error).__name__}: {error}"}
             return {"faces": self.meshset.current_mesh().face_number()}

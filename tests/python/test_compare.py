@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+import meshes
 from devseg.cli import main
 
 
@@ -74,5 +76,15 @@ def test_more_charts_than_faces_is_one_line(
     assert code == 1
     message = capsys.readouterr().err
     assert message.startswith("devseg: error: ")
-    assert "charts_number: expected a number from 1 to 576" in message
+    assert "--charts: expected a number from 1 to 576" in message
     assert not out.exists()
+
+
+def test_small_meshes_get_fewer_charts(
+    obj: Callable, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, out = obj(meshes.cube()), tmp_path / "out"
+    assert main(["compare", str(path), "--methods", "vsa,mcgim", "-o", str(out), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    for one in result["methods"].values():
+        assert 6 <= one["segmentation"]["charts_number"] <= 12

@@ -22,7 +22,7 @@ def test_measures_agree(
     name: str, data: Path, evaluator: ModuleType, pymeshlab: ModuleType
 ) -> None:
     path = data / "public" / f"{name}.ply"
-    meshset, _ = load_mesh(path)
+    meshset = load_mesh(path).meshes
     options = RunOptions(Path(), METHODS["dcharts"], {}, "symmetric-dirichlet", ("svg",), {})
     measures = flatten_mesh(Session(path, meshset), options, Progress(name))
     ours = measures["parametrization"]

@@ -41,7 +41,7 @@ def evaluated(evaluator: ModuleType, meshset: Any) -> dict[str, Any]:
 def test_layouts_are_valid(
     name: str, method: str, data: Path, evaluator: ModuleType, pymeshlab: ModuleType
 ) -> None:
-    meshset, _ = load_mesh(data / "bad" / name)
+    meshset = load_mesh(data / "bad" / name).meshes
     meshset.apply_filter(FLATTEN, method=method)
     theirs = evaluated(evaluator, meshset)
     assert theirs["disks"] == theirs["charts"]
@@ -91,7 +91,7 @@ def test_a_refusal_names_the_face_and_changes_nothing(
 def test_meshes_without_area_are_refused(
     name: str, method: str, data: Path, pymeshlab: ModuleType
 ) -> None:
-    meshset, _ = load_mesh(data / "bad" / name)
+    meshset = load_mesh(data / "bad" / name).meshes
     before = wedges(meshset) if meshset.current_mesh().has_wedge_tex_coord() else None
     with pytest.raises(pymeshlab.PyMeshLabException, match="expected a surface, found"):
         meshset.apply_filter(FLATTEN, method=method)

@@ -30,7 +30,7 @@ def test_attributes_survive_saving_and_loading(meshset: Callable, tmp_path: Path
     path = tmp_path / "saved.ply"
     saved.save_current_mesh(str(path), __ca_fs__chart_id=True, __ca_fs__seam_edges=True)
 
-    loaded, _ = load_mesh(path)
+    loaded = load_mesh(path).meshes
     mesh = loaded.current_mesh()
     assert restore_attributes(mesh, path) == ["chart_id", "seam_edges"]
     np.testing.assert_array_equal(mesh.face_custom_scalar_attribute_array("chart_id"), charts)

@@ -110,3 +110,34 @@ def test_help_needs_no_setup() -> None:
         ["bash", "scripts/quickstart.sh", "--help"], cwd=ROOT, capture_output=True, text=True
     )
     assert done.returncode == 0 and "quickstart.sh [MESH]" in done.stdout
+
+
+APT = """#!/bin/sh
+echo "$@" >>"$CALLS"
+case "$*" in
+*update*)
+    [ "$(grep -c update "$CALLS")" -gt 2 ] && exit 0
+    echo "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7"
+    exit 100
+    ;;
+esac
+"""
+
+
+def test_locks_of_apt_are_waited_for(tmp_path: Path) -> None:
+    calls = tmp_path / "calls"
+    for name, text in (
+        ("apt-get", APT),
+        ("dpkg-query", "#!/bin/sh\n"),
+        ("sudo", '#!/bin/sh\nexec "$@"\n'),
+    ):
+        (tmp_path / name).write_text(text)
+        (tmp_path / name).chmod(0o755)
+    variables = f"setup_log={tmp_path}/log; lock_pause=0; system_packages=(one)"
+    path = f"{tmp_path}:/usr/bin:/bin"
+    done = shell(f"{variables}; ensure_system_packages", PATH=path, CALLS=str(calls))
+    assert done.returncode == 0
+    assert done.stderr.count("waiting for other software") == 2
+    updates, installs = calls.read_text().splitlines()[:-1], calls.read_text().splitlines()[-1]
+    assert len(updates) == 3
+    assert installs.startswith("-o DPkg::Lock::Timeout=900 install") and installs.endswith(" one")
