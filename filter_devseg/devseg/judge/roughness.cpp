@@ -70,8 +70,8 @@ double roughness(const Mesh& mesh, const std::vector<Index>& faces, Progress& pr
     parallel_for(
         samples,
         [&](int i) {
-            const Face centre = faces[at(static_cast<Index>(
-                static_cast<std::int64_t>(i) * count / samples))];
+            const Face centre =
+                faces[at(static_cast<Index>(static_cast<std::int64_t>(i) * count / samples))];
             const std::vector<Index> around = neighbourhood(mesh, centre, inside);
             if (around.size() > 1)
                 maps[at(i)] = try_chart(mesh, around, no_cuts, TrialEffort(), progress);

@@ -25,7 +25,7 @@ struct Tuning {
     int few_rounds = 40;
     int many_rounds = 200;
     double near_excess = 10.0; // over the wanted one: a start that is farther is not near
-    int stitching_rounds = 2; // spread what does not fit over more faces than those at the border
+    int stitching_rounds = 2;  // spread what does not fit over more faces than those at the border
 };
 constexpr Tuning tuning;
 
@@ -49,9 +49,8 @@ std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const Tria
         if (effort.only_near)
             return {};
         start = flatten::simple_map(problem);
-    } else if (effort.only_near &&
-               flatten::symmetric_dirichlet_energy(problem, start) - 1.0 >
-                   tuning.near_excess * excess) {
+    } else if (effort.only_near && flatten::symmetric_dirichlet_energy(problem, start) - 1.0 >
+                                       tuning.near_excess * excess) {
         return {};
     }
     std::vector<Vec2> uv =

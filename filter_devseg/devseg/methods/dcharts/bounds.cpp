@@ -95,9 +95,8 @@ private:
     bool is_above(Index c) const {
         const TrialMap& map = draft_.map[c];
         return known_[c] == Known::map &&
-               ((bounds_.chart_l2 > 0.0 &&
-                 map.l2_squared - 1.0 - bounds_.roughness >
-                     bounds_.chart_l2 * bounds_.chart_l2 - 1.0) ||
+               ((bounds_.chart_l2 > 0.0 && map.l2_squared - 1.0 - bounds_.roughness >
+                                               bounds_.chart_l2 * bounds_.chart_l2 - 1.0) ||
                 (bounds_.linf > 0.0 && map.linf > bounds_.linf));
     }
 

@@ -55,9 +55,8 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
         {"converged", segmentation.converged},
         {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
     };
-    FilterOutput output =
-        chart_output(input.mesh, std::move(cuts.charts), std::move(segmentation.fitting_error),
-                     std::move(values));
+    FilterOutput output = chart_output(input.mesh, std::move(cuts.charts),
+                                       std::move(segmentation.fitting_error), std::move(values));
     if (above > 0)
         output.notes.push_back(std::to_string(above) +
                                " charts are above their bound of stretch: no smaller part of them "

@@ -151,8 +151,8 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     merging.keep_corners = plan.creased;
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
-        merging.chart.hard_l2 = std::sqrt(
-            options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.roughness);
+        merging.chart.hard_l2 =
+            std::sqrt(options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.roughness);
         merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
     }
     merging.max_excess = aim.max_excess;
@@ -449,13 +449,12 @@ DevelopableCharts segment_developable_charts(const Mesh& mesh,
     if (options.charts_number != 0)
         check_charts_number(mesh.face_count(), options.charts_number);
     check_ranges(options);
-    for (const auto& [name, bound] : {std::pair("max_linf_stretch", options.max_linf_stretch),
-                                      std::pair("max_chart_l2_stretch",
-                                                options.max_chart_l2_stretch)})
+    for (const auto& [name, bound] :
+         {std::pair("max_linf_stretch", options.max_linf_stretch),
+          std::pair("max_chart_l2_stretch", options.max_chart_l2_stretch)})
         if (bound != 0.0 && bound <= 1.0)
             refuse_option(name, "0 for no bound, or a number above 1", bound);
-    const mesh::FaceComponents components =
-        mesh::face_components(mesh, [](Index) { return true; });
+    const mesh::FaceComponents components = mesh::face_components(mesh, [](Index) { return true; });
     DevelopableCharts result = components.count == 1
                                    ? segment_component(mesh, options, progress)
                                    : segment_components(mesh, components, options, progress);

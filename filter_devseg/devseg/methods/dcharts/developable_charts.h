@@ -37,7 +37,7 @@ struct DevelopableCharts {
     // With charts_number = 0, of the symmetric Dirichlet map of the full surface:
     double l2_stretch = 0.0;
     double linf_stretch = 0.0;
-    bool bounds_kept = true; // false: rough charts, and single faces that others lie on
+    bool bounds_kept = true;         // false: rough charts, and single faces that others lie on
     std::vector<std::uint8_t> above; // #F: 1 in charts above their bound by more than roughness
     double roughness = 0.0; // l2² − 1 that no segmentation can remove, mean over the surface
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "devseg/base/parallel.h"
+#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/judge/final_map.h"
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/methods/dcharts/tuning.h"
@@ -58,27 +59,24 @@ public:
     std::vector<Closing> find(const Draft& draft) const {
         const auto is_seam = [&](HalfEdge h) {
             return mesh_.twin[h] >= 0 &&
-                   (draft.seam[h] != 0 ||
-                    draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
+                   (draft.seam[h] != 0 || draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
         };
         std::vector<HalfEdge> seams;
         for (const HalfEdge h : mesh_.all_half_edges())
             if (is_seam(h))
                 seams.push_back(h);
-        const Buckets<HalfEdge> leaving = make_buckets<HalfEdge>(
-            mesh_.vertex_count(), [&](auto put) {
+        const Buckets<HalfEdge> leaving =
+            make_buckets<HalfEdge>(mesh_.vertex_count(), [&](auto put) {
                 for (const HalfEdge h : seams)
                     put(mesh_.origin(h), h);
             });
-        const auto is_node = [&](Vertex v) {
-            return corner_[v] != 0 || leaving[v].size() != 2;
-        };
+        const auto is_node = [&](Vertex v) { return corner_[v] != 0 || leaving[v].size() != 2; };
         std::vector<std::uint8_t> seen(mesh_.twin.size(), 0);
         std::vector<Closing> chains;
         const auto trace = [&](HalfEdge h) {
             Closing chain;
-            chain.charts = std::minmax(Index{draft.chart[face_of(h)]},
-                                       Index{draft.chart[mesh_.across(h)]});
+            chain.charts =
+                std::minmax(Index{draft.chart[face_of(h)]}, Index{draft.chart[mesh_.across(h)]});
             while (seen[h] == 0) {
                 seen[h] = seen[mesh_.twin[h]] = 1;
                 chain.edges.push_back(std::min<Index>(h, mesh_.twin[h]));
@@ -191,8 +189,7 @@ private:
         if (encloses_corner(closing))
             return nullptr;
         const auto known = last.find(key);
-        const bool is_known =
-            known != last.end() && (known->second.second.fresh || !whole);
+        const bool is_known = known != last.end() && (known->second.second.fresh || !whole);
         const auto [entry, is_new] = verdicts_.try_emplace(
             std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
         if (is_new)
@@ -281,7 +278,8 @@ private:
         for (const HalfEdge edge : closing.edges) {
             const HalfEdge ha = draft_.chart[face_of(edge)] == a ? edge : mesh_.twin[edge];
             const HalfEdge hb = mesh_.twin[ha];
-            between += laid(turn_of(a, face_of(ha)), ha) * std::conj(-laid(turn_of(b, face_of(hb)), hb));
+            between +=
+                laid(turn_of(a, face_of(ha)), ha) * std::conj(-laid(turn_of(b, face_of(hb)), hb));
         }
         const double size = std::abs(between);
         const std::complex<double> turn = size > 0.0 ? between / size : 1.0;
@@ -295,8 +293,7 @@ private:
                 turns.push_back(*ta++);
                 ++ia;
             } else {
-                const std::complex<double> turned =
-                    turn * std::complex<double>(tb->x(), tb->y());
+                const std::complex<double> turned = turn * std::complex<double>(tb->x(), tb->y());
                 turns.emplace_back(turned.real(), turned.imag());
                 ++tb;
                 ++ib;
@@ -314,8 +311,7 @@ private:
         const Eigen::Matrix2d edges = flatten::make_rest_triangle(length, 0.0).edges;
         const std::array<Vec2, 3> corner{Vec2(0.0, 0.0), edges.col(0), edges.col(1)};
         const Vec2 edge = corner[corner_of(Mesh::next(h))] - corner[corner_of(h)];
-        return std::complex<double>(turn.x(), turn.y()) *
-               std::complex<double>(edge.x(), edge.y());
+        return std::complex<double>(turn.x(), turn.y()) * std::complex<double>(edge.x(), edge.y());
     }
 
     // The cuts inside the joined chart: those of both, and what is left of the border.
@@ -371,11 +367,13 @@ private:
         const auto& [closing, verdict] = entry;
         const auto [first, second] = closing.charts;
         const double least =
-            first == second ? 0.0
-                            : options_.least_neck * std::sqrt(std::min(draft_.map[first].area,
-                                                                       draft_.map[second].area));
+            first == second
+                ? 0.0
+                : options_.least_neck *
+                      std::sqrt(std::min(draft_.map[first].area, draft_.map[second].area));
         const bool may_overlap = verdict.whole && !options_.keep_corners;
-        if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) || !bounds_of(closing.charts).hold(verdict.map) ||
+        if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
+            !bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) || !(verdict.saved > 0.0) ||
             verdict.saved < least)
             return infinite;
@@ -384,8 +382,8 @@ private:
     }
 
     // The seam that is bought off at the lowest price, none if there is none. Overlaps are worth
-    // resolving only here, and only for whole borders of smooth charts: there are not many of these,
-    // and pushing apart bends them little.
+    // resolving only here, and only for whole borders of smooth charts: there are not many of
+    // these, and pushing apart bends them little.
     Entry* choose(Progress& progress) {
         while (true) {
             const double excess = draft_.excess();
@@ -431,9 +429,8 @@ private:
             TrialEffort effort;
             effort.wanted_l2 = bounds_of(closing.charts).l2;
             effort.push_apart = true;
-            TrialMap map =
-                judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
-                                 turns_of(closing));
+            TrialMap map = judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
+                                            turns_of(closing));
             map.flat = map.flat && !map.overlaps;
             assess(closing, std::move(map), verdict);
         }
@@ -467,7 +464,7 @@ private:
     Draft& draft_;
     SeamChains chains_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
-    bool partly_ = false; // parts of borders are closed as well
+    bool partly_ = false;            // parts of borders are closed as well
     Verdicts verdicts_;
     std::vector<Entry*> untried_;
     std::map<Index, int> seams_at_corner_; // seam edges at each corner that has any

@@ -29,11 +29,11 @@ struct Tuning {
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
     double corner_defect = 0.2;
-    double least_part = 0.1;      // of a border, over √area, that is closed on its own
-    std::size_t tried_again = 4;  // parts at a time, the best of those with old verdicts
+    double least_part = 0.1;     // of a border, over √area, that is closed on its own
+    std::size_t tried_again = 4; // parts at a time, the best of those with old verdicts
     // Parts between creases, joined one by one. Where there are more, creases are no guide.
     Index most_regions = 1000;
-    Index few_regions = 100; // flat faces of such a part that are joined one by one
+    Index few_regions = 100;      // flat faces of such a part that are joined one by one
     double smallest_part = 0.05;  // of a chart: smaller parts are not worth a chart
     std::size_t tried_spots = 3;  // of a chart, for each dart
     double worst_spot_gain = 0.1; // share of the excess over the bound that a dart must take
@@ -44,7 +44,7 @@ struct Tuning {
     Index decimated_creased_faces = 24000; // where they must run along creases
     Index faces_per_chart = 150;           // of the coarse surface, at least
     double worth_decimation = 2.0;         // faces over those of the coarse surface
-    double rough = 0.002;          // l2² − 1 of small neighbourhoods: less is tessellation
+    double rough = 0.002;       // l2² − 1 of small neighbourhoods: less is tessellation
     double least_chart = 0.002; // of the surface: less are slivers nobody wants to cut out
 
     // What border is worth against the fitting error of faces.
@@ -67,11 +67,11 @@ struct Tuning {
     Index automatic_seeds = 10; // where the number of charts is to be found
     int most_splits = 200;
     double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
-    int most_attempts = 2;      // on the coarse surface; then the full one decides
-    int few_darts = 4;          // of a chart above its bound; then it is split
-    double first_share = 0.9;   // of the allowed stretch that the coarse surface may use
-    double chart_excess = 4.0;  // of one chart over that of the whole
-    double loose_linf = 8.0;    // worst spots count little where they have no bound
+    int most_attempts = 2;       // on the coarse surface; then the full one decides
+    int few_darts = 4;           // of a chart above its bound; then it is split
+    double first_share = 0.9;    // of the allowed stretch that the coarse surface may use
+    double chart_excess = 4.0;   // of one chart over that of the whole
+    double loose_linf = 8.0;     // worst spots count little where they have no bound
 };
 inline constexpr Tuning tuning;
 

@@ -335,6 +335,8 @@ TEST(DevelopableCharts, OptionsOutOfRangeAreRefused) {
     refused([](auto& o) { o.max_l2_stretch = 1.0; }, "max_l2_stretch");
     refused([](auto& o) { o.max_linf_stretch = 0.5; }, "max_linf_stretch");
     refused([](auto& o) { o.max_linf_stretch = std::nan(""); }, "max_linf_stretch");
+    refused([](auto& o) { o.max_chart_l2_stretch = 0.5; }, "max_chart_l2_stretch");
+    refused([](auto& o) { o.max_chart_l2_stretch = 1.0; }, "max_chart_l2_stretch");
 }
 
 TEST(DevelopableCharts, CanBeCancelled) {
