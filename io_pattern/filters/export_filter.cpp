@@ -128,7 +128,7 @@ const declare::FilterDeclaration& export_filter() {
                                  "File to write; its extension says the format: .svg, .pdf or "
                                  ".dxf."))))
             .needs_uv()
-            .joins_borders()
+            .shows_outside()
             .result("pieces_number", "pieces in the file")
             .result("seams_number", "seams, darts among them")
             .result("unnumbered_seams_number", "seams without room for the number that they "

@@ -299,7 +299,7 @@ FilterDeclaration pieces() {
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
         .needs_uv()
-        .joins_borders()
+        .shows_outside()
         .writes(writes_layer)
         .result("pieces_number", "pieces on the new layer")
         .result("width_mm", "width of the layout in mm")
@@ -312,7 +312,7 @@ FilterDeclaration measures() {
     return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
                                             FilterCategory::measure, measures_help)))
         .needs_uv()
-        .joins_borders()
+        .shows_outside()
         .result("pieces_number", "pieces")
         .result("shapes_number", "different pieces, mirror images not counted")
         .result("mirrored_pairs_number", "pairs of a piece and its mirror image")

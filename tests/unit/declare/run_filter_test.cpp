@@ -184,6 +184,32 @@ TEST(RunFilter, LengthsAreInModelUnits) {
     EXPECT_NEAR(value(run("Charts: Measure Segmentation", host), "seam_length"), 3.0 * 37.0, 1e-9);
 }
 
+TEST(RunFilter, VerticesThatWereJoinedMoveTogether) {
+    // A dome of flat-shaded triangles: all copies of a vertex stay at one place.
+    const mesh::RawMesh dome = shapes::hemisphere(10, 4);
+    HostMesh host;
+    for (const Triangle& t : dome.faces) {
+        const Index first = static_cast<Index>(host.geometry.points.size());
+        for (const Index v : t)
+            host.geometry.points.push_back(dome.points[v]);
+        host.geometry.faces.push_back({first, first + 1, first + 2});
+    }
+    const HostResult r = run("Charts: Deform to Exact Developability", host,
+                             {{"keep_unfinished", true}, {"max_iterations", 3}});
+    ASSERT_EQ(r.points.size(), host.geometry.points.size());
+    std::vector<Vec3> place(dome.points.size(), Vec3::Constant(infinite));
+    double moved = 0.0;
+    for (std::size_t f = 0; f < dome.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3& one = place[at(dome.faces[f][k])];
+            const Vec3& p = r.points[3 * f + k];
+            one = std::isinf(one.x()) ? p : one;
+            EXPECT_LT((one - p).norm(), 1e-12);
+            moved = std::max(moved, (p - host.geometry.points[3 * f + k]).norm());
+        }
+    EXPECT_GT(moved, 1e-3);
+}
+
 TEST(RunFilter, FacesThatCoordinatesCannotExpressAreReported) {
     // The middle rows become slivers, far too thin for 32 bits.
     HostMesh host = host_of(shapes::grid(12, 12));
