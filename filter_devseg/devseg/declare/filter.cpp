@@ -144,6 +144,27 @@ double weld_of(const ParameterValues& values) {
     return weld;
 }
 
+// The number of charts is an aim: more of them than faces are as many as faces. Whoever gave the
+// number is told.
+void limit_charts_number(const FilterDeclaration& filter, Index faces, ParameterValues& values,
+                         std::vector<std::string>& notes) {
+    constexpr const char* name = "charts_number";
+    for (const Parameter& p : filter.parameters) {
+        if (p.name != name)
+            continue;
+        ParameterValue& value = values.try_emplace(name, p.default_value).first->second;
+        const int asked = std::get<int>(value);
+        if (asked <= faces)
+            continue;
+        if (value != p.default_value)
+            notes.push_back(std::string(name) + ": " + std::to_string(asked) +
+                            " charts were asked for, and the mesh has " + std::to_string(faces) +
+                            (faces == 1 ? " face" : " faces") +
+                            " to divide among them: " + std::to_string(faces) + " was used");
+        value = faces;
+    }
+}
+
 // A run owns all that it reads and writes: a cancelled one is abandoned.
 struct FilterRun {
     FilterDeclaration filter;
@@ -157,8 +178,9 @@ struct FilterRun {
 
 void FilterRun::operator()(Progress& progress) {
     auto reading = progress.part("reading the mesh", 0.02);
-    const mesh::GatedMesh gated =
+    mesh::GatedMesh gated =
         mesh::gate_mesh(host.geometry, {weld_of(values), filter.shows_outside}, reading);
+    limit_charts_number(filter, gated.mesh.face_count(), values, gated.notes);
     reading.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),

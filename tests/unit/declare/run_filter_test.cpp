@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/base/errors.h"
 #include "devseg/declare/filter.h"
 #include "unit/checks.h"
 #include "unit/host_checks.h"
@@ -182,6 +183,25 @@ TEST(RunFilter, LengthsAreInModelUnits) {
     EXPECT_NEAR(value(r, "cut_length"), 3.0 * 37.0, 1e-9);
     take_charts(host, r);
     EXPECT_NEAR(value(run("Charts: Measure Segmentation", host), "seam_length"), 3.0 * 37.0, 1e-9);
+}
+
+TEST(RunFilter, MoreChartsThanFacesAreAsManyAsFaces) {
+    mesh::RawMesh raw = shapes::tetrahedron();
+    raw.faces.push_back(raw.faces.front()); // left out by the gate
+    const HostMesh host = host_of(raw);
+    for (const char* method : {"Segmentation: D-Charts", "Segmentation: t-flooding",
+                               "Segmentation: Variational Shape Approximation",
+                               "Segmentation: Multi-Chart Geometry Images",
+                               "Segmentation: Papercraft with Creases and Slits"}) {
+        SCOPED_TRACE(method);
+        const HostResult own = run(method, host);
+        EXPECT_EQ(own.notes.size(), 1U); // of the double face
+        const HostResult asked = run(method, host, {{"charts_number", 8}});
+        EXPECT_EQ(asked.chart_id, own.chart_id);
+        ASSERT_EQ(asked.notes.size(), 2U);
+        EXPECT_TRUE(contains(asked.notes[1], "8 charts were asked for, and the mesh has 4 faces"));
+        EXPECT_THROW(run(method, host, {{"charts_number", -1}}), InvalidParameter);
+    }
 }
 
 TEST(RunFilter, VerticesThatWereJoinedMoveTogether) {
