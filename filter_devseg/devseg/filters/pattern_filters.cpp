@@ -41,7 +41,7 @@ constexpr const char* optimize_help =
     "glued again, from the tip on, as far as they stay closed.<br>"
     "Charts, darts and slits are read from the texture coordinates; the new ones are written to "
     "<b>chart_id</b> and <b>seam_edges</b> as well. Charts keep their places and sizes unless some "
-    "were cut off, joined, or lay on each other: then all are packed anew.<br>"
+    "were cut off, joined, lay on each other or were at other scales: then all are packed anew.<br>"
     "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum 24(3) (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
@@ -243,7 +243,7 @@ FilterOutput run_optimize(const FilterInput& input, const pattern::OptimizeOptio
     if (options.reattach_gussets)
         pattern::reattach_gussets(mesh, options, layout, joining);
     auto packing = progress.part("packing charts", 0.3);
-    if (is_stacked || layout.reattached > 0) {
+    if (is_stacked || layout.reattached > 0 || !layout.is_as_given) {
         const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
         SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, packing);
         note_unsettled(sheet, output);

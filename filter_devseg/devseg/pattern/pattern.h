@@ -71,7 +71,6 @@ struct PatternPiece {
     PiecePath outer;                    // counterclockwise; darts and slits are part of it
     std::vector<PiecePath> holes;       // clockwise
     double area = 0.0;                  // mm², without the holes
-    double length_scale = 1.0;          // paper length / true length; 1 = true
     Vec2 label_position = Vec2::Zero(); // the point inside that is farthest from all outlines
     double label_radius = 0.0;          // mm, its distance from them
     Eigen::AlignedBox2d box;            // mm

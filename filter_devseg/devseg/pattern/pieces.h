@@ -34,8 +34,9 @@ struct PatternOptions {
 
 /// Texture coordinates (3 #F, made by anyone) → pieces. Charts, darts and slits are read off the
 /// coordinates, and so is the layout; all charts get one common scale, at which the areas on paper
-/// and on the model are equal. Charts that are mirrored as a whole, as atlases for painting often
-/// have them, are turned over, so that every piece shows the outside of the model.
+/// and on the model are equal, or each that of its own (atlas::even_layout). Charts that are
+/// mirrored as a whole, as atlases for painting often have them, are turned over, so that every
+/// piece shows the outside of the model.
 ///
 /// Throws InvalidParameter for a scale outside its range, InvalidMesh where the coordinates are
 /// missing, not finite or without area, Cancelled.

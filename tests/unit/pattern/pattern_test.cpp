@@ -136,8 +136,9 @@ TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
 TEST(Seams, SidesOfUnequalLengthAreMatched) {
     Cloth cloth;
     const auto place = [](const Vec3& p, const Vec3& middle) {
-        const double stretch = middle.x() > 40.0 ? 1.05 : 1.0; // the right piece is 5 % higher
-        return Vec2(p.x() + (middle.x() > 40.0 ? 5.0 : 0.0), stretch * p.y());
+        // The right piece is 5 % higher than the left one, and both have their area.
+        const double stretch = std::pow(1.05, middle.x() > 40.0 ? 0.5 : -0.5);
+        return Vec2(p.x() / stretch + (middle.x() > 40.0 ? 7.0 : 0.0), stretch * p.y());
     };
     cloth.add(shapes::grid(8, 8, 80.0, 80.0), place);
     PatternOptions options;
