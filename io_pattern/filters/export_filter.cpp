@@ -31,7 +31,7 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
                 "Plain adds nothing; Sewing: allowance, notches, grain lines; Papercraft: folds, "
                 "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
         .real(&O::max_piece_mm, "Largest piece (mm)",
-              "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
+              "Longest side of a piece in millimetres; larger ones are cut. 0 = no limit.")
         .real(
             &O::curve_mm, "Curves within (mm)",
             "Outlines are written as smooth cubic curves of the same lengths that stay within this "

@@ -390,7 +390,7 @@ void add_table(const std::vector<Row>& rows, Book& book) {
 
 } // namespace
 
-std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::Pattern& pattern,
+std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
                                                const std::string& title) {
@@ -404,7 +404,7 @@ std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::
                    std::to_string(pattern.seams.size()) +
                    " seams. 1 unit of the model = " + writers::number_text(pattern.mm_per_unit, 4) +
                    " mm. Print at 100 %, without scaling.");
-    add_pictures(mesh, pattern, book);
+    add_pictures(pattern.mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
     for (const std::string& text : missing_texts(pattern, layout.left_out)) {
         book.advance(0.5 * cover_pitch);

@@ -14,6 +14,7 @@
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
+#include "devseg/pattern/split.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -184,13 +185,6 @@ void note_folds(Pattern& pattern, const ChartAreas& areas) {
                                 "the whole area ('Charts: Flatten' folds nothing)");
 }
 
-void note_scales(Pattern& pattern, const atlas::EvenLayout& layout) {
-    if (!layout.is_as_given)
-        pattern.notes.emplace_back(
-            "the charts are not at one scale in the texture coordinates: each "
-            "was brought to the scale of its own area on the model");
-}
-
 void note_mismatches(Pattern& pattern) {
     const Seam* worst = nullptr;
     Index count = 0;
@@ -233,25 +227,22 @@ void place_label(PatternPiece& piece) {
 
 // The charts at one scale, with those that are too large split.
 struct Layout {
-    atlas::EvenLayout even;
-    SplitCharts split;
+    SplitLayout split;
     ChartAreas areas;
+    bool is_as_given = true; // no chart had another scale
 };
 
 Layout read_layout(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options, double mm,
-                   Progress& progress) {
-    Layout layout;
-    SplitCharts& split = layout.split;
-    split.charts = atlas::charts_from_uv(mesh, uv);
-    layout.even = atlas::even_layout(mesh, split.charts, uv);
-    const CornerUv& own = layout.even.uv;
-    const double scale = layout.even.scale;
-    layout.areas = measure_charts(mesh, own, split.charts, scale);
-    check_charts(split.charts, layout.areas);
+                   const Progress& progress) {
+    const atlas::ChartMap charts = atlas::charts_from_uv(mesh, uv);
+    const atlas::EvenLayout even = atlas::even_layout(mesh, charts, uv);
+    Layout layout{whole_layout(mesh, even.uv, charts),
+                  measure_charts(mesh, even.uv, charts, even.scale), even.is_as_given};
+    check_charts(charts, layout.areas);
     if (options.max_piece_mm > 0.0) {
-        split = split_large_charts(mesh, own, split.charts, options.max_piece_mm / (scale * mm),
-                                   progress);
-        layout.areas = measure_charts(mesh, own, split.charts, scale);
+        SplitLayout& split = layout.split;
+        split_large_charts(options.max_piece_mm / (even.scale * mm), split, progress);
+        layout.areas = measure_charts(split.mesh, split.uv, split.charts, even.scale);
         check_charts(split.charts, layout.areas);
     }
     return layout;
@@ -275,13 +266,9 @@ std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint
 }
 
 // Pieces that overlap, and the parts of split ones, get places of their own.
-void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part,
-              Pattern& pattern) {
+void separate(const std::vector<std::uint8_t>& is_part, Pattern& pattern) {
     std::vector<std::size_t> moved;
     std::vector<PatternPiece>& pieces = pattern.pieces;
-    if (split.too_large > 0)
-        pattern.notes.push_back(std::to_string(split.too_large) +
-                                " faces alone are larger than max_piece_mm and were not split");
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
@@ -297,8 +284,8 @@ void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part
 
 // 1 for every chart that was cut off another one, or has another scale than it was given.
 std::vector<std::uint8_t> find_parts(const Layout& layout) {
-    const SplitCharts& split = layout.split;
-    std::vector<std::uint8_t> is_part(at(split.charts.count), layout.even.is_as_given ? 0 : 1);
+    const SplitLayout& split = layout.split;
+    std::vector<std::uint8_t> is_part(at(split.charts.count), layout.is_as_given ? 0 : 1);
     for (std::size_t h = 0; h < split.cut.size(); ++h)
         if (split.cut[h] != 0)
             is_part[split.charts.chart[h / 3]] = 1;
@@ -353,23 +340,22 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::fold_angle, {"fold_angle", 0.0, 180.0}}};
 }
 
-Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress) {
     check_ranges(options);
-    const double mm = paper_scale(mesh, options);
+    const double mm = paper_scale(whole, options);
     check_coordinates(uv);
 
     auto reading = progress.part("reading charts", 0.05);
-    const Layout layout = read_layout(mesh, uv, options, mm, reading);
-    const CornerUv& even = layout.even.uv;
-    const SplitCharts& split = layout.split;
-    const ChartAreas& areas = layout.areas;
+    Layout layout = read_layout(whole, uv, options, mm, reading);
+    SplitLayout& split = layout.split;
+    const Mesh& mesh = split.mesh;
 
     auto tracing = progress.part("tracing outlines", 0.12);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
-    pattern.pieces =
-        trace_pieces(mesh, even, split.charts, areas.worth_cutting(), areas.scale * mm, tracing);
+    pattern.pieces = trace_pieces(mesh, split.uv, split.charts, layout.areas.worth_cutting(),
+                                  layout.areas.scale * mm, tracing);
     auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, refining);
@@ -380,7 +366,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
         place_label(piece);
         placing.check();
     }
-    separate(split, find_parts(layout), pattern);
+    separate(find_parts(layout), pattern);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     auto describing = progress.part("describing pieces", 0.6);
@@ -390,10 +376,16 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     mark_corners(pattern.pieces, chains, options.corner_angle * degrees);
     if (options.curve_mm > 0.0)
         fit_curves(pattern.pieces, chains, options.curve_mm);
-    describe_pieces(mesh, even, split.charts, options, mm, pattern, describing);
-    note_folds(pattern, areas);
-    note_scales(pattern, layout.even);
+    describe_pieces(mesh, split.uv, split.charts, options, mm, pattern, describing);
+    note_folds(pattern, layout.areas);
+    if (!layout.is_as_given)
+        pattern.notes.emplace_back(
+            "the charts are not at one scale in the texture coordinates: each "
+            "was brought to the scale of its own area on the model");
     note_mismatches(pattern);
+    pattern.mesh = std::move(split.mesh);
+    pattern.seam = std::move(split.charts.seam);
+    pattern.source_face = std::move(split.source_face);
     return pattern;
 }
 

@@ -25,7 +25,7 @@ struct PatternOptions {
     bool match_seams = true;        // make both sides of each seam equally long
     double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none
     double fold_angle = 22.5;       // degrees: flatter edges are no folds
-    double max_piece_mm = 0.0;      // longest side of a piece; larger ones are split; 0 = no limit
+    double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::longest;
 
@@ -40,7 +40,7 @@ struct PatternOptions {
 ///
 /// Throws InvalidParameter for a scale outside its range, InvalidMesh where the coordinates are
 /// missing, not finite or without area, Cancelled.
-Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress);
 
 } // namespace devseg::pattern
