@@ -114,9 +114,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.seams = static_cast<Index>(pattern.seams.size());
     file.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
     file.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
+    file.untabbed_seams = layout.seams_without_tab;
     file.sheets = static_cast<Index>(layout.sheets.size());
     file.notes = pattern.notes;
-    file.notes.insert(file.notes.end(), layout.notes.begin(), layout.notes.end());
+    for (std::string& note : sheet::layout_notes(pattern, layout))
+        file.notes.push_back(std::move(note));
     return file;
 }
 

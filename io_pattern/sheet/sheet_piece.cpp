@@ -4,6 +4,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pattern/curves.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/plane/plane.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
@@ -142,14 +143,32 @@ void merge_slits(const pattern::Pattern& pattern, Index index, std::vector<Outli
     }
 }
 
-void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
-              SheetPiece& result) {
+// A tab continues its piece behind the other side of the seam: its base bends as the surface does
+// along the seam, by the mean of its edges (radians).
+double bend_at(const pattern::Pattern& pattern, const pattern::PiecePath& path,
+               const GlueTab& tab) {
+    double sum = 0.0;
+    double length = 0.0;
+    for (Index i = tab.first; i < tab.first + tab.count; ++i) {
+        const std::size_t from = at(i) % path.points.size();
+        const double edge =
+            (path.points[(from + 1) % path.points.size()] - path.points[from]).norm();
+        sum += edge * pattern::fold_angle_at(pattern.mesh, path.half_edge[from]);
+        length += edge;
+    }
+    return length > 0.0 ? sum / length : 0.0;
+}
+
+void add_tabs(const pattern::Pattern& pattern, const std::vector<GlueTab>& tabs, double least_fold,
+              std::vector<Outline>& outlines, SheetPiece& result) {
     for (const GlueTab& tab : tabs) {
         Outline& outline = outlines[tab.path];
         std::vector<Vec2> base;
         for (Index i = tab.first; i <= tab.first + tab.count; ++i)
             base.push_back(outline.points[outline.at_index(i)]);
-        result.mountains.push_back(std::move(base)); // tabs bend backwards
+        const pattern::PiecePath& path = pattern.pieces[result.piece].path(tab.path);
+        const bool is_valley = bend_at(pattern, path, tab) < -least_fold;
+        (is_valley ? result.valleys : result.mountains).push_back(std::move(base));
         for (Index i = tab.first + 1; i < tab.first + tab.count; ++i)
             outline.skipped[outline.at_index(i)] = 1;
         outline.inserted[outline.at_index(tab.first)] = {tab.corner[0], tab.corner[1]};
@@ -236,8 +255,8 @@ void SheetPiece::move(const pack::Placement& placement) {
     all.cosine = cosine;
 }
 
-void SheetPiece::mirror() {
-    change_points(*this, [](const Vec2& p) { return Vec2(-p.x(), p.y()); });
+void SheetPiece::mirror(double axis) {
+    change_points(*this, [axis](const Vec2& p) { return Vec2(2.0 * axis - p.x(), p.y()); });
     for (auto* rings : {&cut, &sew})
         for (std::vector<Vec2>& ring : *rings)
             std::reverse(ring.begin(), ring.end());
@@ -247,7 +266,11 @@ void SheetPiece::mirror() {
             for (pattern::OutlineCurve& curve : ring)
                 std::reverse(curve.control.begin(), curve.control.end());
         }
+    std::swap(mountains, valleys); // seen from the other side
+    // Turned over first, the piece comes to the same place by the opposite turn.
     frame.mirrored = true;
+    frame.placement.sine = -frame.placement.sine;
+    frame.placement.offset.x() = 2.0 * axis - frame.placement.offset.x();
 }
 
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
@@ -260,7 +283,7 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.emplace_back(piece.path(i));
     merge_slits(pattern, index, outlines, result.slits);
-    add_tabs(tabs, outlines, result);
+    add_tabs(pattern, tabs, options.fold_angle * degrees, outlines, result);
     for (const Outline& outline : outlines)
         if (!outline.has_vanished())
             result.cut.push_back(outline.ring());
