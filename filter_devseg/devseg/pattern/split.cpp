@@ -15,8 +15,8 @@ namespace devseg::pattern {
 
 namespace {
 
-// More pieces than a pattern can have: the limit is a slip of the pen.
-constexpr double most_pieces = 10000.0;
+// More cuts than anybody sews or glues: the limit is a slip of the pen.
+constexpr double most_cuts = 1000.0;
 
 // Lengths that differ by this share are equal: limits are often the exact size of a part.
 constexpr double same_length = 1e-6;
@@ -280,18 +280,18 @@ private:
 };
 
 void refuse_too_many(const SplitLayout& layout, double longest) {
-    double count = 0.0;
+    double cuts = 0.0;
     for (const atlas::ChartSurface& surface : atlas::extract_charts(layout.mesh, layout.charts)) {
         double start = 0.0;
         const PieceBox box = box_of(surface, layout.uv, start);
-        count += parts_of(box.long_side, longest) * parts_of(box.short_side, longest);
+        cuts += parts_of(box.long_side, longest) * parts_of(box.short_side, longest) - 1.0;
     }
-    if (count > most_pieces)
-        throw InvalidParameter(
-            "max_piece_mm: expected a limit that cuts the pattern into at most " +
-            std::to_string(static_cast<int>(most_pieces)) + " pieces, found one that takes about " +
-            std::to_string(static_cast<long long>(std::min(count, 1e15))) +
-            "; give a larger one, or a smaller scale");
+    if (cuts > most_cuts)
+        throw InvalidParameter("max_piece_mm: expected a limit that takes at most " +
+                               std::to_string(static_cast<int>(most_cuts)) +
+                               " cuts, found one that takes about " +
+                               std::to_string(static_cast<long long>(std::min(cuts, 1e15))) +
+                               "; give a larger one, or a smaller scale");
 }
 
 } // namespace

@@ -349,7 +349,7 @@ TEST(Shapes, FacesAreCutWhereTheyAreLongerThanPieces) {
     options.max_piece_mm = 0.5;
     EXPECT_TRUE(
         checks::contains(checks::error_of<InvalidParameter>([&] { cloth.pattern(options); }),
-                         "at most 10000 pieces"));
+                         "at most 1000 cuts"));
 }
 
 TEST(Shapes, NoLimitMakesMorePiecesThatAreNoShorter) {
