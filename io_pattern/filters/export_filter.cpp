@@ -31,7 +31,7 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
                 "Plain adds nothing; Sewing: allowance, notches, grain lines; Papercraft: folds, "
                 "tabs, seam numbers; Laser: cut lines alone, each once, with engraved names.")
         .real(&O::max_piece_mm, "Largest piece (mm)",
-              "Longest side of a piece in millimetres; larger ones are split. 0 = no limit.")
+              "Longest side of a piece in millimetres; larger ones are cut. 0 = no limit.")
         .real(
             &O::curve_mm, "Curves within (mm)",
             "Outlines are written as smooth cubic curves of the same lengths that stay within this "
@@ -94,7 +94,10 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
         .boolean(&O::grain_line, "grain_line", "Grain line",
                  "Draw an arrow along the threads of the cloth into each piece, and lay pieces "
                  "with their arrows upright where they are laid out anew.")
-        .boolean(&O::mirror, "mirror", "Mirror", "Draw the pieces as seen from inside the model.")
+        .boolean(
+            &O::mirror, "mirror", "Mirror",
+            "Draw each sheet as seen from its back, which is the inside of the model: mountain folds "
+            "become valley folds.")
         .choice(&O::dxf_kind, "dxf_kind", "Kind of DXF", {"Automatic", "Cutter", "Apparel"},
                 "Cutter: for cutters and drawing programs; Apparel: for apparel CAD (ASTM D6673). "
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
@@ -109,6 +112,7 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
                      {"seams_number", file.seams},
                      {"unnumbered_seams_number", file.unnumbered_seams},
                      {"unnamed_pieces_number", file.unnamed_pieces},
+                     {"untabbed_seams_number", file.untabbed_seams},
                      {"sheets_number", file.sheets},
                      {"pages_number", file.pages}};
     output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
@@ -128,12 +132,14 @@ const declare::FilterDeclaration& export_filter() {
                                  "File to write; its extension says the format: .svg, .pdf or "
                                  ".dxf."))))
             .needs_uv()
-            .joins_borders()
+            .shows_outside()
             .result("pieces_number", "pieces in the file")
             .result("seams_number", "seams, darts among them")
             .result("unnumbered_seams_number", "seams without room for the number that they "
                                                "should have on the pieces")
             .result("unnamed_pieces_number", "pieces without room for the name that they should "
+                                             "have")
+            .result("untabbed_seams_number", "seams without room for the glue tab that they should "
                                              "have")
             .result("sheets_number", "sheets that the pieces lie on")
             .result("pages_number", "pages of a PDF, cover included; 0 for other formats")

@@ -64,8 +64,7 @@ bool is_apparel(const sheet::ExportOptions& options) {
             options.preset == sheet::PatternPreset::sewing);
 }
 
-writers::Document make_document(const Mesh& mesh, const pattern::Pattern& pattern,
-                                const sheet::PatternLayout& layout,
+writers::Document make_document(const pattern::Pattern& pattern, const sheet::PatternLayout& layout,
                                 const sheet::ExportOptions& options, const Progress& progress) {
     writers::Document document;
     document.title = title_of(options.output_file);
@@ -73,7 +72,7 @@ writers::Document make_document(const Mesh& mesh, const pattern::Pattern& patter
     const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)
-        document.pages = sheet::cover_pages(mesh, pattern, layout, printed, document.title);
+        document.pages = sheet::cover_pages(pattern, layout, printed, document.title);
     progress.check();
     if (options.cover && layout.page && printed.size() > 1)
         document.pages.push_back(
@@ -99,7 +98,7 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     auto writing = progress.part("writing", progress.left());
     PatternFile file;
     if (format == Format::pdf) {
-        const writers::Document document = make_document(mesh, pattern, layout, options, writing);
+        const writers::Document document = make_document(pattern, layout, options, writing);
         file.pages = static_cast<Index>(document.pages.size());
         file.bytes = writers::pdf_bytes(document);
     } else if (format == Format::dxf && is_apparel(options)) {
@@ -115,9 +114,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.seams = static_cast<Index>(pattern.seams.size());
     file.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
     file.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
+    file.untabbed_seams = layout.seams_without_tab;
     file.sheets = static_cast<Index>(layout.sheets.size());
     file.notes = pattern.notes;
-    file.notes.insert(file.notes.end(), layout.notes.begin(), layout.notes.end());
+    for (std::string& note : sheet::layout_notes(pattern, layout))
+        file.notes.push_back(std::move(note));
     return file;
 }
 

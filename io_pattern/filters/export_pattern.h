@@ -16,6 +16,7 @@ struct PatternFile {
     Index seams = 0;
     Index unnumbered_seams = 0; // for lack of room
     Index unnamed_pieces = 0;
+    Index untabbed_seams = 0;
     Index sheets = 0;
     Index pages = 0;                // of a PDF; 0 for other formats
     std::vector<std::string> notes; // for the user, one sentence each

@@ -112,8 +112,10 @@ Ring raw_curve(const std::vector<WidePoint>& ring, CornerStyle style) {
     return curve;
 }
 
-// A stretch of a seam may leave its chord by this much: paper bends that far along a tab.
+// A stretch of a seam may leave its chord by this much: paper bends that far along a tab. On short
+// stretches it is this share of their length.
 constexpr double straightness = 0.4; // mm
+constexpr double straight_share = 0.1;
 constexpr double side_angle = pi / 4.0;
 // Two tabs that meet at a concave corner share the room between them.
 constexpr double corner_share = 0.48;
@@ -154,8 +156,10 @@ private:
 };
 
 bool is_straight(const Side& side, Index first, Index last) {
+    const double most =
+        std::min(straightness, straight_share * (side.point(last) - side.point(first)).norm());
     for (Index i = first + 1; i < last; ++i)
-        if (plane::distance(side.point(i), side.point(first), side.point(last)) > straightness)
+        if (plane::distance(side.point(i), side.point(first), side.point(last)) > most)
             return false;
     return true;
 }

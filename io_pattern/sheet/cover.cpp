@@ -288,6 +288,18 @@ std::vector<std::string> missing_texts(const pattern::Pattern& pattern, const Le
     return lines;
 }
 
+// The notes as sentences.
+std::vector<std::string> note_texts(const pattern::Pattern& pattern, const PatternLayout& layout) {
+    std::vector<std::string> lines = pattern.notes;
+    if (layout.seams_without_tab > 0)
+        lines.push_back(layout_notes(pattern, layout).front());
+    for (std::string& line : lines)
+        line = "Note: " + line + '.';
+    for (std::string& line : missing_texts(pattern, layout.left_out))
+        lines.push_back(std::move(line));
+    return lines;
+}
+
 std::vector<std::string> wrapped(const std::string& text, double width) {
     std::vector<std::string> lines(1);
     for (std::size_t from = 0; from < text.size();) {
@@ -390,7 +402,7 @@ void add_table(const std::vector<Row>& rows, Book& book) {
 
 } // namespace
 
-std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::Pattern& pattern,
+std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
                                                const std::string& title) {
@@ -404,9 +416,9 @@ std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::
                    std::to_string(pattern.seams.size()) +
                    " seams. 1 unit of the model = " + writers::number_text(pattern.mm_per_unit, 4) +
                    " mm. Print at 100 %, without scaling.");
-    add_pictures(mesh, pattern, book);
+    add_pictures(pattern.mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
-    for (const std::string& text : missing_texts(pattern, layout.left_out)) {
+    for (const std::string& text : note_texts(pattern, layout)) {
         book.advance(0.5 * cover_pitch);
         for (const std::string& line : wrapped(text, book.width())) {
             book.advance(cover_pitch);

@@ -13,7 +13,7 @@
 namespace devseg::sheet {
 
 /// One page, and more where the list of pieces is long. Pages of the pattern's own size, or A4.
-std::vector<writers::DocumentPage> cover_pages(const Mesh& mesh, const pattern::Pattern& pattern,
+std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
                                                const std::string& title);

@@ -219,24 +219,10 @@ void nest_on_pages(PatternLayout& layout, const ExportOptions& options, Progress
         layout.sheets.push_back({page.size, 1, 1});
 }
 
-void note_tabs(const GlueTabs& tabs, PatternLayout& layout) {
-    if (tabs.seams_without > 0)
-        layout.notes.push_back(std::to_string(tabs.seams_without) +
-                               " seams have no glue tab: there is no room beside them on either "
-                               "side");
-}
-
-void note_left_out(const pattern::Pattern& pattern, PatternLayout& layout) {
-    const LeftOut& left_out = layout.left_out;
-    if (!left_out.seams.empty())
-        layout.notes.push_back(
-            std::to_string(left_out.seams.size()) + " of " + std::to_string(pattern.seams.size()) +
-            " seams have no room for a number that can be read: the table of a PDF names them");
-    if (!left_out.pieces.empty())
-        layout.notes.push_back(std::to_string(left_out.pieces.size()) + " of " +
-                               std::to_string(pattern.pieces.size()) +
-                               " pieces have no room for a name that can be read: the table of a "
-                               "PDF names them");
+// Each sheet as it is seen from its back.
+void mirror_sheets(PatternLayout& layout) {
+    for (SheetPiece& piece : layout.pieces)
+        piece.mirror(0.5 * layout.sheets[piece.sheet].size.x());
 }
 
 // All pieces in their places, without texts.
@@ -249,14 +235,12 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     auto tabbing = progress.part("glue tabs", 0.1);
     if (options.glue_tabs)
         tabs = make_tabs(pattern, options.tab_depth_mm, tabbing);
-    note_tabs(tabs, layout);
+    layout.seams_without_tab = tabs.seams_without;
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
-        if (options.mirror)
-            layout.pieces.back().mirror();
     }
     auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
@@ -321,9 +305,28 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress) {
     PatternLayout layout = place_pieces(pattern, options, progress);
+    if (options.mirror)
+        mirror_sheets(layout);
     layout.left_out = add_texts(pattern, options, layout.pieces);
-    note_left_out(pattern, layout);
     return layout;
+}
+
+std::vector<std::string> layout_notes(const pattern::Pattern& pattern,
+                                      const PatternLayout& layout) {
+    std::vector<std::string> notes;
+    const auto note = [&](std::size_t count, std::size_t all, const char* one, const char* many,
+                          const char* what) {
+        if (count > 0)
+            notes.push_back(std::to_string(count) + " of " + std::to_string(all) +
+                            (all == 1 ? one : many) + (count == 1 ? " has " : " have ") + what);
+    };
+    note(at(layout.seams_without_tab), pattern.seams.size(), " seam", " seams",
+         "no glue tab: there is no room beside them on either side");
+    note(layout.left_out.seams.size(), pattern.seams.size(), " seam", " seams",
+         "no room for a number that can be read: the cover of a PDF names them");
+    note(layout.left_out.pieces.size(), pattern.pieces.size(), " piece", " pieces",
+         "no room for a name that can be read: the cover of a PDF names them");
+    return notes;
 }
 
 } // namespace devseg::sheet

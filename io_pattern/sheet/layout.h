@@ -46,7 +46,7 @@ struct PatternLayout {
     std::vector<PatternSheet> sheets;
     LeftOut left_out; // texts for which there was no room
     std::optional<PageFormat> page;
-    std::vector<std::string> notes; // for the user, one sentence each
+    Index seams_without_tab = 0; // for lack of room, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is
@@ -55,5 +55,8 @@ struct PatternLayout {
 /// page that it may not leave, Cancelled.
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress);
+
+/// What there was no room for, one sentence each for the user.
+std::vector<std::string> layout_notes(const pattern::Pattern& pattern, const PatternLayout& layout);
 
 } // namespace devseg::sheet

@@ -4,6 +4,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pattern/curves.h"
+#include "devseg/pattern/inside.h"
 #include "devseg/plane/plane.h"
 #include "sheet/marks.h"
 #include "sheet/segment_grid.h"
@@ -16,8 +17,19 @@ namespace {
 // The sides of a cut that lie on each other up to this are one line: a knife would follow both.
 constexpr double one_line = 0.1; // mm
 
+// What the outer line must keep of its area where sides become one line: a piece as thin as that is
+// no slit.
+constexpr double kept_area = 0.9;
+
 // Points along curves lie so close that nobody sees the difference.
 constexpr double sagitta = 0.002; // mm
+
+// Both hold for pieces of this length and above, and in proportion for smaller ones.
+constexpr double full_length = 100.0; // mm
+
+double for_size(double tolerance, const pattern::PatternPiece& piece) {
+    return tolerance * std::min(1.0, piece.box.sizes().maxCoeff() / full_length);
+}
 
 // Of cut lines beside the sew line: what turns by more is a corner.
 constexpr double corner_turn = 0.35; // radians, 20 degrees
@@ -41,7 +53,9 @@ struct Outline {
         }
         return result;
     }
-    // The same with the curves of the path, as far as nothing of them was replaced.
+    // Holes whose sides became one line.
+    bool has_vanished() const { return ring().size() < 3; }
+    // The ring with the curves of the path, as far as nothing of them was replaced.
     std::vector<pattern::OutlineCurve> curves(const pattern::PiecePath& path) const {
         std::vector<pattern::OutlineCurve> result;
         std::vector<Vec2> start;
@@ -85,43 +99,76 @@ Index side_point(const pattern::SeamSide& side, Index i) {
     return side.first + (side.reversed ? side.count - i : i);
 }
 
+// From where on the sides of the dart lie on each other up to the tip; the number of edges if they
+// do nowhere.
+Index mouth_of(const pattern::Seam& dart, const Outline& outline, double tolerance) {
+    const auto point = [&](const pattern::SeamSide& side, Index i) {
+        return outline.points[outline.at_index(side_point(side, i))];
+    };
+    Index mouth = dart.sides[0].count;
+    while (mouth > 0 &&
+           (point(dart.sides[0], mouth - 1) - point(dart.sides[1], mouth - 1)).norm() <= tolerance)
+        --mouth;
+    return mouth;
+}
+
 // A dart whose sides lie on each other up to its tip, or from some place on, is cut once.
-void merge_slits(const pattern::Pattern& pattern, Index piece, std::vector<Outline>& outlines,
+void merge_slits(const pattern::Pattern& pattern, Index index, std::vector<Outline>& outlines,
                  std::vector<std::vector<Vec2>>& slits) {
+    const pattern::PatternPiece& piece = pattern.pieces[index];
     for (const pattern::Seam& seam : pattern.seams) {
         const pattern::SeamSide& a = seam.sides[0];
         const pattern::SeamSide& b = seam.sides[1];
-        if (!seam.is_dart || a.piece != piece || a.path != b.path || a.count != b.count)
+        if (!seam.is_dart || a.piece != index || a.path != b.path || a.count != b.count)
             continue;
         Outline& outline = outlines[a.path];
-        const auto point = [&](const pattern::SeamSide& side, Index i) {
-            return outline.points[outline.at_index(side_point(side, i))];
-        };
-        Index mouth = a.count;
-        while (mouth > 0 && (point(a, mouth - 1) - point(b, mouth - 1)).norm() <= one_line)
-            --mouth;
+        const Index mouth = mouth_of(seam, outline, for_size(one_line, piece));
         if (mouth == a.count)
             continue;
         std::vector<Vec2> slit;
         for (Index i = mouth; i <= a.count; ++i)
-            slit.push_back(point(a, i));
+            slit.push_back(outline.points[outline.at_index(side_point(a, i))]);
+        Outline merged = outline;
         for (Index i = mouth + 1; i <= a.count; ++i) {
-            outline.skipped[outline.at_index(side_point(a, i))] = 1;
-            outline.skipped[outline.at_index(side_point(b, i))] = 1;
+            merged.skipped[outline.at_index(side_point(a, i))] = 1;
+            merged.skipped[outline.at_index(side_point(b, i))] = 1;
         }
-        outline.skipped[outline.at_index(side_point(b, mouth))] = 1;
+        merged.skipped[outline.at_index(side_point(b, mouth))] = 1;
+        // Holes may vanish: a slit is all that there is of them.
+        if (a.path == 0 &&
+            plane::signed_area(merged.ring()) < kept_area * plane::signed_area(outline.ring()))
+            continue;
+        outline = std::move(merged);
         slits.push_back(std::move(slit));
     }
 }
 
-void add_tabs(const std::vector<GlueTab>& tabs, std::vector<Outline>& outlines,
-              SheetPiece& result) {
+// A tab continues its piece behind the other side of the seam: its base bends as the surface does
+// along the seam, by the mean of its edges (radians).
+double bend_at(const pattern::Pattern& pattern, const pattern::PiecePath& path,
+               const GlueTab& tab) {
+    double sum = 0.0;
+    double length = 0.0;
+    for (Index i = tab.first; i < tab.first + tab.count; ++i) {
+        const std::size_t from = at(i) % path.points.size();
+        const double edge =
+            (path.points[(from + 1) % path.points.size()] - path.points[from]).norm();
+        sum += edge * pattern::fold_angle_at(pattern.mesh, path.half_edge[from]);
+        length += edge;
+    }
+    return length > 0.0 ? sum / length : 0.0;
+}
+
+void add_tabs(const pattern::Pattern& pattern, const std::vector<GlueTab>& tabs, double least_fold,
+              std::vector<Outline>& outlines, SheetPiece& result) {
     for (const GlueTab& tab : tabs) {
         Outline& outline = outlines[tab.path];
         std::vector<Vec2> base;
         for (Index i = tab.first; i <= tab.first + tab.count; ++i)
             base.push_back(outline.points[outline.at_index(i)]);
-        result.mountains.push_back(std::move(base)); // tabs bend backwards
+        const pattern::PiecePath& path = pattern.pieces[result.piece].path(tab.path);
+        const bool is_valley = bend_at(pattern, path, tab) < -least_fold;
+        (is_valley ? result.valleys : result.mountains).push_back(std::move(base));
         for (Index i = tab.first + 1; i < tab.first + tab.count; ++i)
             outline.skipped[outline.at_index(i)] = 1;
         outline.inserted[outline.at_index(tab.first)] = {tab.corner[0], tab.corner[1]};
@@ -140,10 +187,10 @@ void add_folds(const pattern::PatternPiece& piece, SheetPiece& result) {
 
 // Lines that follow the curves.
 std::vector<std::vector<Vec2>>
-rings_of(const std::vector<std::vector<pattern::OutlineCurve>>& curves) {
+rings_of(const std::vector<std::vector<pattern::OutlineCurve>>& curves, double tolerance) {
     std::vector<std::vector<Vec2>> rings;
     for (const std::vector<pattern::OutlineCurve>& ring : curves)
-        rings.push_back(pattern::flatten_curves(ring, sagitta));
+        rings.push_back(pattern::flatten_curves(ring, tolerance));
     return rings;
 }
 
@@ -152,17 +199,19 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
                 const ExportOptions& options, SheetPiece& result) {
     std::vector<std::vector<pattern::OutlineCurve>> own;
     for (std::size_t i = 0; i < outlines.size(); ++i)
-        own.push_back(outlines[i].curves(piece.path(static_cast<Index>(i))));
+        if (!outlines[i].has_vanished())
+            own.push_back(outlines[i].curves(piece.path(static_cast<Index>(i))));
+    const double tolerance = for_size(sagitta, piece);
     if (!result.has_allowance()) {
-        result.cut = rings_of(own);
+        result.cut = rings_of(own, tolerance);
         result.cut_curves = std::move(own);
         return;
     }
-    result.sew = rings_of(own);
+    result.sew = rings_of(own, tolerance);
     result.sew_curves = std::move(own);
     for (const std::vector<Vec2>& ring : result.cut)
         result.cut_curves.push_back(pattern::fit_ring(ring, corner_turn, options.curve_mm));
-    result.cut = rings_of(result.cut_curves);
+    result.cut = rings_of(result.cut_curves, tolerance);
 }
 
 template <class Change>
@@ -206,8 +255,8 @@ void SheetPiece::move(const pack::Placement& placement) {
     all.cosine = cosine;
 }
 
-void SheetPiece::mirror() {
-    change_points(*this, [](const Vec2& p) { return Vec2(-p.x(), p.y()); });
+void SheetPiece::mirror(double axis) {
+    change_points(*this, [axis](const Vec2& p) { return Vec2(2.0 * axis - p.x(), p.y()); });
     for (auto* rings : {&cut, &sew})
         for (std::vector<Vec2>& ring : *rings)
             std::reverse(ring.begin(), ring.end());
@@ -217,7 +266,11 @@ void SheetPiece::mirror() {
             for (pattern::OutlineCurve& curve : ring)
                 std::reverse(curve.control.begin(), curve.control.end());
         }
+    std::swap(mountains, valleys); // seen from the other side
+    // Turned over first, the piece comes to the same place by the opposite turn.
     frame.mirrored = true;
+    frame.placement.sine = -frame.placement.sine;
+    frame.placement.offset.x() = 2.0 * axis - frame.placement.offset.x();
 }
 
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
@@ -230,9 +283,10 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.emplace_back(piece.path(i));
     merge_slits(pattern, index, outlines, result.slits);
-    add_tabs(tabs, outlines, result);
+    add_tabs(pattern, tabs, options.fold_angle * degrees, outlines, result);
     for (const Outline& outline : outlines)
-        result.cut.push_back(outline.ring());
+        if (!outline.has_vanished())
+            result.cut.push_back(outline.ring());
     const AllowanceWidths allowance = options.allowance();
     if (allowance.largest() > 0.0) {
         result.sew = std::move(result.cut);

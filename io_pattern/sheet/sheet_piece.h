@@ -52,8 +52,9 @@ struct SheetPiece {
     Eigen::AlignedBox2d box() const;
     /// Moves everything. Texts do not turn: they are added in the piece's place (marks.h).
     void move(const pack::Placement& placement);
-    /// Turns everything over at the axis x = 0, before any move.
-    void mirror();
+    /// Turns everything over at the line x = `axis`, once and after all moves: mountain folds
+    /// become valley folds.
+    void mirror(double axis);
 };
 
 /// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.

@@ -87,8 +87,8 @@ public:
         filter_.writes = what;
         return *this;
     }
-    Declare& joins_borders() {
-        filter_.joins_borders = true;
+    Declare& shows_outside() {
+        filter_.shows_outside = true;
         return *this;
     }
     Declare& needs_uv() {
@@ -113,6 +113,7 @@ public:
             }
             return run(input, options, progress);
         };
+        filter_.parameters.push_back(weld_parameter());
         return filter_;
     }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/base/worker.h"
-#include "devseg/mesh/weld.h"
 
 namespace devseg::declare {
 
@@ -88,15 +88,19 @@ int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, Face 
     return bits;
 }
 
-// Where the vertices have moved to; those that no face uses stay.
+// Where the vertices have moved to, all that were joined alike; those that no face uses stay.
 std::vector<Vec3> moved_points(const HostMesh& host, const mesh::GatedMesh& gated,
                                const std::vector<Vec3>& points) {
+    const Mesh& mesh = gated.mesh;
     std::vector<Vec3> moved = host.geometry.points;
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        const std::size_t source = at(gated.source_vertex[v]);
-        moved[source] = host.geometry.points[source] +
-                        gated.mesh.unit_length * (points[v] - gated.mesh.points[v]);
-    }
+    for (const Face f : mesh.all_faces())
+        for (Index k = 0; k < 3; ++k) {
+            const Vertex v = mesh.faces[f][k];
+            const Triangle& corners = host.geometry.faces[gated.source_face[f]];
+            const std::size_t source = at(corners[gated.source_corner(f, k)]);
+            moved[source] =
+                host.geometry.points[source] + mesh.unit_length * (points[v] - mesh.points[v]);
+        }
     return moved;
 }
 
@@ -129,20 +133,36 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
     return result;
 }
 
-// The mesh with borders joined that lie on each other.
-mesh::GatedMesh gate_joined(const mesh::RawMesh& raw, const Progress& progress) {
-    for (const Triangle& t : raw.faces)
-        for (const Vertex v : t)
-            if (v < 0 || at(v) >= raw.points.size())
-                return mesh::gate_mesh(raw, progress); // which says what is wrong
-    const mesh::WeldedMesh welded = mesh::weld_borders(raw);
-    mesh::GatedMesh gated = mesh::gate_mesh(welded.mesh, progress);
-    if (welded.edges > 0)
-        gated.notes.push_back(std::to_string(welded.edges) +
-                              (welded.edges == 1 ? " border edge lies" : " border edges lie") +
-                              " on another one: read as a seam "
-                              "('Merge Close Vertices' joins them for good)");
-    return gated;
+const OptionRange weld_range{"weld", -1.0, 0.01};
+
+double weld_of(const ParameterValues& values) {
+    const auto given = values.find(weld_range.name);
+    if (given == values.end())
+        return mesh::GateOptions().weld;
+    const double weld = std::get<double>(given->second);
+    weld_range.check(weld);
+    return weld;
+}
+
+// The number of charts is an aim: more of them than faces are as many as faces. Whoever gave the
+// number is told.
+void limit_charts_number(const FilterDeclaration& filter, Index faces, ParameterValues& values,
+                         std::vector<std::string>& notes) {
+    constexpr const char* name = "charts_number";
+    for (const Parameter& p : filter.parameters) {
+        if (p.name != name)
+            continue;
+        ParameterValue& value = values.try_emplace(name, p.default_value).first->second;
+        const int asked = std::get<int>(value);
+        if (asked <= faces)
+            continue;
+        if (value != p.default_value)
+            notes.push_back(std::string(name) + ": " + std::to_string(asked) +
+                            " charts were asked for, and the mesh has " + std::to_string(faces) +
+                            (faces == 1 ? " face" : " faces") +
+                            " to divide among them: " + std::to_string(faces) + " was used");
+        value = faces;
+    }
 }
 
 // A run owns all that it reads and writes: a cancelled one is abandoned.
@@ -158,8 +178,9 @@ struct FilterRun {
 
 void FilterRun::operator()(Progress& progress) {
     auto reading = progress.part("reading the mesh", 0.02);
-    const mesh::GatedMesh gated = filter.joins_borders ? gate_joined(host.geometry, reading)
-                                                       : mesh::gate_mesh(host.geometry, reading);
+    mesh::GatedMesh gated =
+        mesh::gate_mesh(host.geometry, {weld_of(values), filter.shows_outside}, reading);
+    limit_charts_number(filter, gated.mesh.face_count(), values, gated.notes);
     reading.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),
@@ -182,6 +203,20 @@ void FilterRun::operator()(Progress& progress) {
 }
 
 } // namespace
+
+Parameter weld_parameter() {
+    return {
+        weld_range.name,
+        "Join vertices within",
+        "Vertices at the same place are read as one where that closes open edges, as files have "
+        "them that give a vertex to each normal or texture coordinate. 0 = at the same place; "
+        "above: up to this share of the model's size; -1 = none are joined.",
+        ParameterKind::real,
+        mesh::GateOptions().weld,
+        weld_range.minimum,
+        weld_range.maximum,
+        {}};
+}
 
 atlas::ChartMap find_charts(const FilterInput& input) {
     if (input.charts)

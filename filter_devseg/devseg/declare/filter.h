@@ -121,12 +121,15 @@ struct FilterDeclaration {
     FilterCategory category = FilterCategory::remeshing;
     unsigned writes = writes_nothing;
     bool needs_uv = false;
-    bool joins_borders = false; // reads border edges that lie on each other as one edge
+    bool shows_outside = false; // closed surfaces that are inside out are turned over
     std::vector<Parameter> parameters;
     std::vector<ResultField> results;
     Command command;
     std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
 };
+
+/// `weld`, the parameter of every filter: which vertices are read as one (mesh::GateOptions).
+Parameter weld_parameter();
 
 /// Charts of the mesh's attributes; without them, those of its texture coordinates; without those,
 /// its connected components.

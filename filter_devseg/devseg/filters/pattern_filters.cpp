@@ -41,7 +41,7 @@ constexpr const char* optimize_help =
     "glued again, from the tip on, as far as they stay closed.<br>"
     "Charts, darts and slits are read from the texture coordinates; the new ones are written to "
     "<b>chart_id</b> and <b>seam_edges</b> as well. Charts keep their places and sizes unless some "
-    "were cut off, joined, or lay on each other: then all are packed anew.<br>"
+    "were cut off, joined, lay on each other or were at other scales: then all are packed anew.<br>"
     "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum 24(3) (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
@@ -60,8 +60,8 @@ Declare<O> with_scale(Declare<O> filter) {
               "Scales the pattern so that the finished model is this high, measured along the y "
               "axis, in millimetres. 0 = use the millimetres per unit.")
         .real(&O::max_piece_mm, "Largest piece (mm)",
-              "Longest side of a piece in millimetres; larger ones are split across their long "
-              "direction, along a short line. 0 = no limit.");
+              "Longest side of a piece in millimetres; larger ones are cut across their long "
+              "direction, along edges of the mesh or straight through its faces. 0 = no limit.");
 }
 
 template <class O>
@@ -88,14 +88,14 @@ std::uint8_t faded(double share) {
 // The faces of all pieces where they lie on the sheet; vertices are shared within a piece.
 LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& pattern,
                         const std::vector<pattern::FaceStrain>& strain, double strain_range) {
-    const CornerUv& uv = *input.uv;
+    const Mesh& mesh = pattern.mesh;
     LayerMesh layer;
     layer.name = "pattern pieces";
     std::vector<int> piece_id;
     std::vector<int> source_face;
-    atlas::ChartMap charts = atlas::make_chart_map(
-        input.mesh, pattern.face_piece, atlas::charts_from_uv(input.mesh, uv).seam, false);
-    for (const atlas::ChartSurface& surface : atlas::extract_charts(input.mesh, charts)) {
+    const atlas::ChartMap charts =
+        atlas::make_chart_map(mesh, pattern.face_piece, pattern.seam, false);
+    for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
         const Index p = pattern.face_piece[surface.face.front()];
         if (p < 0)
             continue; // charts too small to be cut out
@@ -118,7 +118,7 @@ LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& patter
             layer.face_color.push_back(longer ? Color{255, fade, fade} : Color{fade, fade, 255});
             layer.face_quality.push_back(longer ? own.extension : -own.compression);
             piece_id.push_back(p);
-            source_face.push_back(input.source_face[source]);
+            source_face.push_back(input.source_face[pattern.source_face[source]]);
         }
     }
     layer.face_attributes = {{"piece_id", std::move(piece_id)},
@@ -133,7 +133,7 @@ FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, P
     output.notes = pattern.notes;
     const double scale = 1.0 / (pattern.mm_per_unit * input.mesh.unit_length);
     output.layer = lay_out_faces(input, pattern,
-                                 pattern::measure_strain(input.mesh, pattern.corner_place, scale),
+                                 pattern::measure_strain(pattern.mesh, pattern.corner_place, scale),
                                  options.strain_range);
     output.values = {{"pieces_number", static_cast<int>(pattern.pieces.size())},
                      {"width_mm", pattern.width},
@@ -243,7 +243,7 @@ FilterOutput run_optimize(const FilterInput& input, const pattern::OptimizeOptio
     if (options.reattach_gussets)
         pattern::reattach_gussets(mesh, options, layout, joining);
     auto packing = progress.part("packing charts", 0.3);
-    if (is_stacked || layout.reattached > 0) {
+    if (is_stacked || layout.reattached > 0 || !layout.is_as_given) {
         const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
         SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, packing);
         note_unsettled(sheet, output);
@@ -299,7 +299,7 @@ FilterDeclaration pieces() {
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
         .needs_uv()
-        .joins_borders()
+        .shows_outside()
         .writes(writes_layer)
         .result("pieces_number", "pieces on the new layer")
         .result("width_mm", "width of the layout in mm")
@@ -312,7 +312,7 @@ FilterDeclaration measures() {
     return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
                                             FilterCategory::measure, measures_help)))
         .needs_uv()
-        .joins_borders()
+        .shows_outside()
         .result("pieces_number", "pieces")
         .result("shapes_number", "different pieces, mirror images not counted")
         .result("mirrored_pairs_number", "pairs of a piece and its mirror image")

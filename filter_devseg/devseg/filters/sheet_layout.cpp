@@ -10,12 +10,17 @@ namespace devseg::filters {
 
 using namespace declare;
 
-SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
-                    const pack::PackOptions& options, double scale_to_side, Progress& progress) {
+namespace {
+
+std::vector<pack::PackItem> items_of(const std::vector<flatten::FlatChart>& charts) {
     std::vector<pack::PackItem> items;
     for (const flatten::FlatChart& chart : charts)
         items.push_back({&chart.surface.faces, &chart.uv});
-    const pack::PackResult packed = pack::pack_charts(items, options, progress);
+    return items;
+}
+
+SheetLayout place(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
+                  const pack::PackResult& packed, double scale_to_side) {
     const double scale = scale_to_side > 0.0 ? scale_to_side / packed.side : mesh.unit_length;
     if (!(scale * packed.side < std::numeric_limits<float>::max()))
         throw InvalidMesh("expected a model small enough for 32-bit texture coordinates in its own "
@@ -31,6 +36,18 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
             layout.uv[chart.surface.mesh_half_edge(h)] = chart.uv[chart.surface.origin(h)];
     }
     return layout;
+}
+
+} // namespace
+
+SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
+                    const pack::PackOptions& options, double scale_to_side, Progress& progress) {
+    return place(mesh, charts, pack::pack_charts(items_of(charts), options, progress),
+                 scale_to_side);
+}
+
+SheetLayout lay_out_in_rows(const Mesh& mesh, std::vector<flatten::FlatChart>& charts) {
+    return place(mesh, charts, pack::pack_rows(items_of(charts), pack::PackOptions().padding), 0.0);
 }
 
 void note_unsettled(const SheetLayout& layout, FilterOutput& output) {

@@ -19,6 +19,9 @@ struct SheetLayout {
 SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
                     const pack::PackOptions& options, double scale_to_side, Progress& progress);
 
+/// The same in rows, in model units and without any search for room.
+SheetLayout lay_out_in_rows(const Mesh& mesh, std::vector<flatten::FlatChart>& charts);
+
 /// Tells the user about faces that rounding flattened.
 void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output);
 

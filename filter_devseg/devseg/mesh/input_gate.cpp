@@ -7,8 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "devseg/base/buckets.h"
 #include "devseg/base/errors.h"
+#include "devseg/graph/unions.h"
+#include "devseg/mesh/coherent_faces.h"
+#include "devseg/mesh/inside_out.h"
 #include "devseg/mesh/weld.h"
 
 namespace devseg::mesh {
@@ -60,9 +62,14 @@ void require_finite(const RawMesh& raw) {
                           bad);
 }
 
-// Centre and scale: afterwards the bounding box is about 1 wide. Returns where its middle was. The
+// Centre and scale: afterwards the bounding box is about 1 wide. Returns how it was before. The
 // factor is a power of two, which changes no digit.
-Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
+struct Frame {
+    Vec3 center;
+    double size; // longest side of the box, internal units: 1 to 2
+};
+
+Frame normalise(const RawMesh& raw, Mesh& mesh) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
     Vec3 high = -low;
     for (const Triangle& t : raw.faces)
@@ -82,156 +89,44 @@ Vec3 normalise(const RawMesh& raw, Mesh& mesh) {
     mesh.points.resize(raw.points.size());
     for (std::size_t v = 0; v < raw.points.size(); ++v)
         mesh.points[v] = (raw.points[v] - centre) / mesh.unit_length;
-    return centre;
+    return {centre, size / mesh.unit_length};
 }
 
-// Visits the items of each bucket, sorted.
-template <class Item, class Visit>
-void for_sorted(Buckets<Item> buckets, Visit visit) {
-    for (Index b = 0; b < buckets.count(); ++b) {
-        const auto first = buckets.items.begin() + buckets.begin[b];
-        const auto last = buckets.items.begin() + buckets.begin[at(b) + 1];
-        std::sort(first, last);
-        visit(first, last);
-    }
-}
-
-struct FaceSelection {
-    std::vector<Index> kept;         // faces that go on
-    std::vector<Index> duplicate_of; // #source faces: the earlier face on the same vertices, or −1
-    Index repeated = 0;              // faces that name a vertex twice
-    Index duplicates = 0;
-};
-
-FaceSelection select_proper_faces(const std::vector<Triangle>& faces, Index vertex_count) {
-    const Range<FaceKind> all(0, static_cast<Index>(faces.size()));
-    const auto sorted = [&](Face f) {
-        Triangle t = faces[f];
-        std::sort(t.begin(), t.end());
-        return t;
+// Turns faces over (#F marks): corners (a, b, c) become (a, c, b), so edge e becomes edge 2 − e.
+void turn_over(GatedMesh& gated, const std::vector<std::uint8_t>& turned) {
+    Mesh& mesh = gated.mesh;
+    const auto moved = [&](HalfEdge h) {
+        return turned[face_of(h)] != 0 ? half_edge_of(face_of(h), 2 - corner_of(h)) : h;
     };
-    using Key = std::array<Index, 3>; // middle vertex, largest vertex, face
-    FaceSelection result;
-    result.duplicate_of.assign(faces.size(), -1);
-    for_sorted(make_buckets<Key>(vertex_count,
-                                 [&](auto put) {
-                                     for (const Face f : all) {
-                                         const Triangle t = sorted(f);
-                                         put(t[0], Key{t[1], t[2], f});
-                                     }
-                                 }),
-               [&](auto key, auto last) {
-                   if (key == last)
-                       return;
-                   for (auto before = key++; key != last; before = key++)
-                       if ((*key)[0] == (*before)[0] && (*key)[1] == (*before)[1]) {
-                           const Index first = result.duplicate_of[(*before)[2]];
-                           result.duplicate_of[(*key)[2]] = first >= 0 ? first : (*before)[2];
-                       }
-               });
-    result.kept.reserve(faces.size());
-    for (const Face f : all) {
-        const Triangle t = sorted(f);
-        if (t[0] == t[1] || t[1] == t[2]) {
-            result.duplicate_of[f] = -1;
-            ++result.repeated;
-        } else if (result.duplicate_of[f] >= 0) {
-            ++result.duplicates;
-        } else {
-            result.kept.push_back(f);
-        }
+    std::vector<std::uint8_t> cut(gated.cut.size());
+    std::vector<HalfEdge> twin(mesh.twin.size());
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        cut[moved(h)] = gated.cut[h];
+        if (mesh.twin[h] >= 0)
+            twin[moved(h)] = moved(mesh.twin[h]);
     }
-    return result;
+    gated.cut = std::move(cut);
+    mesh.twin = std::move(twin);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+        if (turned[f] != 0) {
+            gated.flipped[f] ^= 1;
+            std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+        }
 }
 
-// All half-edges of each edge that has exactly two faces, whatever their directions.
-std::vector<Index> neighbours_regardless_of_direction(const Mesh& mesh,
-                                                      std::vector<std::uint8_t>& cut,
-                                                      Index& crowded_edges) {
-    std::vector<Index> neighbour(cut.size(), -1);
-    using Use = std::pair<Index, Index>; // (larger vertex, half-edge)
-    const auto put_all = [&](auto put) {
-        for (const HalfEdge h : mesh.all_half_edges()) {
-            const auto [low, high] = std::minmax({mesh.origin(h), mesh.target(h)});
-            put(low, Use(high, h));
-        }
-    };
-    for_sorted(make_buckets<Use>(mesh.vertex_count(), put_all), [&](auto run, auto last) {
-        for (auto end = run; run != last; run = end) {
-            while (end != last && end->first == run->first)
-                ++end;
-            if (end - run == 2) {
-                neighbour[run->second] = (run + 1)->second;
-                neighbour[(run + 1)->second] = run->second;
-            } else if (end - run > 2) {
-                ++crowded_edges;
-                for (auto use = run; use != end; ++use)
-                    cut[use->second] = 1;
-            }
-        }
-    });
-    return neighbour;
-}
-
-struct Orientation {
-    std::vector<std::uint8_t> flipped; // #F
-    Index turned = 0;                  // faces turned over
-    Index one_sided_edges = 0;         // edges where no coherent orientation exists
-};
-
-// Breadth-first over each component; the orientation that most faces had is kept.
-Orientation orient(const Mesh& mesh, std::vector<Index>& neighbour,
-                   std::vector<std::uint8_t>& cut) {
-    Orientation result;
-    result.flipped.assign(mesh.faces.size(), 2); // 2 = not reached yet
-    std::vector<Index> component;
-    for (const Face seed : mesh.all_faces()) {
-        if (result.flipped[seed] != 2)
-            continue;
-        component.assign(1, seed);
-        result.flipped[seed] = 0;
-        Index turned = 0;
-        for (std::size_t i = 0; i < component.size(); ++i) {
-            const Face f = component[i];
-            turned += result.flipped[f];
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge opposite = neighbour[h];
-                if (opposite < 0)
-                    continue;
-                // Two faces that run along their edge in the same direction disagree.
-                const bool disagree = mesh.origin(h) == mesh.origin(opposite);
-                const std::uint8_t wanted = result.flipped[f] ^ (disagree ? 1 : 0);
-                std::uint8_t& state = result.flipped[face_of(opposite)];
-                if (state == 2) {
-                    state = wanted;
-                    component.push_back(face_of(opposite));
-                } else if (state != wanted) {
-                    ++result.one_sided_edges;
-                    cut[h] = cut[opposite] = 1;
-                    neighbour[h] = neighbour[opposite] = -1;
-                }
-            }
-        }
-        const Index size = static_cast<Index>(component.size());
-        if (2 * turned > size) {
-            for (const Face f : component)
-                result.flipped[f] ^= 1;
-            turned = size - turned;
-        }
-        result.turned += turned;
-    }
-    return result;
-}
-
-// Gives every fan of faces around a vertex a vertex of its own. Returns how many were added.
-Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
+// Gives every fan of faces around a vertex a vertex of its own, and one alone. Returns how many
+// were added, and how many became one with others.
+std::pair<Index, Index> split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
     std::vector<std::uint8_t> done(mesh.twin.size(), 0); // corner h is the origin of half-edge h
     std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    graph::Unions joined(mesh.points.size());
     Index added = 0;
+    Index less = 0;
     for (const HalfEdge start : mesh.all_half_edges()) {
         if (done[start] != 0)
             continue;
-        Vertex v = mesh.origin(start);
+        const Vertex source = mesh.origin(start);
+        Vertex v = source;
         if (used[v] != 0) {
             mesh.points.push_back(mesh.points[v]);
             source_vertex.push_back(source_vertex[v]);
@@ -241,11 +136,17 @@ Index split_fans(Mesh& mesh, std::vector<Index>& source_vertex) {
             used[v] = 1;
         }
         visit_star(mesh, start, [&](HalfEdge h) {
+            const auto [first, other] =
+                std::minmax({joined.find(source), joined.find(mesh.origin(h))});
+            less += first != other ? 1 : 0;
+            joined.join(first, other);
             mesh.faces[face_of(h)][corner_of(h)] = v;
             done[h] = 1;
         });
     }
-    return added;
+    for (Index& source : source_vertex)
+        source = joined.find(source);
+    return {added, less};
 }
 
 // Drops the points that no face uses.
@@ -296,56 +197,133 @@ void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count
     }
 }
 
+// Edges that had to be cut.
+Index count_cut_edges(const GatedMesh& gated) {
+    std::vector<std::pair<Index, Index>> edges;
+    for (const HalfEdge h : gated.mesh.all_half_edges())
+        if (gated.cut[h] != 0)
+            edges.push_back(
+                std::minmax({Index{gated.mesh.origin(h)}, Index{gated.mesh.target(h)}}));
+    std::sort(edges.begin(), edges.end());
+    return static_cast<Index>(std::unique(edges.begin(), edges.end()) - edges.begin());
+}
+
+// What was worked around, as numbers.
+struct Found {
+    Index joined = 0; // vertices that there are less
+    Index repeated = 0;
+    Index duplicates = 0;
+    Index crowded = 0;
+    Index turned = 0;
+    Index one_sided = 0;
+    Index split = 0;
+    Index inside_out = 0;
+};
+
+std::vector<std::string> notes_of(const Found& found, const GateOptions& options) {
+    std::vector<std::string> notes;
+    const auto note = [&](Index count, const char* one, const char* many, const std::string& rest) {
+        if (count > 0)
+            notes.push_back(counted(count, one, many) + rest);
+    };
+    note(found.joined, "vertex was", "vertices were",
+         std::string(" joined with others ") +
+             (options.weld > 0.0 ? "nearby" : "at the same place") +
+             ", as that closes open edges ('Merge Close Vertices' does it for good)");
+    note(found.repeated, "face repeats a vertex and was", "faces repeat a vertex and were",
+         " left out ('Remove Zero Area Faces' drops such faces)");
+    note(found.duplicates, "face lies on the vertices of another one and was",
+         "faces lie on the vertices of another one and were",
+         " left out ('Remove Duplicate Faces' drops such faces)");
+    note(found.crowded, "edge has more than two faces and was",
+         "edges have more than two faces and were",
+         " cut ('Repair non Manifold Edges' mends them)");
+    note(found.turned, "face was", "faces were",
+         " read with the orientation of its neighbours "
+         "('Re-Orient All Faces Coherently' does it for good)");
+    note(found.one_sided, "edge of a one-sided surface was", "edges of a one-sided surface were",
+         " cut, as it has no coherent orientation");
+    note(found.split, "vertex joins fans of faces and was", "vertices join fans of faces and were",
+         " split ('Repair non Manifold Vertices by Splitting')");
+    note(found.inside_out, "closed surface is", "closed surfaces are",
+         std::string(" inside out") +
+             (options.turn_inside_out ? ": read turned over" : "; patterns are turned over") +
+             " ('Invert Faces Orientation' does it for good)");
+    return notes;
+}
+
+// Pairs of borders that lie on each other become edges.
+void join_borders(const std::vector<std::array<HalfEdge, 2>>& pairs, GatedMesh& gated) {
+    for (const auto& [h, other] : pairs) {
+        gated.mesh.twin[h] = other;
+        gated.mesh.twin[other] = h;
+        gated.cut[h] = gated.cut[other] = 0;
+    }
+}
+
+// Sets twins, orientation and cuts of the faces that were kept. The crowded edges of a soup are
+// borders that touch: nobody has put more than two faces on them.
+void connect(bool is_soup, const GateOptions& options, double tolerance, GatedMesh& gated,
+             Found& found, const Progress& progress) {
+    Mesh& mesh = gated.mesh;
+    mesh.twin = neighbours_regardless_of_direction(mesh, gated.cut);
+    progress.check();
+    const Orientation orientation = orient(mesh, mesh.twin, gated.cut);
+    found.turned = orientation.turned;
+    found.one_sided = orientation.one_sided_edges;
+    gated.flipped.assign(mesh.faces.size(), 0);
+    turn_over(gated, orientation.flipped);
+    progress.check();
+    const std::vector<std::uint8_t> left_out =
+        is_soup ? std::vector<std::uint8_t>(gated.cut.size(), 0) : gated.cut;
+    const auto pairs = coincident_borders(mesh, left_out, tolerance, progress);
+    if (options.weld >= 0.0)
+        join_borders(pairs, gated);
+    found.crowded = count_cut_edges(gated) - found.one_sided;
+    if (options.weld < 0.0)
+        for (const auto& pair : pairs)
+            for (const HalfEdge h : pair)
+                gated.cut[h] = 1;
+    progress.check();
+    std::vector<std::uint8_t> inside_out;
+    found.inside_out = find_inside_out(mesh, inside_out);
+    if (options.turn_inside_out && found.inside_out > 0)
+        turn_over(gated, inside_out);
+}
+
 } // namespace
 
-GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
+GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progress& progress) {
     require_faces(raw);
     require_valid_indices(raw);
     require_finite(raw);
 
     GatedMesh gated;
     Mesh& mesh = gated.mesh;
-    gated.center = normalise(raw, mesh);
+    const Frame frame = normalise(raw, mesh);
+    const double tolerance = std::max(0.0, options.weld) * frame.size;
+    gated.center = frame.center;
     gated.source_vertex.resize(raw.points.size());
     std::iota(gated.source_vertex.begin(), gated.source_vertex.end(), 0);
 
+    Found found;
     std::vector<Triangle> faces = raw.faces;
     progress.check();
-    const Index welded = weld_soup(raw, faces);
+    const Index welded = options.weld >= 0.0 ? weld_soup(mesh.points, tolerance, faces) : 0;
     progress.check();
     FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
+    found.repeated = selection.repeated;
+    found.duplicates = selection.duplicates;
     gated.source_face = std::move(selection.kept);
     for (const Face f : gated.source_face)
         mesh.faces.push_back(faces[f]);
-
     progress.check();
-    gated.cut.assign(3 * mesh.faces.size(), 0);
-    Index crowded_edges = 0;
-    std::vector<Index> neighbour =
-        neighbours_regardless_of_direction(mesh, gated.cut, crowded_edges);
+    connect(welded > 0, options, tolerance, gated, found, progress);
     progress.check();
-    Orientation orientation = orient(mesh, neighbour, gated.cut);
-    gated.flipped = std::move(orientation.flipped);
-
-    progress.check();
-    // Turn faces over: corners (a, b, c) become (a, c, b), so edge e becomes edge 2 − e.
-    const auto moved = [&](HalfEdge h) {
-        return gated.flipped[face_of(h)] != 0 ? half_edge_of(face_of(h), 2 - corner_of(h)) : h;
-    };
-    std::vector<std::uint8_t> cut(gated.cut.size());
-    mesh.twin.assign(gated.cut.size(), -1);
-    for (const HalfEdge h : mesh.all_half_edges()) {
-        cut[moved(h)] = gated.cut[h];
-        if (neighbour[h] >= 0)
-            mesh.twin[moved(h)] = moved(neighbour[h]);
-    }
-    gated.cut = std::move(cut);
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-        if (gated.flipped[f] != 0)
-            std::swap(mesh.faces[f][1], mesh.faces[f][2]);
-
-    progress.check();
-    const Index split = split_fans(mesh, gated.source_vertex);
+    const auto [split, joined] = split_fans(mesh, gated.source_vertex);
+    found.joined = welded + joined;
+    if (found.crowded == 0 && found.one_sided == 0 && welded == 0)
+        found.split = split;
     progress.check();
     drop_unused_points(mesh, gated.source_vertex);
     progress.check();
@@ -356,30 +334,7 @@ GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress) {
                           " without any area; there is nothing to segment");
     progress.check();
     find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
-
-    const auto note = [&](Index count, const char* one, const char* many, const char* rest) {
-        if (count > 0)
-            gated.notes.push_back(counted(count, one, many) + rest);
-    };
-    note(welded, "vertex was", "vertices were",
-         " joined with others at the same place, as no two faces share one "
-         "('Merge Close Vertices' with a threshold of 0 does it for good)");
-    note(selection.repeated, "face repeats a vertex and was", "faces repeat a vertex and were",
-         " left out ('Remove Zero Area Faces' drops such faces)");
-    note(selection.duplicates, "face lies on the vertices of another one and was",
-         "faces lie on the vertices of another one and were",
-         " left out ('Remove Duplicate Faces' drops such faces)");
-    note(crowded_edges, "edge has more than two faces and was",
-         "edges have more than two faces and were",
-         " cut ('Repair non Manifold Edges' mends them)");
-    note(orientation.turned, "face was", "faces were",
-         " read with the orientation of its neighbours "
-         "('Re-Orient All Faces Coherently' does it for good)");
-    note(orientation.one_sided_edges, "edge of a one-sided surface was",
-         "edges of a one-sided surface were", " cut, as it has no coherent orientation");
-    note(crowded_edges == 0 && orientation.one_sided_edges == 0 ? split : 0,
-         "vertex joins fans of faces and was", "vertices join fans of faces and were",
-         " split ('Repair non Manifold Vertices by Splitting')");
+    gated.notes = notes_of(found, options);
     return gated;
 }
 

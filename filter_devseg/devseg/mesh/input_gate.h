@@ -19,7 +19,7 @@ struct RawMesh {
 /// The checked mesh with the way back to the host's faces ("source faces").
 ///
 /// What is worked around without touching the host's mesh: vertices at the same place are joined
-/// where no two faces share one (files such as STL), faces that repeat a vertex or another face are
+/// where that closes open edges (mesh/weld.h), faces that repeat a vertex or another face are
 /// left out, edges with more than two faces are cut, vertices where several fans touch are split,
 /// faces are oriented coherently, and one-sided surfaces are cut where no coherent orientation
 /// exists. Coordinates are moved to the origin and scaled by a power of two, so that
@@ -28,7 +28,8 @@ struct GatedMesh {
     Mesh mesh;
     Vec3 center = Vec3::Zero();        // model coordinates of the mesh's origin
     std::vector<Index> source_face;    // #F: index of the source face
-    std::vector<Index> source_vertex;  // #V: index of the source vertex
+    std::vector<Index> source_vertex;  // #V: index of the source vertex, the first of those that
+                                       // were joined; the parts of one that was split share it
     std::vector<std::uint8_t> flipped; // #F: 1 where the orientation was turned over
     std::vector<std::uint8_t> cut;     // 3 #F: 1 on half-edges whose edge the gate had to cut
     std::vector<Index> stand_in;    // #source faces: the face whose results it takes, −1 = none
@@ -40,8 +41,19 @@ struct GatedMesh {
     Index source_edge(Face f, Index e) const { return flipped[f] != 0 ? 2 - e : e; }
 };
 
+struct GateOptions {
+    // Vertices are joined up to this distance, as a share of the model's size (the longest side of
+    // its box); 0: those at the same place; below 0: none. Borders that lie on each other and are
+    // not joined count as cut.
+    double weld = 0.0;
+    // Closed surfaces whose faces look inwards are turned over, but for cavities. They are noted in
+    // any case.
+    bool turn_inside_out = false;
+};
+
 /// Throws InvalidMesh where nothing sensible can be done: no faces, an index out of range,
 /// coordinates that are not finite, all faces without area; Cancelled.
-GatedMesh gate_mesh(const RawMesh& raw, const Progress& progress = Progress());
+GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options = {},
+                    const Progress& progress = Progress());
 
 } // namespace devseg::mesh

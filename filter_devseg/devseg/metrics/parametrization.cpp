@@ -177,8 +177,11 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
 
 std::vector<SeamMeasures> measure_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                         const CornerUv& uv) {
-    const double scale = atlas::layout_scale(mesh, charts, uv) * mesh.unit_length;
-    const auto flat_length = [&](HalfEdge h) { return scale * (uv[Mesh::next(h)] - uv[h]).norm(); };
+    const atlas::EvenLayout even = atlas::even_layout(mesh, charts, uv);
+    const double scale = even.scale * mesh.unit_length;
+    const auto flat_length = [&](HalfEdge h) {
+        return scale * (even.uv[Mesh::next(h)] - even.uv[h]).norm();
+    };
     std::map<std::pair<Index, Index>, SeamMeasures> seams;
     for (const HalfEdge h : mesh.all_half_edges()) {
         const HalfEdge twin = mesh.twin[h];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "devseg/base/errors.h"
@@ -181,6 +182,39 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     const Vec2 shift = Vec2::Constant(0.5 * options.padding * result.side) - box.min();
     for (Placement& placement : result.placements)
         placement.offset += shift;
+    return result;
+}
+
+PackResult pack_rows(const std::vector<PackItem>& items, double padding) {
+    std::vector<Eigen::AlignedBox2d> boxes;
+    double area = 0.0;
+    double longest = 0.0;
+    for (const PackItem& item : items) {
+        boxes.push_back(plane::box_of(*item.points));
+        longest = std::max(longest, boxes.back().sizes().maxCoeff());
+    }
+    const double gap = padding * longest;
+    for (const Eigen::AlignedBox2d& box : boxes)
+        area += (box.sizes() + Vec2::Constant(gap)).prod();
+    std::vector<std::size_t> order(items.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return boxes[a].sizes().y() > boxes[b].sizes().y();
+    });
+    PackResult result;
+    result.placements.resize(items.size());
+    const double width = std::max(std::sqrt(area), longest);
+    Vec2 place = Vec2::Constant(gap);
+    double next_row = gap;
+    for (const std::size_t i : order) {
+        const Vec2 size = boxes[i].sizes();
+        if (place.x() > gap && place.x() + size.x() > width)
+            place = Vec2(gap, next_row);
+        result.placements[i].offset = place - boxes[i].min();
+        next_row = std::max(next_row, place.y() + size.y() + gap);
+        place.x() += size.x() + gap;
+        result.side = std::max({result.side, place.x(), next_row});
+    }
     return result;
 }
 

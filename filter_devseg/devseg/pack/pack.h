@@ -46,4 +46,9 @@ struct PackResult {
 PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& options,
                        Progress& progress);
 
+/// The charts as they stand, side by side in rows of falling height, in a box that is about square:
+/// at once, for layouts whose room costs nothing. Rows and charts are `padding` times the longest
+/// side of a chart apart.
+PackResult pack_rows(const std::vector<PackItem>& items, double padding);
+
 } // namespace devseg::pack

@@ -299,6 +299,9 @@ std::vector<Chain> cut_at_corners(const std::vector<PatternPiece>& pieces,
         std::vector<Index> ends;
         if (!chain.is_cut)
             ends = corners_of(pieces, chain, corner_angle);
+        // A chain that ends where it begins, at a junction, has no corner there to be cut at.
+        if (!chain.is_closed && !ends.empty() && ends.front() == 0)
+            ends.erase(ends.begin());
         if (ends.empty()) {
             result.push_back(chain);
             continue;

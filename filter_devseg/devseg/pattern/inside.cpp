@@ -129,6 +129,17 @@ std::vector<FaceStrain> measure_strain(const Mesh& mesh, const std::vector<Vec2>
     return strain;
 }
 
+double fold_angle_at(const Mesh& mesh, HalfEdge h) {
+    const HalfEdge twin = mesh.twin[h];
+    if (twin < 0)
+        return 0.0;
+    const Vec3& normal = mesh.face_normals[face_of(h)];
+    const Vec3& other = mesh.face_normals[face_of(twin)];
+    const double angle = std::atan2(normal.cross(other).norm(), normal.dot(other));
+    const Vec3 across = mesh.points[mesh.apex(twin)] - mesh.points[mesh.origin(h)];
+    return normal.dot(across) < 0.0 ? angle : -angle;
+}
+
 void measure_inside(const Mesh& mesh, const std::vector<Vec2>& corners,
                     const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
                     const std::vector<FaceStrain>& strain, double fold_angle, double mm,
@@ -152,15 +163,9 @@ void measure_inside(const Mesh& mesh, const std::vector<Vec2>& corners,
             const HalfEdge twin = mesh.twin[h];
             if (twin < h || seam[h] != 0)
                 continue;
-            const Vec3& normal = mesh.face_normals[f];
-            const Vec3& other = mesh.face_normals[twin / 3];
-            const double angle = std::atan2(normal.cross(other).norm(), normal.dot(other));
-            if (!(angle > fold_angle))
-                continue;
-            const Vec3 across =
-                mesh.points[mesh.origin(Mesh::previous(twin))] - mesh.points[mesh.origin(h)];
-            piece.folds.push_back(
-                {corners[h], corners[Mesh::next(h)], normal.dot(across) < 0.0 ? angle : -angle});
+            const double angle = fold_angle_at(mesh, h);
+            if (std::abs(angle) > fold_angle)
+                piece.folds.push_back({corners[h], corners[Mesh::next(h)], angle});
         }
     }
     if (!(area > 0.0))

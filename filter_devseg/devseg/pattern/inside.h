@@ -29,6 +29,10 @@ struct FaceStrain {
 std::vector<FaceStrain> measure_strain(const Mesh& mesh, const std::vector<Vec2>& paper,
                                        double scale);
 
+/// The angle by which the surface bends at an edge, radians, positive = mountain (seen from the
+/// outside); 0 on boundaries.
+double fold_angle_at(const Mesh& mesh, HalfEdge h);
+
 /// Sets strain and folds of the piece that was made of the given faces, with their corners on
 /// `paper` (3 #F) in mm; `mm` is the length of the mesh's internal unit there, `fold_angle` is in
 /// radians.

@@ -18,7 +18,9 @@ namespace devseg::pattern {
 
 namespace {
 
-constexpr double rounding_depth = 0.01; // mm: crossings that are less deep do not count
+// Crossings that are less deep do not count: mm, and a share of the size on pieces below 100 mm.
+constexpr double rounding_depth = 0.01;
+constexpr double rounding_share = 1e-4;
 
 // What nobody notices in sewing.
 constexpr double largest_share = 0.002; // of the length
@@ -291,7 +293,9 @@ bool close_path(PiecePath& path, std::vector<double> lengths, Closing how,
 bool close_piece(PatternPiece& piece, const std::vector<std::vector<double>>& targets,
                  const Progress& progress) {
     // Parts that lie side by side may cross by rounding: that is no licence to cross more.
-    const double depth = crosses_itself(piece) ? rounding_depth : 0.0;
+    const double size = plane::box_of(piece.outer.points).sizes().maxCoeff();
+    const double depth =
+        crosses_itself(piece) ? std::min(rounding_depth, rounding_share * size) : 0.0;
     const bool crossed = crosses_itself(piece, depth);
     for (const Closing how :
          {Closing::by_angles, Closing::by_positions, Closing::without_crossing}) {

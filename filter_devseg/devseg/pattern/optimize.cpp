@@ -278,12 +278,13 @@ private:
 FlatLayout read_layout(const Mesh& mesh, const CornerUv& uv) {
     FlatLayout layout;
     layout.charts = atlas::charts_from_uv(mesh, uv);
-    const double scale = atlas::layout_scale(mesh, layout.charts, uv);
-    if (!(scale > 0.0) || !std::isfinite(scale))
+    const atlas::EvenLayout even = atlas::even_layout(mesh, layout.charts, uv);
+    if (!(even.scale > 0.0) || !std::isfinite(even.scale))
         throw InvalidMesh("expected texture coordinates that cover an area, found none; run "
                           "'Charts: Flatten' first");
     for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, layout.charts))
-        layout.flat.push_back(read_chart(uv, scale, std::move(surface)));
+        layout.flat.push_back(read_chart(even.uv, even.scale, std::move(surface)));
+    layout.is_as_given = even.is_as_given;
     return layout;
 }
 

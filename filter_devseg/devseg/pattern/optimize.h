@@ -27,9 +27,10 @@ struct FlatLayout {
     std::vector<flatten::FlatChart> flat; // uv in internal units, positively oriented
     Index overlap_cuts = 0;               // that were made
     Index reattached = 0;                 // small charts that were joined to a neighbour
+    bool is_as_given = true;              // no chart needed another scale
 };
 
-/// The charts of texture coordinates at the one scale of the layout; mirrored ones turned over.
+/// The charts of texture coordinates at one scale (atlas::even_layout); mirrored ones turned over.
 /// Throws InvalidMesh for a layout without area.
 FlatLayout read_layout(const Mesh& mesh, const CornerUv& uv);
 

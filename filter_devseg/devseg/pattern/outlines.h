@@ -1,5 +1,5 @@
-// Charts in the plane of their texture coordinates as pieces on paper: large ones are split, their
-// outlines traced, and the pieces put on the sheet.
+// Charts in the plane of their texture coordinates as pieces on paper: their outlines are traced,
+// and the pieces put on the sheet.
 #pragma once
 
 #include <cstdint>
@@ -37,17 +37,5 @@ std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pie
 /// Moves these pieces above all others, the highest first, each to the lowest free place. The
 /// pieces' boxes must be set.
 void move_above(std::vector<PatternPiece>& pieces, std::vector<std::size_t> moved);
-
-struct SplitCharts {
-    atlas::ChartMap charts;
-    std::vector<std::uint8_t> cut; // 3 #F: 1 on both sides of the new cuts
-    Index too_large = 0;           // charts of one face that are still larger than allowed
-};
-
-/// Cuts every chart whose least box is longer than `longest` (units of `uv`) across its long
-/// direction, into as few parts as fit, along the shortest line of mesh edges within the stretch
-/// that leaves both parts small enough, until none is too large.
-SplitCharts split_large_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
-                               double longest, Progress& progress);
 
 } // namespace devseg::pattern

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "devseg/mesh/mesh.h"
 #include "devseg/pattern/seam.h"
 
 namespace devseg::pattern {
@@ -71,7 +72,6 @@ struct PatternPiece {
     PiecePath outer;                    // counterclockwise; darts and slits are part of it
     std::vector<PiecePath> holes;       // clockwise
     double area = 0.0;                  // mm², without the holes
-    double length_scale = 1.0;          // paper length / true length; 1 = true
     Vec2 label_position = Vec2::Zero(); // the point inside that is farthest from all outlines
     double label_radius = 0.0;          // mm, its distance from them
     Eigen::AlignedBox2d box;            // mm
@@ -113,7 +113,10 @@ struct Pattern {
     double height = 0.0;            // mm
     double mm_per_unit = 1.0;       // as used, from height_mm where that was given
     double hem_length = 0.0;        // mm, of all edges of pieces that are sewn to nothing
-    std::vector<Index> face_piece;  // #F: piece that each face of the mesh lies in, −1 = none
+    Mesh mesh;                      // with the faces cut that cuts of pieces go through; #F faces
+    std::vector<Index> source_face; // #F: face of the mesh that the pattern was made of
+    std::vector<std::uint8_t> seam; // 3 #F: 1 on edges along which paper or cloth is cut
+    std::vector<Index> face_piece;  // #F: piece that each face lies in, −1 = none
     std::vector<Vec2> corner_place; // 3 #F: where the corners of each face lie on the sheet, mm;
                                     // 0 for faces in no piece
     std::vector<std::string> notes; // what the user should know, one sentence each

@@ -14,6 +14,7 @@
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
+#include "devseg/pattern/split.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -34,10 +35,6 @@ constexpr double left_out_share = 1e-3;
 
 // A piece may lose this share of its area to folds before that is reported.
 constexpr double fold_tolerance = 1e-3;
-
-// Larger errors of a piece's lengths are reported. 'Charts: Flatten' keeps all areas; other
-// makers of texture coordinates often do not.
-constexpr double scale_tolerance = 0.01;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -188,20 +185,6 @@ void note_folds(Pattern& pattern, const ChartAreas& areas) {
                                 "the whole area ('Charts: Flatten' folds nothing)");
 }
 
-void note_scale_errors(Pattern& pattern) {
-    const PatternPiece* worst = nullptr;
-    const auto error = [](const PatternPiece& p) { return std::abs(std::log(p.length_scale)); };
-    for (const PatternPiece& piece : pattern.pieces)
-        if (error(piece) > scale_tolerance && (worst == nullptr || error(piece) > error(*worst)))
-            worst = &piece;
-    if (worst != nullptr)
-        pattern.notes.push_back("the charts are not at one common scale in the texture "
-                                "coordinates: lengths of piece " +
-                                worst->name + " are " +
-                                number(std::round(1000.0 * worst->length_scale) / 10.0) +
-                                " % of the true ones ('Charts: Flatten' keeps the scale)");
-}
-
 void note_mismatches(Pattern& pattern) {
     const Seam* worst = nullptr;
     Index count = 0;
@@ -242,42 +225,27 @@ void place_label(PatternPiece& piece) {
     piece.label_radius = point.radius;
 }
 
-// The charts, with those that are too large split.
-SplitCharts limit_charts(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
-                         double mm, ChartAreas& areas, Progress& progress) {
-    SplitCharts result;
-    result.charts = atlas::charts_from_uv(mesh, uv);
-    const double scale = atlas::layout_scale(mesh, result.charts, uv);
-    areas = measure_charts(mesh, uv, result.charts, scale);
-    check_charts(result.charts, areas);
-    if (options.max_piece_mm > 0.0) {
-        result = split_large_charts(mesh, uv, result.charts, options.max_piece_mm / (scale * mm),
-                                    progress);
-        areas = measure_charts(mesh, uv, result.charts, scale);
-        check_charts(result.charts, areas);
-    }
-    return result;
-}
+// The charts at one scale, with those that are too large split.
+struct Layout {
+    SplitLayout split;
+    ChartAreas areas;
+    bool is_as_given = true; // no chart had another scale
+};
 
-// A flattening keeps areas or the lengths of boundaries; a piece is at another scale only if
-// neither holds. Outlines must be as they were traced.
-void set_length_scales(const Mesh& mesh, const ChartAreas& areas, double mm, Pattern& pattern) {
-    const auto error = [](double scale) { return std::abs(std::log(scale)); };
-    for (PatternPiece& piece : pattern.pieces) {
-        const std::size_t c = at(piece.chart);
-        double on_model = 0.0;
-        double on_paper = 0.0;
-        for (Index l = 0; l < piece.path_count(); ++l) {
-            on_paper += plane::perimeter(piece.path(l).points);
-            for (const HalfEdge h : piece.path(l).half_edge)
-                on_model += mm * mesh.edge_length(h);
-        }
-        if (!(areas.surface[c] > 0.0) || !(on_model > 0.0))
-            continue;
-        piece.length_scale = areas.scale * std::sqrt(areas.covered[c] / areas.surface[c]);
-        if (error(on_paper / on_model) < error(piece.length_scale))
-            piece.length_scale = on_paper / on_model;
+Layout read_layout(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options, double mm,
+                   const Progress& progress) {
+    const atlas::ChartMap charts = atlas::charts_from_uv(mesh, uv);
+    const atlas::EvenLayout even = atlas::even_layout(mesh, charts, uv);
+    Layout layout{whole_layout(mesh, even.uv, charts),
+                  measure_charts(mesh, even.uv, charts, even.scale), even.is_as_given};
+    check_charts(charts, layout.areas);
+    if (options.max_piece_mm > 0.0) {
+        SplitLayout& split = layout.split;
+        split_large_charts(options.max_piece_mm / (even.scale * mm), split, progress);
+        layout.areas = measure_charts(split.mesh, split.uv, split.charts, even.scale);
+        check_charts(split.charts, layout.areas);
     }
+    return layout;
 }
 
 // Chains that end at corners, with simple outlines and sides of equal length.
@@ -298,13 +266,9 @@ std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint
 }
 
 // Pieces that overlap, and the parts of split ones, get places of their own.
-void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part,
-              Pattern& pattern) {
+void separate(const std::vector<std::uint8_t>& is_part, Pattern& pattern) {
     std::vector<std::size_t> moved;
     std::vector<PatternPiece>& pieces = pattern.pieces;
-    if (split.too_large > 0)
-        pattern.notes.push_back(std::to_string(split.too_large) +
-                                " faces alone are larger than max_piece_mm and were not split");
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
@@ -318,9 +282,10 @@ void separate(const SplitCharts& split, const std::vector<std::uint8_t>& is_part
                                 "above the layout");
 }
 
-// 1 for every chart that was cut off another one.
-std::vector<std::uint8_t> find_parts(const SplitCharts& split) {
-    std::vector<std::uint8_t> is_part(at(split.charts.count), 0);
+// 1 for every chart that was cut off another one, or has another scale than it was given.
+std::vector<std::uint8_t> find_parts(const Layout& layout) {
+    const SplitLayout& split = layout.split;
+    std::vector<std::uint8_t> is_part(at(split.charts.count), layout.is_as_given ? 0 : 1);
     for (std::size_t h = 0; h < split.cut.size(); ++h)
         if (split.cut[h] != 0)
             is_part[split.charts.chart[h / 3]] = 1;
@@ -375,22 +340,22 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::fold_angle, {"fold_angle", 0.0, 180.0}}};
 }
 
-Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress) {
     check_ranges(options);
-    const double mm = paper_scale(mesh, options);
+    const double mm = paper_scale(whole, options);
     check_coordinates(uv);
 
     auto reading = progress.part("reading charts", 0.05);
-    ChartAreas areas;
-    const SplitCharts split = limit_charts(mesh, uv, options, mm, areas, reading);
+    Layout layout = read_layout(whole, uv, options, mm, reading);
+    SplitLayout& split = layout.split;
+    const Mesh& mesh = split.mesh;
 
     auto tracing = progress.part("tracing outlines", 0.12);
     Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
-    pattern.pieces =
-        trace_pieces(mesh, uv, split.charts, areas.worth_cutting(), areas.scale * mm, tracing);
-    set_length_scales(mesh, areas, mm, pattern);
+    pattern.pieces = trace_pieces(mesh, split.uv, split.charts, layout.areas.worth_cutting(),
+                                  layout.areas.scale * mm, tracing);
     auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, refining);
@@ -401,7 +366,7 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
         place_label(piece);
         placing.check();
     }
-    separate(split, find_parts(split), pattern);
+    separate(find_parts(layout), pattern);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     auto describing = progress.part("describing pieces", 0.6);
@@ -411,10 +376,16 @@ Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions&
     mark_corners(pattern.pieces, chains, options.corner_angle * degrees);
     if (options.curve_mm > 0.0)
         fit_curves(pattern.pieces, chains, options.curve_mm);
-    describe_pieces(mesh, uv, split.charts, options, mm, pattern, describing);
-    note_folds(pattern, areas);
-    note_scale_errors(pattern);
+    describe_pieces(mesh, split.uv, split.charts, options, mm, pattern, describing);
+    note_folds(pattern, layout.areas);
+    if (!layout.is_as_given)
+        pattern.notes.emplace_back(
+            "the charts are not at one scale in the texture coordinates: each "
+            "was brought to the scale of its own area on the model");
     note_mismatches(pattern);
+    pattern.mesh = std::move(split.mesh);
+    pattern.seam = std::move(split.charts.seam);
+    pattern.source_face = std::move(split.source_face);
     return pattern;
 }
 

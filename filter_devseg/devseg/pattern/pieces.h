@@ -25,7 +25,7 @@ struct PatternOptions {
     bool match_seams = true;        // make both sides of each seam equally long
     double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none
     double fold_angle = 22.5;       // degrees: flatter edges are no folds
-    double max_piece_mm = 0.0;      // longest side of a piece; larger ones are split; 0 = no limit
+    double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::longest;
 
@@ -34,12 +34,13 @@ struct PatternOptions {
 
 /// Texture coordinates (3 #F, made by anyone) → pieces. Charts, darts and slits are read off the
 /// coordinates, and so is the layout; all charts get one common scale, at which the areas on paper
-/// and on the model are equal. Charts that are mirrored as a whole, as atlases for painting often
-/// have them, are turned over, so that every piece shows the outside of the model.
+/// and on the model are equal, or each that of its own (atlas::even_layout). Charts that are
+/// mirrored as a whole, as atlases for painting often have them, are turned over, so that every
+/// piece shows the outside of the model.
 ///
 /// Throws InvalidParameter for a scale outside its range, InvalidMesh where the coordinates are
 /// missing, not finite or without area, Cancelled.
-Pattern make_pattern(const Mesh& mesh, const CornerUv& uv, const PatternOptions& options,
+Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress);
 
 } // namespace devseg::pattern

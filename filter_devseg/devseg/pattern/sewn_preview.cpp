@@ -115,8 +115,8 @@ void measure(const Mesh& mesh, double diagonal, SewnPreview& result) {
 SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOptions& options,
                             Progress& progress) {
     check_ranges(options);
-    const double scale = atlas::layout_scale(mesh, atlas::charts_from_uv(mesh, uv), uv);
-    if (!(scale > 0.0))
+    const atlas::EvenLayout even = atlas::even_layout(mesh, atlas::charts_from_uv(mesh, uv), uv);
+    if (!(even.scale > 0.0))
         throw InvalidMesh("expected texture coordinates with an area, found none; run "
                           "'Charts: Flatten' again");
     Eigen::AlignedBox3d box;
@@ -126,7 +126,7 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
         box.extend(mesh.points[v]);
     }
     const double diagonal = box.diagonal().norm();
-    const std::vector<Spring> springs = make_springs(mesh, uv, scale);
+    const std::vector<Spring> springs = make_springs(mesh, even.uv, even.scale);
     const double edge = std::sqrt(mesh.total_area / std::max<Index>(1, mesh.face_count()));
     const double blur = std::pow(smoothing * diagonal / edge, 2.0);
     x = factor_and_solve(spring_matrix(mesh.vertex_count(), springs, blur, 1.0), x);

@@ -158,9 +158,10 @@ HostMesh bumpy_body() {
     return checks::host_of(raw);
 }
 
-// They need a file, and faces that are selected: plush_test and test_plush.py have them.
+// They need a file, and faces that are selected: plush_test and test_plush.py have them. `weld`
+// needs borders that lie on each other, and has a test of its own.
 bool needs_more_than_a_mesh(const std::string& name) {
-    return name == "skeleton_file" || name == "material_borders";
+    return name == "skeleton_file" || name == "material_borders" || name == "weld";
 }
 
 // Parameters that work only together with another value.
@@ -209,6 +210,57 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
             EXPECT_TRUE(changes) << filter.menu_name << ", " << p.name;
         }
     }
+}
+
+// A tube of two halves that share no vertex, with texture coordinates: one island.
+HostMesh split_tube() {
+    const mesh::RawMesh tube = shapes::cylinder_tube(16, 4, 1.0, 2.0);
+    HostMesh host;
+    for (const Triangle& t : tube.faces) {
+        double middle = 0.0;
+        for (const Index v : t)
+            middle += tube.points[v].z() / 3.0;
+        const Index half = middle < 1.0 ? 0 : static_cast<Index>(tube.points.size());
+        host.geometry.faces.push_back({t[0] + half, t[1] + half, t[2] + half});
+        std::array<Vec2, 3> corners;
+        const Vec3& first = tube.points[t[0]];
+        const double start = std::atan2(first.y(), first.x());
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = tube.points[t[k]];
+            const double turn = std::remainder(std::atan2(p.y(), p.x()) - start, 2.0 * pi);
+            corners[k] = {start + turn, p.z()};
+        }
+        host.wedge_uv.push_back(corners);
+    }
+    host.geometry.points = tube.points;
+    host.geometry.points.insert(host.geometry.points.end(), tube.points.begin(), tube.points.end());
+    return host;
+}
+
+TEST(DeclaredFilters, AllJoinBordersThatLieOnEachOtherUnlessToldNotTo) {
+    const HostMesh host = split_tube();
+    for (const FilterDeclaration& filter : filters::filter_table()) {
+        SCOPED_TRACE(filter.menu_name);
+        ASSERT_EQ(filter.parameters.back().name, "weld");
+        const auto joined = [&](const ParameterValues& values) {
+            const HostResult r = run_or_refuse(filter, host, values);
+            return std::any_of(r.notes.begin(), r.notes.end(), [](const std::string& note) {
+                return contains(note, "16 vertices were joined with others at the same place");
+            });
+        };
+        EXPECT_TRUE(joined({}));
+        EXPECT_FALSE(joined({{"weld", -1.0}}));
+    }
+}
+
+TEST(DeclaredFilters, WhatIsNotJoinedStaysASeamForTheNextFilter) {
+    HostMesh host = split_tube();
+    EXPECT_EQ(checks::value(checks::run("Charts: Cut to Disks", host), "charts_number"), 1);
+    host.wedge_uv.clear();
+    const HostResult apart = checks::run("Charts: Cut to Disks", host, {{"weld", -1.0}});
+    EXPECT_EQ(checks::value(apart, "charts_number"), 2);
+    checks::take_charts(host, apart);
+    EXPECT_EQ(checks::value(checks::run("Charts: Flatten", host), "charts_number"), 2);
 }
 
 TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {

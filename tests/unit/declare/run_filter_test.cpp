@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/base/errors.h"
 #include "devseg/declare/filter.h"
 #include "unit/checks.h"
 #include "unit/host_checks.h"
@@ -182,6 +183,51 @@ TEST(RunFilter, LengthsAreInModelUnits) {
     EXPECT_NEAR(value(r, "cut_length"), 3.0 * 37.0, 1e-9);
     take_charts(host, r);
     EXPECT_NEAR(value(run("Charts: Measure Segmentation", host), "seam_length"), 3.0 * 37.0, 1e-9);
+}
+
+TEST(RunFilter, MoreChartsThanFacesAreAsManyAsFaces) {
+    mesh::RawMesh raw = shapes::tetrahedron();
+    raw.faces.push_back(raw.faces.front()); // left out by the gate
+    const HostMesh host = host_of(raw);
+    for (const char* method : {"Segmentation: D-Charts", "Segmentation: t-flooding",
+                               "Segmentation: Variational Shape Approximation",
+                               "Segmentation: Multi-Chart Geometry Images",
+                               "Segmentation: Papercraft with Creases and Slits"}) {
+        SCOPED_TRACE(method);
+        const HostResult own = run(method, host);
+        EXPECT_EQ(own.notes.size(), 1U); // of the double face
+        const HostResult asked = run(method, host, {{"charts_number", 8}});
+        EXPECT_EQ(asked.chart_id, own.chart_id);
+        ASSERT_EQ(asked.notes.size(), 2U);
+        EXPECT_TRUE(contains(asked.notes[1], "8 charts were asked for, and the mesh has 4 faces"));
+        EXPECT_THROW(run(method, host, {{"charts_number", -1}}), InvalidParameter);
+    }
+}
+
+TEST(RunFilter, VerticesThatWereJoinedMoveTogether) {
+    // A dome of flat-shaded triangles: all copies of a vertex stay at one place.
+    const mesh::RawMesh dome = shapes::hemisphere(10, 4);
+    HostMesh host;
+    for (const Triangle& t : dome.faces) {
+        const Index first = static_cast<Index>(host.geometry.points.size());
+        for (const Index v : t)
+            host.geometry.points.push_back(dome.points[v]);
+        host.geometry.faces.push_back({first, first + 1, first + 2});
+    }
+    const HostResult r = run("Charts: Deform to Exact Developability", host,
+                             {{"keep_unfinished", true}, {"max_iterations", 3}});
+    ASSERT_EQ(r.points.size(), host.geometry.points.size());
+    std::vector<Vec3> place(dome.points.size(), Vec3::Constant(infinite));
+    double moved = 0.0;
+    for (std::size_t f = 0; f < dome.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            Vec3& one = place[at(dome.faces[f][k])];
+            const Vec3& p = r.points[3 * f + k];
+            one = std::isinf(one.x()) ? p : one;
+            EXPECT_LT((one - p).norm(), 1e-12);
+            moved = std::max(moved, (p - host.geometry.points[3 * f + k]).norm());
+        }
+    EXPECT_GT(moved, 1e-3);
 }
 
 TEST(RunFilter, FacesThatCoordinatesCannotExpressAreReported) {

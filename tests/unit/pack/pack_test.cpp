@@ -310,6 +310,31 @@ TEST(Pack, ThinChartsTakeNoMoreTimeAndMemoryThanOthers) {
     }
 }
 
+TEST(Pack, RowsAreAsChartsStandAndFillMostOfASquare) {
+    Random random(11);
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 300; ++i)
+        shapes.push_back(rectangle(random.uniform(0.5, 2.0), random.uniform(0.5, 3.0)));
+    std::vector<PackItem> items;
+    double area = 0.0;
+    for (const Shape& shape : shapes) {
+        items.push_back({&shape.faces, &shape.points});
+        area += shape.points[2].prod();
+    }
+    const PackResult rows = pack_rows(items, 0.01);
+    EXPECT_GT(area, 0.75 * rows.side * rows.side);
+    std::vector<Eigen::AlignedBox2d> boxes;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        EXPECT_EQ(rows.placements[i].cosine, 1.0);
+        boxes.push_back(plane::box_of(shapes[i].points, rows.placements[i]));
+        EXPECT_GT(boxes[i].min().minCoeff(), 0.0);
+        EXPECT_LT(boxes[i].max().maxCoeff(), rows.side);
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_GE(boxes[i].exteriorDistance(boxes[j]), 0.01 * 2.5);
+    }
+    EXPECT_EQ(pack_rows({}, 0.01).side, 0.0);
+}
+
 TEST(Pack, NothingNeedsNoRoom) {
     EXPECT_TRUE(pack({}, PackOptions{}).placements.empty());
 }

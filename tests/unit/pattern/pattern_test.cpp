@@ -136,8 +136,9 @@ TEST(Seams, EverySideOfFlattenedChartsIsInOneSeam) {
 TEST(Seams, SidesOfUnequalLengthAreMatched) {
     Cloth cloth;
     const auto place = [](const Vec3& p, const Vec3& middle) {
-        const double stretch = middle.x() > 40.0 ? 1.05 : 1.0; // the right piece is 5 % higher
-        return Vec2(p.x() + (middle.x() > 40.0 ? 5.0 : 0.0), stretch * p.y());
+        // The right piece is 5 % higher than the left one, and both have their area.
+        const double stretch = std::pow(1.05, middle.x() > 40.0 ? 0.5 : -0.5);
+        return Vec2(p.x() / stretch + (middle.x() > 40.0 ? 7.0 : 0.0), stretch * p.y());
     };
     cloth.add(shapes::grid(8, 8, 80.0, 80.0), place);
     PatternOptions options;
@@ -307,6 +308,61 @@ TEST(Shapes, LargePiecesAreSplitAcrossTheirLongSideAlongAStraightLine) {
         EXPECT_GE(p, 0);
     EXPECT_TRUE(overlapping_pieces(pattern.pieces).empty());
     expect_every_side_once(pattern);
+}
+
+// A tube of quads as high as the tube, in two charts that are too high.
+TEST(Shapes, FacesAreCutWhereTheyAreLongerThanPieces) {
+    Cloth cloth;
+    const mesh::RawMesh tube = shapes::cylinder_tube(24, 1, 50.0, 200.0);
+    cloth.add(tube, [](const Vec3& p, const Vec3& middle) {
+        const double turn = std::atan2(middle.y(), middle.x());
+        const double own = turn + std::remainder(std::atan2(p.y(), p.x()) - turn, 2.0 * pi);
+        const double side = 2.0 * 50.0 * std::sin(pi / 24.0); // of the polygon that the tube is
+        return Vec2(own * 24.0 / (2.0 * pi) * side + (turn > 0.0 ? 20.0 : 0.0), p.z());
+    });
+    const Pattern whole = cloth.pattern();
+    ASSERT_EQ(whole.pieces.size(), 2U);
+    PatternOptions options;
+    options.max_piece_mm = 160.0;
+    const Pattern pattern = cloth.pattern(options);
+    ASSERT_EQ(pattern.pieces.size(), 4U);
+    double area = 0.0;
+    for (const PatternPiece& piece : pattern.pieces) {
+        EXPECT_LE(piece.long_side, 160.0);
+        EXPECT_NEAR(piece.box.sizes().minCoeff(), 100.0, 1e-6);
+        area += piece.area;
+    }
+    EXPECT_NEAR(area, whole.pieces[0].area + whole.pieces[1].area, 1e-6);
+    EXPECT_EQ(pattern.seams.size(), whole.seams.size() + 4U); // two cuts, two seams cut in two
+    for (const Seam& seam : pattern.seams)
+        EXPECT_NEAR(seam.mismatch(), 0.0, 1e-9);
+    EXPECT_TRUE(overlapping_pieces(pattern.pieces).empty());
+    expect_every_side_once(pattern);
+    // The mesh with its new vertices is one as the core has it, and knows where its faces are from.
+    EXPECT_TRUE(checks::is_valid(pattern.mesh));
+    EXPECT_NEAR(pattern.mesh.total_area, cloth.mesh().total_area, 1e-9);
+    ASSERT_EQ(pattern.source_face.size(), pattern.mesh.faces.size());
+    for (std::size_t f = 0; f < pattern.source_face.size(); ++f)
+        EXPECT_NEAR(
+            pattern.mesh.face_normals[f].dot(cloth.mesh().face_normals[pattern.source_face[f]]),
+            1.0, 1e-9);
+    options.max_piece_mm = 0.5;
+    EXPECT_TRUE(
+        checks::contains(checks::error_of<InvalidParameter>([&] { cloth.pattern(options); }),
+                         "at most 1000 cuts"));
+}
+
+TEST(Shapes, NoLimitMakesMorePiecesThatAreNoShorter) {
+    Cloth cloth;
+    cloth.add(shapes::grid(5, 1, 10.0, 200.0), moved(Vec2(0, 0)));
+    PatternOptions options;
+    for (const double limit : {150.0, 90.0, 41.0, 7.0}) {
+        options.max_piece_mm = limit;
+        const Pattern pattern = cloth.pattern(options);
+        EXPECT_LE(pattern.pieces.size(), std::ceil(200.1 / limit) * std::ceil(10.0 / limit));
+        for (const PatternPiece& piece : pattern.pieces)
+            EXPECT_LE(piece.long_side, limit * (1.0 + 1e-5));
+    }
 }
 
 TEST(Shapes, StackedPiecesGetPlacesOfTheirOwn) {

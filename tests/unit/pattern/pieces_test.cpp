@@ -146,7 +146,6 @@ TEST(Pieces, FlatSheetKeepsItsSizeAtAnyScaleOfTheTexture) {
         EXPECT_NEAR(length_of(piece.outer.points), 200.0, 1e-7);
         EXPECT_NE(piece.outer.points.front(), piece.outer.points.back());
         EXPECT_TRUE(piece.holes.empty());
-        EXPECT_NEAR(piece.length_scale, 1.0, 1e-9);
         EXPECT_NEAR(piece.label_radius, 20.0, 0.5);
         EXPECT_TRUE(pattern.notes.empty());
     }
@@ -319,31 +318,62 @@ TEST(Pieces, CollapsedChartsAreCountedAndNamed) {
     }
 }
 
-TEST(Pieces, ClosedSurfaceWithoutSeamsIsRefused) {
+TEST(Pieces, AClosedSurfaceWithoutSeamsFallsIntoFrontAndBack) {
     Model model;
-    const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0, 0, 1);
+    const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0.3, 0.3, 1);
     for (const auto& [p, q, r] :
          {std::tie(a, c, b), std::tie(a, b, d), std::tie(b, c, d), std::tie(a, d, c)})
         model.add(p, q, r, flat);
-    EXPECT_THROW(pattern_of(model), InvalidMesh);
+    const Pattern pattern = pattern_of(model);
+    EXPECT_EQ(pattern.pieces.size(), 2U);
+    EXPECT_EQ(pattern.seams.size(), 3U);
 }
 
 TEST(Pieces, FoldsAreReported) {
-    // The last square of the L is folded back onto the first one, but for a tenth.
+    // The last square of the L is folded back onto the first one by little.
     const Model model = letter_l(
-        Vec2::Zero(), [](const Vec3& p) { return Vec2(p.x() > 1.5 ? 0.1 : p.x(), p.y()); });
+        Vec2::Zero(), [](const Vec3& p) { return Vec2(p.x() > 1.5 ? 0.95 : p.x(), p.y()); });
     const Pattern pattern = pattern_of(model);
     ASSERT_FALSE(pattern.notes.empty());
     EXPECT_TRUE(contains(pattern.notes[0], "1 of 1 pieces folds over")) << pattern.notes[0];
 }
 
-TEST(Pieces, UnequalScalesAreReported) {
-    Model model = letter_l(Vec2::Zero(), flat);
-    append(model, letter_l(Vec2(9, 0), [](const Vec3& p) { return Vec2(2.0 * flat(p)); }));
-    const Pattern pattern = pattern_of(model);
-    ASSERT_EQ(pattern.notes.size(), 1u);
-    EXPECT_TRUE(contains(pattern.notes[0], "piece P01")) << pattern.notes[0];
-    EXPECT_NEAR(pattern.pieces[1].length_scale / pattern.pieces[0].length_scale, 2.0, 1e-9);
+TEST(Pieces, WhatIsMirroredInTheTextureIsAPieceOfItsOwn) {
+    // The last square of the L lies on the first one: the two sides of a model share a texture.
+    const Model model = letter_l(
+        Vec2::Zero(), [](const Vec3& p) { return Vec2(p.x() > 1.5 ? 0.0 : p.x(), p.y()); });
+    PatternOptions options;
+    options.mm_per_unit = 10.0;
+    const Pattern pattern = pattern_of(model, options);
+    ASSERT_EQ(pattern.pieces.size(), 2U);
+    EXPECT_NEAR(pattern.pieces[0].area, 200.0, 1e-6);
+    EXPECT_NEAR(pattern.pieces[1].area, 100.0, 1e-6);
+    ASSERT_EQ(pattern.seams.size(), 1U);
+    EXPECT_NEAR(pattern.seams[0].sides[0].length, 10.0, 1e-6);
+    EXPECT_FALSE(pattern.pieces[0].box.intersects(pattern.pieces[1].box));
+}
+
+TEST(Pieces, IslandsAtOtherScalesAreBroughtToThatOfTheirOwnArea) {
+    // Six strips in a row, one beside the other, each at a scale of its own in the texture.
+    Model model;
+    for (int i = 0; i < 6; ++i)
+        append(model, letter_l(Vec2(3.0 * i, 0), [i](const Vec3& p) {
+                   return Vec2((1.0 + 0.2 * i) * (flat(p) - Vec2(3.0 * i, 0)) + Vec2(5.0 * i, 0));
+               }));
+    PatternOptions options;
+    options.mm_per_unit = 10.0;
+    const Pattern pattern = pattern_of(model, options);
+    ASSERT_EQ(pattern.pieces.size(), 6U);
+    for (const PatternPiece& piece : pattern.pieces) {
+        EXPECT_NEAR(piece.area, 300.0, 1e-6);
+        EXPECT_NEAR(piece.long_side, pattern.pieces[0].long_side, 1e-6);
+        for (const PatternPiece& other : pattern.pieces)
+            if (&other != &piece) {
+                EXPECT_FALSE(piece.box.intersects(other.box));
+            }
+    }
+    ASSERT_EQ(pattern.notes.size(), 1U);
+    EXPECT_TRUE(contains(pattern.notes[0], "not at one scale")) << pattern.notes[0];
 }
 
 TEST(Pieces, CancelIsHonoured) {

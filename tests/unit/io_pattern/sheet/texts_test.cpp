@@ -49,7 +49,7 @@ TEST(Texts, WithoutRoomThereAreNoneAndTheLayoutSaysSo) {
     EXPECT_EQ(number_count(layout), 0U);
     EXPECT_EQ(layout.left_out.seams, (std::vector<Index>{0}));
     EXPECT_EQ(layout.left_out.pieces, (std::vector<Index>{0, 1}));
-    EXPECT_EQ(layout.notes.size(), 2U);
+    EXPECT_EQ(layout_notes(samples::two_pieces().pattern(), layout).size(), 2U);
 }
 
 SheetPiece strip(double width, double height) {
