@@ -8,8 +8,6 @@ namespace {
 
 struct Tuning {
     double beside_vertex = 0.02; // of an edge: where curves arrive that have just passed its end
-    double apart = 0.01;         // of an edge: least distance of two curves on it
-    double inside = 0.05;        // barycentric: how far junctions stay from the edges of their face
 };
 constexpr Tuning tuning;
 
@@ -183,24 +181,20 @@ bool Network::pass(Index first, Index last, bool left) {
     return true;
 }
 
-void Network::keep_apart(HalfEdge h) {
-    const HalfEdge lower = std::min<Index>(h, mesh.twin[h]);
-    const Index lowest = lower < 0 ? -1 : lowest_[lower];
-    if (lowest < 0 || crossings[lowest].above < 0)
-        return;
-    const std::vector<Index> list = on_edge(lower);
-    const double gap = std::min(tuning.apart, 0.5 / static_cast<double>(list.size() + 1));
+void Network::keep_apart(HalfEdge h, double gap) {
+    const std::vector<Index> list = on_edge(h);
+    gap = std::min(gap, 0.5 / static_cast<double>(list.size() + 1));
     std::vector<double> p;
     double least = 0.0;
     for (const Index c : list) {
-        p.push_back(std::max(position(c, lower), least + gap));
+        p.push_back(std::max(position(c, h), least + gap));
         least = p.back();
     }
     double most = 1.0;
     for (std::size_t i = list.size(); i-- > 0;) {
         p[i] = most = std::min(p[i], most - gap);
         Crossing& c = crossings[list[i]];
-        c.t = c.edge == lower ? p[i] : 1.0 - p[i];
+        c.t = c.edge == h ? p[i] : 1.0 - p[i];
     }
 }
 
@@ -367,7 +361,7 @@ bool Network::pin(Index node, Index corner) {
     return true;
 }
 
-void Network::keep_inside(Index node) {
+void Network::keep_inside(Index node, double margin) {
     Node& junction = nodes[node];
     const HalfEdge e = half_edge_of(junction.face, 0);
     // Positions as chord_end counts them, in barycentric coordinates (all that matters is affine).
@@ -383,7 +377,7 @@ void Network::keep_inside(Index node) {
     const std::vector<Spoke> spokes = spokes_of(node, e);
     for (const Spoke& s : spokes)
         center += place(s.position) / static_cast<double>(spokes.size());
-    junction.weights = junction.weights.cwiseMax(tuning.inside);
+    junction.weights = junction.weights.cwiseMax(margin);
     junction.weights /= junction.weights.sum();
     const HalfEdge sides[] = {e, Mesh::next(e), Mesh::previous(e)};
     for (const HalfEdge h : sides)

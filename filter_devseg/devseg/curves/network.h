@@ -81,6 +81,11 @@ public:
     /// No other crossing lies between this one and the end of its edge.
     bool is_nearest(Index crossing, bool left) const;
 
+    /// Other crossings are on its edge.
+    bool has_company(Index crossing) const {
+        return crossings[crossing].above >= 0 || crossings[crossing].below >= 0;
+    }
+
     /// Takes the curve to the other side of a vertex. `first` to `last` are all its crossings on
     /// the edges of the vertex, one after the other. False where something is in the way: then
     /// nothing has changed.
@@ -94,11 +99,13 @@ public:
     /// way: then nothing has changed.
     bool pin(Index node, Index corner);
 
-    /// Spreads crossings of an edge that are too close or out of order.
-    void keep_apart(HalfEdge h);
+    /// Spreads crossings of an edge that are out of order or nearer to each other and to its ends
+    /// than `gap`, a share of the edge; less where there is not so much room.
+    void keep_apart(HalfEdge h, double gap);
 
-    /// Moves a junction back in between the curves that pass through its face.
-    void keep_inside(Index node);
+    /// Moves a junction back in between the curves that pass through its face, with barycentric
+    /// coordinates of at least `margin`.
+    void keep_inside(Index node, double margin);
 
     /// The first crossing of a curve from one of its ends, and the one after another.
     Index from_end(const Curve& curve, bool start) const { return start ? curve.first : curve.last; }

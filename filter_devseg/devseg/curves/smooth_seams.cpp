@@ -13,6 +13,7 @@ namespace {
 
 struct Tuning {
     int attempts = 6;          // each keeps the curves on their edges that failed before
+    double crease = 4.0;       // scales: shorter creases are bumps, and hold nothing
     double least_edges = 1.0;  // mean edges of the seams: the least scale, below which edges show
 };
 constexpr Tuning tuning;
@@ -39,7 +40,7 @@ double length_of_seams(const Mesh& mesh, const atlas::ChartMap& charts) {
     return length;
 }
 
-// Seam edges on creases, as far as these are longer than the waves that go: others are bumps.
+// Seam edges on creases that are long enough.
 std::vector<std::uint8_t> crease_edges(const Mesh& mesh, const atlas::ChartMap& charts,
                                        double angle, double scale) {
     std::vector<std::uint8_t> held(mesh.twin.size(), 0);
@@ -56,7 +57,7 @@ std::vector<std::uint8_t> crease_edges(const Mesh& mesh, const atlas::ChartMap& 
         if (held[h] != 0)
             length[parts.find(mesh.origin(h))] += 0.5 * mesh.edge_length(h);
     for (const HalfEdge h : mesh.all_half_edges())
-        if (held[h] != 0 && length[parts.find(mesh.origin(h))] < scale)
+        if (held[h] != 0 && length[parts.find(mesh.origin(h))] < tuning.crease * scale)
             held[h] = 0;
     return held;
 }

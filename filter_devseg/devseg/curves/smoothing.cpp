@@ -13,13 +13,13 @@ namespace {
 struct Tuning {
     int rounds = 24;               // curves pass at most one row of vertices in each
     double samples = 5.0;          // of the smooth curve, in one scale
-    double stiffness = 0.5;        // of bending against length
+    double stiffness = 0.5;        // scales: waves of 2 π of these shrink by a factor of e
     double straight = 50.0;        // degrees: curves that turn by less at a junction go on there
     double tangent = 1.0;          // scales: over which the direction at a junction is taken
-    double balance = 0.15;         // scales: step of a junction where no curve goes on
     double farthest_end = 0.999;   // of an edge: how near crossings come to its ends
     double margin = 6.0;           // scales: how far closed curves are smoothed beyond their ends
-    double inside = 0.02;          // barycentric: how near junctions come to the edges of a face
+    double apart = 0.01;           // of an edge: how near curves come to each other on it
+    double inside = 0.05;          // barycentric: how near junctions come to the edges of a face
 };
 constexpr Tuning tuning;
 
@@ -29,11 +29,10 @@ struct Chain {
     bool closed = false;
 };
 
-// Σ a unit vector or a place in barycentric coordinates, of all chains at a junction.
+// Where the chains through a junction want it.
 struct Pull {
-    Vec3 target = Vec3::Zero(); // sum of places, in barycentric coordinates
+    Vec3 target = Vec3::Zero(); // sum of places, in barycentric coordinates of its face
     int count = 0;
-    Vec3 balance = Vec3::Zero(); // sum of directions, the same
 };
 
 Vec3 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
@@ -44,32 +43,27 @@ Vec3 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
     return {1.0 - second - third, second, third};
 }
 
-// Solves (1 + a T + b T²) y = x with T = tridiagonal(−1, 2, −1), in place: T² of ends without
-// curvature. By L D Lᵀ of a band of two.
-void solve_band(std::vector<Vec2>& x, double a, double b) {
+// Solves (1 + b T²) y = x with T = tridiagonal(−1, 2, −1), in place; the ends have no curvature.
+// By L D Lᵀ of a band of two.
+void solve_bending(std::vector<Vec2>& x, double b) {
     const std::size_t n = x.size();
     std::vector<double> d(n);
     std::vector<double> l1(n, 0.0);
     std::vector<double> l2(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
         const bool at_end = i == 0 || i + 1 == n;
-        double diagonal = 1.0 + 2.0 * a + (at_end ? 5.0 : 6.0) * b;
-        double one = i >= 1 ? -a - 4.0 * b : 0.0;
-        const double two = i >= 2 ? b : 0.0;
+        d[i] = 1.0 + (at_end ? 5.0 : 6.0) * b;
         if (i >= 2) {
-            l2[i] = two / d[i - 2];
-            one -= l2[i] * d[i - 2] * l1[i - 1];
-            diagonal -= l2[i] * l2[i] * d[i - 2];
+            l2[i] = b / d[i - 2];
+            d[i] -= l2[i] * l2[i] * d[i - 2];
+            x[i] -= l2[i] * x[i - 2];
         }
         if (i >= 1) {
-            l1[i] = one / d[i - 1];
-            diagonal -= l1[i] * l1[i] * d[i - 1];
-        }
-        d[i] = diagonal;
-        if (i >= 1)
+            const double other = i >= 2 ? l2[i] * d[i - 2] * l1[i - 1] : 0.0;
+            l1[i] = (-4.0 * b - other) / d[i - 1];
+            d[i] -= l1[i] * l1[i] * d[i - 1];
             x[i] -= l1[i] * x[i - 1];
-        if (i >= 2)
-            x[i] -= l2[i] * x[i - 2];
+        }
     }
     for (std::size_t i = n; i-- > 0;) {
         x[i] /= d[i];
@@ -114,9 +108,7 @@ SmoothCurve smooth_curve(const std::vector<FlatStop>& stops, double scale) {
     for (int k = 1; k < pieces; ++k)
         inner.push_back(curve.samples[at(k)] - from - slope * k);
     const double units = scale / curve.step;
-    const double time = 0.5 * units * units / tuning.rounds;
-    const double bending = std::pow(tuning.stiffness * units, 4.0) / tuning.rounds;
-    solve_band(inner, time, bending);
+    solve_bending(inner, std::pow(tuning.stiffness * units, 4.0) / tuning.rounds);
     for (int k = 1; k < pieces; ++k)
         curve.samples[at(k)] = inner[at(k - 1)] + from + slope * k;
     return curve;
@@ -169,13 +161,11 @@ private:
     std::vector<Stop> stops_of(const Chain& chain) const;
     void add_stops(Index curve, bool forwards, std::vector<Stop>& stops) const;
     void make_chains();
-    Vec2 direction(const std::vector<FlatStop>& stops, bool start) const;
     void move_chain(const Chain& chain);
     void slide(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
                const SmoothCurve& curve, std::size_t first, std::size_t end);
-    void pass_vertices(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
-                       const std::vector<double>& met, bool left, std::size_t first,
-                       std::size_t end);
+    void pass_vertices(const std::vector<Stop>& stops, const std::vector<double>& met, bool left,
+                       std::size_t first, std::size_t end);
     void pull_junctions(const Chain& chain, const std::vector<Stop>& stops,
                         const std::vector<FlatStop>& flat, const SmoothCurve& curve,
                         std::size_t first, std::size_t end);
@@ -185,7 +175,6 @@ private:
     Network& net_;
     double scale_;
     std::vector<Chain> chains_;
-    std::vector<std::uint8_t> goes_on_; // nodes: a curve goes on there
     std::vector<Pull> pulls_;
 };
 
@@ -213,21 +202,6 @@ std::vector<Stop> Smoother::stops_of(const Chain& chain) const {
             {-1, forwards ? net_.curves[curve].end : net_.curves[curve].start, forwards, {}});
     }
     return stops;
-}
-
-// The direction at an end of the strip, inwards.
-Vec2 Smoother::direction(const std::vector<FlatStop>& stops, bool start) const {
-    const FlatStop& end = start ? stops.front() : stops.back();
-    Vec2 to = end.point;
-    for (std::size_t i = 0; i < stops.size(); ++i) {
-        const FlatStop& stop = start ? stops[i] : stops[stops.size() - 1 - i];
-        const double away = std::abs(stop.along - end.along);
-        if (away > tuning.tangent * scale_ && i > 1)
-            break;
-        to = stop.point;
-    }
-    const double length = (to - end.point).norm();
-    return length > 0.0 ? Vec2((to - end.point) / length) : Vec2::Zero();
 }
 
 // At each junction the two curves that turn least go on into each other.
@@ -259,7 +233,6 @@ void Smoother::make_chains() {
     }
     std::vector<std::array<std::pair<Index, bool>, 2>> on(
         net_.curves.size(), {std::pair<Index, bool>{-1, true}, std::pair<Index, bool>{-1, true}});
-    goes_on_.assign(net_.nodes.size(), 0);
     const double least = -std::cos(tuning.straight * degrees);
     for (std::size_t node = 0; node < leaves.size(); ++node) {
         if (!net_.nodes[node].is_junction())
@@ -280,7 +253,6 @@ void Smoother::make_chains() {
             const Leaf b = here[pair.second];
             on[a.curve][a.start ? 0 : 1] = {b.curve, b.start};
             on[b.curve][b.start ? 0 : 1] = {a.curve, a.start};
-            goes_on_[node] = 1;
             here.erase(here.begin() + static_cast<std::ptrdiff_t>(pair.second));
             here.erase(here.begin() + static_cast<std::ptrdiff_t>(pair.first));
         }
@@ -358,16 +330,15 @@ void Smoother::slide(const std::vector<Stop>& stops, const std::vector<FlatStop>
         crossing.t = stops[i].forwards ? kept : 1.0 - kept;
     }
     for (std::size_t i = first; i < end; ++i)
-        if (stops[i].crossing >= 0)
-            net_.keep_apart(stops[i].leaving);
+        if (stops[i].crossing >= 0 && net_.has_company(stops[i].crossing))
+            net_.keep_apart(stops[i].leaving, tuning.apart);
     for (const bool left : {true, false})
-        pass_vertices(stops, flat, met, left, first, end);
+        pass_vertices(stops, met, left, first, end);
 }
 
 // A vertex is passed where the smooth curve meets the lines of its edges beyond it.
-void Smoother::pass_vertices(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
-                             const std::vector<double>& met, bool left, std::size_t first,
-                             std::size_t end) {
+void Smoother::pass_vertices(const std::vector<Stop>& stops, const std::vector<double>& met,
+                             bool left, std::size_t first, std::size_t end) {
     const auto vertex = [&](std::size_t i) {
         return left ? net_.mesh.target(stops[i].leaving) : net_.mesh.origin(stops[i].leaving);
     };
@@ -381,10 +352,8 @@ void Smoother::pass_vertices(const std::vector<Stop>& stops, const std::vector<F
         }
         const Vertex w = vertex(i);
         std::size_t last = i;
-        double beyond = 0.0; // Σ how far, weighted by the inverse of the edges' lengths
-        const auto weigh = [&](std::size_t k) {
-            beyond += left ? met[k] - 1.0 : -met[k];
-        };
+        double beyond = 0.0; // sum over the edges: how far, as shares of them
+        const auto weigh = [&](std::size_t k) { beyond += left ? met[k] - 1.0 : -met[k]; };
         weigh(i);
         while (last + 1 < end && is_there(last + 1) && vertex(last + 1) == w) {
             ++last;
@@ -407,7 +376,6 @@ void Smoother::pass_vertices(const std::vector<Stop>& stops, const std::vector<F
         }
         i = last + 1;
     }
-    (void)flat;
 }
 
 void Smoother::pull_junctions(const Chain& chain, const std::vector<Stop>& stops,
@@ -416,16 +384,11 @@ void Smoother::pull_junctions(const Chain& chain, const std::vector<Stop>& stops
     for (std::size_t i = first; i < end; ++i) {
         if (stops[i].node < 0 || !net_.nodes[stops[i].node].is_junction())
             continue;
+        if (!chain.closed && (i == 0 || i + 1 == stops.size()))
+            continue; // an end
         Pull& pull = pulls_[stops[i].node];
-        const bool at_end = !chain.closed && (i == 0 || i + 1 == stops.size());
-        if (!at_end) {
-            pull.target += barycentric(flat[i].corners, curve.place(flat[i].along));
-            ++pull.count;
-        } else {
-            const Vec2 step = tuning.balance * scale_ * direction(flat, i == 0);
-            pull.balance += barycentric(flat[i].corners, flat[i].point + step) -
-                            net_.nodes[stops[i].node].weights;
-        }
+        pull.target += barycentric(flat[i].corners, curve.place(flat[i].along));
+        ++pull.count;
     }
 }
 
@@ -436,9 +399,7 @@ void Smoother::move_junctions() {
         const Pull& pull = pulls_[node];
         if (pull.count > 0)
             move_junction(node, pull.target / pull.count);
-        else if (goes_on_[node] == 0)
-            move_junction(node, net_.nodes[node].weights + pull.balance);
-        net_.keep_inside(node);
+        net_.keep_inside(node, tuning.inside);
     }
 }
 

@@ -14,10 +14,13 @@ namespace {
 
 struct Tuning {
     double snap = 0.05;         // of an edge: crossings nearer to its ends move there
-    double snap_needle = 0.25;  // the same in faces where needles would be
+    double snap_needle = 0.1;   // the same in faces where needles would be, more in each round
     double pin = 0.85;          // barycentric: junctions nearer to a corner move there
     double needle = 2.5;        // degrees: smaller angles are avoided
-    int needle_rounds = 6;
+    double worst_needle = 2.0;  // degrees: curves with smaller angles beside them fail
+    double apart = 0.12;        // of an edge: distance from others on it beside needles
+    double inside = 0.15;       // barycentric: the same of junctions from the edges of a face
+    int needle_rounds = 5;
 };
 constexpr Tuning tuning;
 
@@ -44,8 +47,11 @@ public:
         for (int round = 0;; ++round) {
             collect_pieces();
             cut_faces();
-            if (round == tuning.needle_rounds || !snap_needles())
+            if (round == tuning.needle_rounds) {
+                fail_needles();
                 break;
+            }
+            mend_needles(tuning.snap_needle * (round + 1));
         }
         SplitMesh result;
         if (failed_.empty())
@@ -100,12 +106,10 @@ private:
         return left ? 1.0 - net_.crossings[c].t : net_.crossings[c].t;
     }
 
-    bool snap_listed(std::vector<std::tuple<double, Index, bool>> near) {
+    void snap_listed(std::vector<std::tuple<double, Index, bool>> near) {
         std::sort(near.begin(), near.end());
-        bool any = false;
-        for (const auto& [distance, c, left] : near)
-            any = snap(c, left) || any;
-        return any;
+        for (const auto& place : near)
+            snap(std::get<1>(place), std::get<2>(place));
     }
 
     void snap_all(double nearest) {
@@ -119,9 +123,7 @@ private:
 
     Index point_of_node(Index node) const {
         const Node& n = net_.nodes[node];
-        return n.is_junction() ? mesh_.vertex_count() +
-                                     static_cast<Index>(net_.crossings.size()) + node
-                               : Index{n.vertex};
+        return n.is_junction() ? first_inside() + node : Index{n.vertex};
     }
     Index point_of_crossing(Index c) const {
         return pinned_[c] >= 0 ? Index{pinned_[c]} : mesh_.vertex_count() + c;
@@ -141,6 +143,7 @@ private:
     void collect_pieces() {
         pieces_.clear();
         lines_.clear();
+        failed_.clear();
         for (Index number = 0; number < static_cast<Index>(net_.curves.size()); ++number) {
             const Curve& curve = net_.curves[number];
             if (curve.held) {
@@ -200,6 +203,7 @@ private:
         faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
         splits_.clear();
         angles_.clear();
+        unsound_.clear();
         std::size_t line = 0;
         for (const Face f : faces) {
             while (line < lines_.size() && std::get<0>(lines_[line]) < f)
@@ -243,11 +247,10 @@ private:
                 add_point(split, cut, point_of_crossing(c), weights);
             }
         }
-        const Index first_inside = mesh_.vertex_count() + static_cast<Index>(net_.crossings.size());
         const auto local = [&](Index point) {
             const auto found = std::find(split.points.begin(), split.points.end(), point);
-            if (found == split.points.end() && point >= first_inside)
-                add_point(split, cut, point, net_.nodes[point - first_inside].weights);
+            if (found == split.points.end() && point >= first_inside())
+                add_point(split, cut, point, net_.nodes[point - first_inside()].weights);
             else if (found == split.points.end())
                 return Index{-1};
             else
@@ -294,23 +297,45 @@ private:
         return least;
     }
 
-    // Where a part of a face is a needle, the curve goes through a vertex instead.
-    bool snap_needles() {
+    bool is_needle(std::size_t i, double least) const {
+        return angles_[i] < std::min(least * degrees, 0.9 * old_angle(splits_[i].face));
+    }
+
+    // Where a part of a face is a needle, the curve goes through a vertex instead, or farther from
+    // vertices and other curves where it may not.
+    void mend_needles(double nearest) {
         std::vector<std::tuple<double, Index, bool>> near;
-        for (std::size_t i = 0; i < splits_.size(); ++i) {
-            const Face f = splits_[i].face;
-            if (angles_[i] >= std::min(tuning.needle * degrees, 0.9 * old_angle(f)))
-                continue;
+        std::vector<Index> faces;
+        for (std::size_t i = 0; i < splits_.size(); ++i)
+            if (is_needle(i, tuning.needle))
+                faces.push_back(splits_[i].face);
+        for (const Face f : faces)
             for (const HalfEdge h : half_edges_of(f))
                 for (const Index c : net_.on_edge(h))
                     for (const bool left : {true, false})
-                        if (pinned_[c] < 0 && to_end(c, left) < tuning.snap_needle)
+                        if (pinned_[c] < 0 && to_end(c, left) < nearest)
                             near.emplace_back(to_end(c, left), c, left);
-        }
-        const bool any = snap_listed(std::move(near));
-        if (any)
-            unsound_.clear();
-        return any;
+        snap_listed(std::move(near));
+        for (const Face f : faces)
+            for (const HalfEdge h : half_edges_of(f))
+                net_.keep_apart(h, tuning.apart);
+        for (std::size_t i = 0; i < splits_.size(); ++i)
+            for (const Index p : splits_[i].points)
+                if (is_needle(i, tuning.needle) && p >= first_inside())
+                    net_.keep_inside(p - first_inside(), tuning.inside);
+    }
+
+    // Numbers of junctions among points; those of crossings are below.
+    Index first_inside() const {
+        return mesh_.vertex_count() + static_cast<Index>(net_.crossings.size());
+    }
+
+    void fail_needles() {
+        for (std::size_t i = 0; i < splits_.size(); ++i)
+            if (is_needle(i, tuning.worst_needle))
+                for (const HalfEdge h : half_edges_of(splits_[i].face))
+                    for (const Index c : net_.on_edge(h))
+                        unsound_.push_back(net_.crossings[c].curve);
     }
 
     void finish(SplitMesh& result) {
@@ -383,6 +408,23 @@ private:
         for (const Face f : fine.all_faces()) // without seams: as they were
             if (charts.chart[f] < 0)
                 charts.chart[f] = charts_.chart[f];
+        check_parts(fine, charts);
+    }
+
+    // Every chart hangs together.
+    void check_parts(const Mesh& fine, const atlas::ChartMap& charts) {
+        const mesh::FaceComponents parts =
+            mesh::face_components(fine, [&](HalfEdge h) { return charts.seam[h] == 0; });
+        std::vector<Index> part_of(at(charts.count), -1);
+        std::vector<std::uint8_t> torn(at(charts.count), 0);
+        for (const Face f : fine.all_faces()) {
+            Index& part = part_of[charts.chart[f]];
+            torn[charts.chart[f]] |= part >= 0 && part != parts.label[f] ? 1 : 0;
+            part = parts.label[f];
+        }
+        for (const Piece& piece : pieces_)
+            if (torn[piece.label] != 0)
+                failed_.push_back(piece.curve);
     }
 
     void spread(const Mesh& fine, atlas::ChartMap& charts, std::vector<Face>& stack) {
