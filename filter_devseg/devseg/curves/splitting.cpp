@@ -419,7 +419,8 @@ private:
         std::vector<std::uint8_t> torn(at(charts.count), 0);
         for (const Face f : fine.all_faces()) {
             Index& part = part_of[charts.chart[f]];
-            torn[charts.chart[f]] |= part >= 0 && part != parts.label[f] ? 1 : 0;
+            if (part >= 0 && part != parts.label[f])
+                torn[charts.chart[f]] = 1;
             part = parts.label[f];
         }
         for (const Piece& piece : pieces_)
