@@ -274,15 +274,19 @@ void Smoother::make_chains() {
         chain.closed = true;
         chains_.push_back(std::move(chain));
     };
-    for (const bool closed : {false, true})
+    for (const bool closed : {false, true}) // what has ends, then what goes round
         for (Index c = 0; c < static_cast<Index>(net_.curves.size()); ++c) {
             const Curve& curve = net_.curves[c];
             if (curve.held || curve.first < 0 || done[c] != 0)
                 continue;
-            if (closed || on[c][0].first < 0)
+            if (curve.is_closed()) {
+                done[c] = 1;
+                chains_.push_back({{{c, true}}, true});
+            } else if (closed || on[c][0].first < 0) {
                 follow(c, true);
-            else if (on[c][1].first < 0)
+            } else if (on[c][1].first < 0) {
                 follow(c, false);
+            }
         }
 }
 
