@@ -140,11 +140,11 @@ bool Network::pass(Index first, Index last, bool left) {
     const Index behind = crossings[last].next;
     if (before == last) // a closed curve around the vertex
         return false;
+    if (before < 0 && behind < 0 && curves[curve].start == curves[curve].end) // a loop, the same
+        return false;
     const auto corner = [&](Index node) { return node < 0 ? Vertex() : nodes[node].vertex; };
     const Vertex start = before < 0 ? corner(curves[curve].start) : Vertex();
     const Vertex end = behind < 0 ? corner(curves[curve].end) : Vertex();
-    if (start >= 0 && start == end)
-        return false;
 
     std::vector<HalfEdge> around; // the other edges of the vertex, each left from the curve's side
     const Face goal = mesh.across(crossings[last].edge);

@@ -328,6 +328,8 @@ void Smoother::slide(const std::vector<Stop>& stops, const std::vector<FlatStop>
         const std::optional<double> t = meet(curve, stop);
         const Vec2 edge = stop.left - stop.right;
         met[i] = t ? *t : (curve.place(stop.along) - stop.right).dot(edge) / edge.squaredNorm();
+        if (!std::isfinite(met[i])) // an edge without length
+            met[i] = net_.position(stops[i].crossing, stops[i].leaving);
         Crossing& crossing = net_.crossings[stops[i].crossing];
         const double kept =
             std::clamp(met[i], 1.0 - tuning.farthest_end, tuning.farthest_end);

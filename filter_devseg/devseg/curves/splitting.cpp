@@ -151,6 +151,7 @@ private:
                     add_piece(number, mesh_.origin(h), mesh_.target(h), Face());
                 continue;
             }
+            const std::size_t before = pieces_.size();
             Index from = curve.is_closed() ? -1 : point_of_node(curve.start);
             for (Index c = curve.first; c >= 0; c = net_.crossings[c].next) {
                 const Index to = point_of_crossing(c);
@@ -169,6 +170,8 @@ private:
             } else {
                 add_piece(number, from, point_of_node(curve.end), last_face(curve));
             }
+            if (curve.start == curve.end && pieces_.size() < before + 6)
+                failed_.push_back(number); // a loop without three edges holds nothing
         }
         std::sort(pieces_.begin(), pieces_.end());
         for (std::size_t i = 0; i + 1 < pieces_.size(); ++i)
@@ -424,7 +427,7 @@ private:
             part = parts.label[f];
         }
         for (const Piece& piece : pieces_)
-            if (torn[piece.label] != 0)
+            if (torn[piece.label] != 0 || part_of[piece.label] < 0)
                 failed_.push_back(piece.curve);
     }
 

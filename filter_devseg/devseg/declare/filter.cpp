@@ -140,10 +140,13 @@ HostRefinement host_refinement(const HostMesh& host, const mesh::GatedMesh& gate
         for (Index k = 0; k < 3; ++k)
             apart = apart || host.geometry.faces[gated.source_face[f]][at(gated.source_corner(
                                  f, k))] != gated.source_vertex[gated.mesh.faces[f][at(k)]];
+    const auto host_point = [&](const mesh::Refinement::Point& p) {
+        return HostRefinement::Point{gated.source_face[p.face],
+                                     of_source_corners(gated, p.face, p.weights)};
+    };
     if (!apart)
         for (const mesh::Refinement::Point& p : fine.points)
-            result.points.push_back(
-                {gated.source_face[p.face], of_source_corners(gated, p.face, p.weights)});
+            result.points.push_back(host_point(p));
     for (std::size_t i = 0; i < faces.size(); ++i) {
         if (faces[i].part == nullptr)
             continue;
@@ -162,8 +165,11 @@ HostRefinement host_refinement(const HostMesh& host, const mesh::GatedMesh& gate
             else if (!apart)
                 out.corners[at(to)] = host_count + vertex - old_count;
             else {
+                // The same place for all parts, to the last bit.
                 out.corners[at(to)] = host_count + static_cast<Index>(result.points.size());
-                result.points.push_back({source, weights});
+                result.points.push_back(vertex < old_count
+                                            ? HostRefinement::Point{source, weights}
+                                            : host_point(fine.points[at(vertex - old_count)]));
             }
         }
         result.parts.push_back(out);
