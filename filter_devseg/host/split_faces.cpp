@@ -46,9 +46,8 @@ bool mean_attribute(const CMeshO::PointerToAttribute& attribute, std::size_t to,
                     const Value& zero) {
     if (attribute._type != std::type_index(typeid(Value)))
         return false;
-    const Value sum = mean.of<Number>(zero, [&](std::size_t i) {
-        return *static_cast<const Value*>(attribute._handle->At(i));
-    });
+    const Value sum = mean.of<Number>(
+        zero, [&](std::size_t i) { return *static_cast<const Value*>(attribute._handle->At(i)); });
     *static_cast<Value*>(attribute._handle->At(to)) = sum;
     return true;
 }

@@ -127,8 +127,7 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
 TEST(Property, SmoothSeamsOfRandomChartsAreSound) {
     for_random_cases(60, [](Random& random) {
         const bool proper = random.below(2) == 0;
-        const RandomMesh mesh =
-            shapes::random_mesh(random, proper ? Defects::none : Defects::any);
+        const RandomMesh mesh = shapes::random_mesh(random, proper ? Defects::none : Defects::any);
         if (!has_area(mesh.raw))
             return;
         SCOPED_TRACE(mesh.recipe);

@@ -140,6 +140,22 @@ def test_run_smooths_patterns_to_sew_and_to_cut(
         assert result["smoothing"]["smooth_seams_number"] > 0
 
 
+def test_seams_stay_on_edges_where_smooth_ones_break_a_bound(
+    obj: Callable, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = obj(meshes.sphere())
+    stretches = {}
+    for seams in ("edges", "smooth"):
+        folder = tmp_path / seams
+        options = ["--seams", seams, "--max-l2-stretch", "1.0005"]
+        assert main(["run", str(path), "-o", str(folder), *options]) == 0
+        result = json.loads((folder / "mesh.json").read_text())
+        stretches[seams] = result["parametrization"]["l2_stretch"]
+    assert stretches["smooth"] == pytest.approx(stretches["edges"], rel=1e-9)
+    assert "seams stay on edges" in capsys.readouterr().err
+    assert "smoothing" not in result
+
+
 def test_papercraft_refuses_smooth_seams(
     obj: Callable, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -64,7 +64,10 @@ mesh::RawMesh refined(mesh::RawMesh raw, const declare::HostResult& result) {
             raw.faces.resize(at(part.face) + 1);
         raw.faces[part.face] = part.corners;
         for (Index k = 0; k < 3; ++k)
-            EXPECT_LT((place(part.source, part.weights[at(k)]) - raw.points.at(at(part.corners[at(k)]))).norm(), 1e-9);
+            EXPECT_LT(
+                (place(part.source, part.weights[at(k)]) - raw.points.at(at(part.corners[at(k)])))
+                    .norm(),
+                1e-9);
     }
     return raw;
 }

@@ -16,8 +16,8 @@ double smallest_angle(const Vec2& a, const Vec2& b, const Vec2& c) {
     double least = pi;
     const Vec2* p[] = {&a, &b, &c};
     for (int k = 0; k < 3; ++k)
-        least = std::min(
-            least, std::atan2(area, (*p[(k + 1) % 3] - *p[k]).dot(*p[(k + 2) % 3] - *p[k])));
+        least = std::min(least,
+                         std::atan2(area, (*p[(k + 1) % 3] - *p[k]).dot(*p[(k + 2) % 3] - *p[k])));
     return least;
 }
 
@@ -65,10 +65,10 @@ double triangulate(const CutFace& face, const Ring& ring, std::vector<Triangle>&
             const std::size_t j = i + width;
             best[i][j] = -2.0 * pi;
             for (std::size_t k = i + 1; k < j; ++k) {
-                const double angle = std::min(
-                    {smallest_angle(face.points[ring[i]], face.points[ring[k]],
-                                    face.points[ring[j]]),
-                     best[i][k], best[k][j]});
+                const double angle =
+                    std::min({smallest_angle(face.points[ring[i]], face.points[ring[k]],
+                                             face.points[ring[j]]),
+                              best[i][k], best[k][j]});
                 if (angle > best[i][j]) {
                     best[i][j] = angle;
                     apex[i][j] = k;

@@ -10,8 +10,8 @@ namespace devseg::curves {
 /// Points of one triangle: its corners 0, 1, 2, then points on its edges, then points inside.
 struct CutFace {
     std::vector<Vec2> points;
-    std::vector<Index> ring;                       // the boundary, counterclockwise
-    std::vector<std::pair<Index, Index>> lines;    // between points, none of them on one edge
+    std::vector<Index> ring;                    // the boundary, counterclockwise
+    std::vector<std::pair<Index, Index>> lines; // between points, none of them on one edge
 };
 
 struct FaceParts {

@@ -232,8 +232,10 @@ std::vector<Network::Spoke> Network::spokes_of(Index node, HalfEdge e) const {
             } else {
                 const HalfEdge g = leaving(spoke.crossing, start);
                 spoke.on_edge = g == e;
-                spoke.position =
-                    (g == e ? 2.0 : g == Mesh::next(e) ? 0.0 : 1.0) + position(spoke.crossing, g);
+                spoke.position = (g == e               ? 2.0
+                                  : g == Mesh::next(e) ? 0.0
+                                                       : 1.0) +
+                                 position(spoke.crossing, g);
             }
             spokes.push_back(spoke);
         }
@@ -298,8 +300,8 @@ bool Network::push(Index node, HalfEdge e, double t) {
         return false;
     std::vector<Spoke> spokes = spokes_of(node, e);
     for (const Spoke& s : spokes)
-        if (s.crossing < 0 && nodes[s.start ? curves[s.curve].end : curves[s.curve].start]
-                                  .is_junction())
+        if (s.crossing < 0 &&
+            nodes[s.start ? curves[s.curve].end : curves[s.curve].start].is_junction())
             return false;
     const auto [low, high] = gap_on(e, spokes);
     if (low >= high || is_walled_off(e, spokes))
@@ -366,11 +368,15 @@ void Network::keep_inside(Index node, double margin) {
     const HalfEdge e = half_edge_of(junction.face, 0);
     // Positions as chord_end counts them, in barycentric coordinates (all that matters is affine).
     const auto place = [](double position) {
-        const double t = position < 1.0 ? position : position < 2.0 ? position - 1.0 : position - 2.0;
-        const Vec3 from = position < 1.0 ? Vec3::UnitY() : position < 2.0 ? Vec3::UnitZ()
-                                                                          : Vec3::UnitX();
-        const Vec3 to = position < 1.0 ? Vec3::UnitZ() : position < 2.0 ? Vec3::UnitX()
-                                                                        : Vec3::UnitY();
+        const double t = position < 1.0   ? position
+                         : position < 2.0 ? position - 1.0
+                                          : position - 2.0;
+        const Vec3 from = position < 1.0   ? Vec3::UnitY()
+                          : position < 2.0 ? Vec3::UnitZ()
+                                           : Vec3::UnitX();
+        const Vec3 to = position < 1.0   ? Vec3::UnitZ()
+                        : position < 2.0 ? Vec3::UnitX()
+                                         : Vec3::UnitY();
         return Vec3((1.0 - t) * from + t * to);
     };
     Vec3 center = Vec3::Zero();

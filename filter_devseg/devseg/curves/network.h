@@ -12,8 +12,9 @@
 // Curves end at nodes: vertices where they are fixed, or junctions that lie within a face and move.
 //
 // References
-//   S. Bischoff, T. Weyand, L. Kobbelt: Snakes on Triangle Meshes. Bildverarbeitung für die Medizin,
-//   2005. doi:10.1007/3-540-26431-0_43 (points of a curve that slide along edges and pass vertices)
+//   S. Bischoff, T. Weyand, L. Kobbelt: Snakes on Triangle Meshes. Bildverarbeitung für die
+//   Medizin, 2005. doi:10.1007/3-540-26431-0_43 (points of a curve that slide along edges and pass
+//   vertices)
 #pragma once
 
 #include <cstdint>
@@ -36,10 +37,10 @@ struct Crossing {
 };
 
 struct Node {
-    Vertex vertex;             // where it is fixed, −1 for a junction
-    Face face;                 // of a junction
+    Vertex vertex;               // where it is fixed, −1 for a junction
+    Face face;                   // of a junction
     Vec3 weights{0.0, 0.0, 0.0}; // of a junction: barycentric coordinates in its face
-    std::vector<Index> curves; // that end here; twice those that begin here as well
+    std::vector<Index> curves;   // that end here; twice those that begin here as well
 
     bool is_junction() const { return vertex < 0; }
 };
@@ -108,7 +109,9 @@ public:
     void keep_inside(Index node, double margin);
 
     /// The first crossing of a curve from one of its ends, and the one after another.
-    Index from_end(const Curve& curve, bool start) const { return start ? curve.first : curve.last; }
+    Index from_end(const Curve& curve, bool start) const {
+        return start ? curve.first : curve.last;
+    }
     Index after(Index crossing, bool forwards) const {
         return forwards ? crossings[crossing].next : crossings[crossing].previous;
     }
@@ -134,7 +137,7 @@ private:
     bool is_walled_off(HalfEdge e, const std::vector<Spoke>& spokes) const;
     std::pair<double, double> gap_on(HalfEdge e, const std::vector<Spoke>& spokes) const;
 
-    std::vector<Index> lowest_;       // 3 #F: the first crossing of the edge, at its lower half-edge
+    std::vector<Index> lowest_; // 3 #F: the first crossing of the edge, at its lower half-edge
     std::vector<Index> junctions_in_; // #F: junctions in the face
 };
 

@@ -115,8 +115,7 @@ private:
         std::vector<std::uint8_t> done(mesh_.twin.size(), 0);
         for (const bool from_nodes : {true, false})
             for (const HalfEdge h : mesh_.all_half_edges())
-                if (is_seam(h) && done[h] == 0 &&
-                    (!from_nodes || node_of_[mesh_.origin(h)] >= 0))
+                if (is_seam(h) && done[h] == 0 && (!from_nodes || node_of_[mesh_.origin(h)] >= 0))
                     trace(h, done);
     }
 
@@ -260,7 +259,8 @@ public:
                 if (net_.is_undone(c)) {
                     const Index before = net_.crossings[c].previous;
                     net_.reduce_from(c);
-                    c = before >= 0 && net_.crossings[before].curve == number ? before : curve.first;
+                    c = before >= 0 && net_.crossings[before].curve == number ? before
+                                                                              : curve.first;
                     continue;
                 }
                 if (c == curve.last)
@@ -280,8 +280,10 @@ private:
     std::vector<HalfEdge> leaving_; // #V: a seam edge that leaves
     std::vector<Index> degree_;     // #V: seam edges
     std::vector<Index> movable_;    // nodes that become junctions
-    std::vector<std::vector<std::uint8_t>> sides_; // of each curve: vertices inside passed on the left
-    std::vector<std::vector<Step>> routes_; // at 2 c and 2 c + 1: around the ends of curve c, outwards
+    std::vector<std::vector<std::uint8_t>>
+        sides_; // of each curve: vertices inside passed on the left
+    std::vector<std::vector<Step>>
+        routes_; // at 2 c and 2 c + 1: around the ends of curve c, outwards
     std::vector<Index> pending_;
 };
 

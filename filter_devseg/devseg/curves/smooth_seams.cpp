@@ -12,9 +12,9 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    int attempts = 6;          // each keeps the curves on their edges that failed before
-    double crease = 4.0;       // scales: shorter creases are bumps, and hold nothing
-    double least_edges = 1.0;  // mean edges of the seams: the least scale, below which edges show
+    int attempts = 6;         // each keeps the curves on their edges that failed before
+    double crease = 4.0;      // scales: shorter creases are bumps, and hold nothing
+    double least_edges = 1.0; // mean edges of the seams: the least scale, below which edges show
 };
 constexpr Tuning tuning;
 

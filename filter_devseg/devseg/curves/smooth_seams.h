@@ -1,8 +1,8 @@
 // Seams on mesh edges → smooth curves on the surface, along which the faces are split.
 //
 // References
-//   S. Bischoff, T. Weyand, L. Kobbelt: Snakes on Triangle Meshes. Bildverarbeitung für die Medizin,
-//   2005. doi:10.1007/3-540-26431-0_43
+//   S. Bischoff, T. Weyand, L. Kobbelt: Snakes on Triangle Meshes. Bildverarbeitung für die
+//   Medizin, 2005. doi:10.1007/3-540-26431-0_43
 #pragma once
 
 #include <utility>

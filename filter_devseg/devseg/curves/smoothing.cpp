@@ -11,15 +11,15 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    int rounds = 24;               // curves pass at most one row of vertices in each
-    double samples = 5.0;          // of the smooth curve, in one scale
-    double stiffness = 0.5;        // scales: waves of 2 π of these shrink by a factor of e
-    double straight = 50.0;        // degrees: curves that turn by less at a junction go on there
-    double tangent = 1.0;          // scales: over which the direction at a junction is taken
-    double farthest_end = 0.999;   // of an edge: how near crossings come to its ends
-    double margin = 6.0;           // scales: how far closed curves are smoothed beyond their ends
-    double apart = 0.01;           // of an edge: how near curves come to each other on it
-    double inside = 0.05;          // barycentric: how near junctions come to the edges of a face
+    int rounds = 24;             // curves pass at most one row of vertices in each
+    double samples = 5.0;        // of the smooth curve, in one scale
+    double stiffness = 0.5;      // scales: waves of 2 π of these shrink by a factor of e
+    double straight = 50.0;      // degrees: curves that turn by less at a junction go on there
+    double tangent = 1.0;        // scales: over which the direction at a junction is taken
+    double farthest_end = 0.999; // of an edge: how near crossings come to its ends
+    double margin = 6.0;         // scales: how far closed curves are smoothed beyond their ends
+    double apart = 0.01;         // of an edge: how near curves come to each other on it
+    double inside = 0.05;        // barycentric: how near junctions come to the edges of a face
 };
 constexpr Tuning tuning;
 
@@ -331,8 +331,7 @@ void Smoother::slide(const std::vector<Stop>& stops, const std::vector<FlatStop>
         if (!std::isfinite(met[i])) // an edge without length
             met[i] = net_.position(stops[i].crossing, stops[i].leaving);
         Crossing& crossing = net_.crossings[stops[i].crossing];
-        const double kept =
-            std::clamp(met[i], 1.0 - tuning.farthest_end, tuning.farthest_end);
+        const double kept = std::clamp(met[i], 1.0 - tuning.farthest_end, tuning.farthest_end);
         crossing.t = stops[i].forwards ? kept : 1.0 - kept;
     }
     for (std::size_t i = first; i < end; ++i)
@@ -370,9 +369,7 @@ void Smoother::pass_vertices(const std::vector<Stop>& stops, const std::vector<d
             Index a = stops[i].crossing;
             Index b = a;
             const bool side = left == stops[i].forwards;
-            const auto goes_on = [&](Index c) {
-                return c >= 0 && net_.beside(c, side) == w;
-            };
+            const auto goes_on = [&](Index c) { return c >= 0 && net_.beside(c, side) == w; };
             const Index start = a;
             while (goes_on(net_.crossings[a].previous) && net_.crossings[a].previous != start)
                 a = net_.crossings[a].previous;

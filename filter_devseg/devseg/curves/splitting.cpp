@@ -13,13 +13,13 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    double snap = 0.05;         // of an edge: crossings nearer to its ends move there
-    double snap_needle = 0.1;   // the same in faces where needles would be, more in each round
-    double pin = 0.85;          // barycentric: junctions nearer to a corner move there
-    double needle = 2.5;        // degrees: smaller angles are avoided
-    double worst_needle = 2.0;  // degrees: curves with smaller angles beside them fail
-    double apart = 0.12;        // of an edge: distance from others on it beside needles
-    double inside = 0.15;       // barycentric: the same of junctions from the edges of a face
+    double snap = 0.05;        // of an edge: crossings nearer to its ends move there
+    double snap_needle = 0.1;  // the same in faces where needles would be, more in each round
+    double pin = 0.85;         // barycentric: junctions nearer to a corner move there
+    double needle = 2.5;       // degrees: smaller angles are avoided
+    double worst_needle = 2.0; // degrees: curves with smaller angles beside them fail
+    double apart = 0.12;       // of an edge: distance from others on it beside needles
+    double inside = 0.15;      // barycentric: the same of junctions from the edges of a face
     int needle_rounds = 5;
 };
 constexpr Tuning tuning;

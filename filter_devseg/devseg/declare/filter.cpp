@@ -81,9 +81,9 @@ std::vector<Value> of_faces(const std::vector<Value>& source, const mesh::GatedM
 
 // A face of the output as the host has it: whole, or a part of a face that was split.
 struct OutputFace {
-    Face face;        // of the output
-    Face gated;       // the face behind the gate that it is, or is a part of
-    bool own = true;  // not a stand-in for a face that the gate has left out
+    Face face;       // of the output
+    Face gated;      // the face behind the gate that it is, or is a part of
+    bool own = true; // not a stand-in for a face that the gate has left out
     const mesh::Refinement::Part* part = nullptr;
 };
 
@@ -130,16 +130,16 @@ Vec3 of_source_corners(const mesh::GatedMesh& gated, Face f, const Vec3& weights
 // Parts share the vertices that their faces share. Where the gate has joined vertices at one place
 // (files such as STL), each part gets its own: else the host would no longer join them.
 HostRefinement host_refinement(const HostMesh& host, const mesh::GatedMesh& gated,
-                               const mesh::Refinement& fine,
-                               const std::vector<OutputFace>& faces) {
+                               const mesh::Refinement& fine, const std::vector<OutputFace>& faces) {
     HostRefinement result;
     const auto old_count = static_cast<Index>(gated.mesh.points.size());
     const auto host_count = static_cast<Index>(host.geometry.points.size());
     bool apart = false;
     for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k)
-            apart = apart || host.geometry.faces[gated.source_face[f]][at(gated.source_corner(
-                                 f, k))] != gated.source_vertex[gated.mesh.faces[f][at(k)]];
+            apart =
+                apart || host.geometry.faces[gated.source_face[f]][at(gated.source_corner(f, k))] !=
+                             gated.source_vertex[gated.mesh.faces[f][at(k)]];
     const auto host_point = [&](const mesh::Refinement::Point& p) {
         return HostRefinement::Point{gated.source_face[p.face],
                                      of_source_corners(gated, p.face, p.weights)};

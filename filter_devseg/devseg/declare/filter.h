@@ -73,7 +73,7 @@ enum Writes : unsigned {
     writes_quality = 2,
     writes_color = 4,
     writes_uv = 8,
-    writes_layer = 16, // a new mesh; the host's own stays as it is
+    writes_layer = 16,  // a new mesh; the host's own stays as it is
     writes_points = 32, // coordinates of the vertices
     writes_mesh = 64    // faces are split: new faces and vertices
 };
@@ -153,8 +153,8 @@ struct HostRefinement {
         Vec3 weights; // barycentric: of the face's corners
     };
     struct Part {
-        Index face; // from the number of faces on: a new one, all of them in their order
-        Index source; // the face that it is a part of
+        Index face;       // from the number of faces on: a new one, all of them in their order
+        Index source;     // the face that it is a part of
         Triangle corners; // from the number of vertices on: new ones
         std::array<Vec3, 3> weights; // barycentric: each corner in the source face
     };

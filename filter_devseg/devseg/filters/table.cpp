@@ -40,8 +40,8 @@ const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), chart_filters(), smooth_filters(), t_flooding::filters(), plush::filters(),
-              papercraft::filters(), baselines::filters(), deformation_filters(),
+             {dcharts::filters(), chart_filters(), smooth_filters(), t_flooding::filters(),
+              plush::filters(), papercraft::filters(), baselines::filters(), deformation_filters(),
               flattening_filters(), pattern_filters(), sewn_preview_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;

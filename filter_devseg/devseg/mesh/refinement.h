@@ -10,12 +10,12 @@ namespace devseg::mesh {
 
 struct Refinement {
     struct Point {
-        Face face; // of the old mesh
+        Face face;    // of the old mesh
         Vec3 weights; // barycentric: of the face's corners, exactly 0 where it lies on an edge
     };
     struct Part {
-        Index face; // of the new mesh
-        Face source; // the old face that it is a part of
+        Index face;                  // of the new mesh
+        Face source;                 // the old face that it is a part of
         std::array<Vec3, 3> corners; // barycentric: each corner in the old face
     };
     std::vector<Point> points; // new vertices, after the old ones

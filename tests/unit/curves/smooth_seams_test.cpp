@@ -136,8 +136,8 @@ TEST(SmoothSeams, KeepSurfaceAndTopologyOfAnyCharts) {
         for (std::uint32_t seed = 0; seed < 6; ++seed) {
             SCOPED_TRACE("shape " + std::to_string(i) + ", seed " + std::to_string(seed));
             const Mesh mesh = checks::gated(shapes::with_noise(all[i], seed % 2 * 0.02, seed));
-            const Index count = std::min<Index>(2 + 3 * static_cast<Index>(seed),
-                                                mesh.face_count());
+            const Index count =
+                std::min<Index>(2 + 3 * static_cast<Index>(seed), mesh.face_count());
             ChartMap charts = random_charts(mesh, count, seed);
             if (seed % 3 != 0)
                 charts = cut_to_disks(mesh, charts);
@@ -250,8 +250,7 @@ TEST(SmoothSeams, SlitsKeepTheirTips) {
     options.smoothness = 0.05;
     const SmoothSeams made = smoothed(mesh, charts, options);
     expect_sound(mesh, charts, made);
-    const double straight =
-        (mesh.points[*tips.begin()] - mesh.points[*tips.rbegin()]).norm();
+    const double straight = (mesh.points[*tips.begin()] - mesh.points[*tips.rbegin()]).norm();
     EXPECT_GT(made.old_length, 1.3 * straight);
     EXPECT_NEAR(made.new_length, straight, 0.01 * straight);
     std::map<Index, int> fine_degree;
@@ -294,8 +293,7 @@ TEST(SmoothSeams, RefuseOptionsOutOfRange) {
     SmoothOptions options;
     options.smoothness = -1.0;
     Progress progress;
-    EXPECT_THROW(smooth_seams(mesh, checks::components(mesh), options, progress),
-                 InvalidParameter);
+    EXPECT_THROW(smooth_seams(mesh, checks::components(mesh), options, progress), InvalidParameter);
 }
 
 } // namespace

@@ -84,13 +84,13 @@ bool same_layer(const HostResult& a, const HostResult& b) {
 
 bool same_refinement(const HostResult& a, const HostResult& b) {
     return a.refinement.has_value() == b.refinement.has_value() &&
-           (!a.refinement || (a.refinement->points.size() == b.refinement->points.size() &&
-                              a.refinement->parts.size() == b.refinement->parts.size() &&
-                              std::equal(a.refinement->points.begin(), a.refinement->points.end(),
-                                         b.refinement->points.begin(),
-                                         [](const auto& p, const auto& q) {
-                                             return p.face == q.face && p.weights == q.weights;
-                                         })));
+           (!a.refinement ||
+            (a.refinement->points.size() == b.refinement->points.size() &&
+             a.refinement->parts.size() == b.refinement->parts.size() &&
+             std::equal(a.refinement->points.begin(), a.refinement->points.end(),
+                        b.refinement->points.begin(), [](const auto& p, const auto& q) {
+                            return p.face == q.face && p.weights == q.weights;
+                        })));
 }
 
 bool same(const HostResult& a, const HostResult& b) {

@@ -53,7 +53,8 @@ TEST(RefinedFaces, AgreeWithTheirNeighboursWhateverTheirOrientation) {
             // A part is turned as its face is.
             const mesh::RawMesh fine = checks::refined(raw, made);
             const auto normal = [](const mesh::RawMesh& m, const Triangle& t) {
-                return Vec3((m.points[t[1]] - m.points[t[0]]).cross(m.points[t[2]] - m.points[t[0]]));
+                return Vec3(
+                    (m.points[t[1]] - m.points[t[0]]).cross(m.points[t[2]] - m.points[t[0]]));
             };
             ASSERT_GT(normal(fine, part.corners).dot(normal(raw, raw.faces[part.source])), 0.0);
             if (part.face > static_cast<Index>(raw.faces.size()) + 20)
