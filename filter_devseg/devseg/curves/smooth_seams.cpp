@@ -14,6 +14,9 @@ namespace {
 struct Tuning {
     int attempts = 6;         // each keeps the curves on their edges that failed before
     double crease = 4.0;      // scales: shorter creases are bumps, and hold nothing
+    double rounds = 12.0;      // for each edge in one scale: curves pass one vertex in each
+    double least_rounds = 24.0;
+    double most_rounds = 120.0;
     double least_edges = 1.0; // mean edges of the seams: the least scale, below which edges show
 };
 constexpr Tuning tuning;
@@ -62,7 +65,7 @@ std::vector<std::uint8_t> crease_edges(const Mesh& mesh, const atlas::ChartMap& 
     return held;
 }
 
-double scale_of(const Mesh& mesh, const atlas::ChartMap& charts, const SmoothOptions& options) {
+double mean_edge(const Mesh& mesh, const atlas::ChartMap& charts) {
     double length = 0.0;
     Index edges = 0;
     for (const HalfEdge h : mesh.all_half_edges())
@@ -70,16 +73,7 @@ double scale_of(const Mesh& mesh, const atlas::ChartMap& charts, const SmoothOpt
             length += mesh.edge_length(h);
             ++edges;
         }
-    const double mean = edges > 0 ? length / edges : 0.0;
-    return std::max(options.smoothness * diagonal(mesh), tuning.least_edges * mean);
-}
-
-// The mesh as it is.
-SmoothSeams unchanged(const Mesh& mesh, const atlas::ChartMap& charts) {
-    SmoothSeams result;
-    result.refinement = mesh::refine(mesh, {}, {});
-    result.charts = charts;
-    return result;
+    return edges > 0 ? length / edges : 0.0;
 }
 
 } // namespace
@@ -87,26 +81,35 @@ SmoothSeams unchanged(const Mesh& mesh, const atlas::ChartMap& charts) {
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                          const SmoothOptions& options, Progress& progress) {
     check_ranges(options);
-    const double scale = scale_of(mesh, charts, options);
+    const double edge = mean_edge(mesh, charts);
+    const double scale = std::max(options.smoothness * diagonal(mesh), tuning.least_edges * edge);
+    const int rounds =
+        edge > 0.0 ? static_cast<int>(std::clamp(tuning.rounds * scale / edge, tuning.least_rounds,
+                                                 tuning.most_rounds))
+                   : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
-    SmoothSeams result = unchanged(mesh, charts);
-    for (int attempt = 0; attempt < tuning.attempts; ++attempt) {
+    SmoothSeams result;
+    bool done = false;
+    for (int attempt = 0; attempt < tuning.attempts && !done; ++attempt) {
         auto part = progress.part("smoothing seams", attempt == 0 ? 0.7 : 0.5 * progress.left());
         Network network(mesh, charts, held);
-        smooth(network, scale, part);
+        smooth(network, scale, rounds, part);
         SplitMesh split = split_along(network, charts);
+        done = split.failed.empty();
         result.smooth_seams = result.kept_seams = 0;
         for (const Curve& curve : network.curves)
-            ++(curve.held || attempt + 1 == tuning.attempts ? result.kept_seams
-                                                            : result.smooth_seams);
-        if (split.failed.empty()) {
+            ++(curve.held || !done ? result.kept_seams : result.smooth_seams);
+        if (done) {
             result.refinement = std::move(split.refinement);
             result.charts = std::move(split.charts);
-            break;
         }
         for (const Index c : split.failed)
             for (const HalfEdge h : network.curves[c].path)
                 held[h] = held[mesh.twin[h]] = 1;
+    }
+    if (!done) { // the mesh as it is
+        result.refinement = mesh::refine(mesh, {}, {});
+        result.charts = charts;
     }
     result.old_length = length_of_seams(mesh, charts);
     result.new_length = length_of_seams(result.refinement.mesh, result.charts);

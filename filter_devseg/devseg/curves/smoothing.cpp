@@ -11,7 +11,6 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    int rounds = 24;             // curves pass at most one row of vertices in each
     double samples = 5.0;        // of the smooth curve, in one scale
     double stiffness = 0.5;      // scales: waves of 2 π of these shrink by a factor of e
     double straight = 50.0;      // degrees: curves that turn by less at a junction go on there
@@ -87,7 +86,7 @@ struct SmoothCurve {
     }
 };
 
-SmoothCurve smooth_curve(const std::vector<FlatStop>& stops, double scale) {
+SmoothCurve smooth_curve(const std::vector<FlatStop>& stops, double scale, int rounds) {
     SmoothCurve curve;
     const double length = stops.back().along;
     const auto pieces = std::max(2, static_cast<int>(std::ceil(tuning.samples * length / scale)));
@@ -108,7 +107,7 @@ SmoothCurve smooth_curve(const std::vector<FlatStop>& stops, double scale) {
     for (int k = 1; k < pieces; ++k)
         inner.push_back(curve.samples[at(k)] - from - slope * k);
     const double units = scale / curve.step;
-    solve_bending(inner, std::pow(tuning.stiffness * units, 4.0) / tuning.rounds);
+    solve_bending(inner, std::pow(tuning.stiffness * units, 4.0) / rounds);
     for (int k = 1; k < pieces; ++k)
         curve.samples[at(k)] = inner[at(k - 1)] + from + slope * k;
     return curve;
@@ -146,7 +145,10 @@ std::optional<double> meet(const SmoothCurve& curve, const FlatStop& stop) {
 
 class Smoother {
 public:
-    Smoother(Network& network, double scale) : net_(network), scale_(scale) { make_chains(); }
+    Smoother(Network& network, double scale, int rounds)
+        : net_(network), scale_(scale), rounds_(rounds) {
+        make_chains();
+    }
 
     void round(const Progress& progress) {
         pulls_.assign(net_.nodes.size(), {});
@@ -174,6 +176,7 @@ private:
 
     Network& net_;
     double scale_;
+    int rounds_;
     std::vector<Chain> chains_;
     std::vector<Pull> pulls_;
 };
@@ -313,7 +316,7 @@ void Smoother::move_chain(const Chain& chain) {
     const std::vector<FlatStop> flat = unfold(net_, stops);
     if (!(flat.back().along > 0.0))
         return;
-    const SmoothCurve curve = smooth_curve(flat, scale_);
+    const SmoothCurve curve = smooth_curve(flat, scale_, rounds_);
     pull_junctions(chain, stops, flat, curve, first, end);
     slide(stops, flat, curve, first, end);
 }
@@ -442,11 +445,11 @@ void Smoother::move_junction(Index number, const Vec3& target) {
 
 } // namespace
 
-void smooth(Network& network, double scale, Progress& progress) {
-    Smoother smoother(network, scale);
-    for (int k = 0; k < tuning.rounds; ++k) {
+void smooth(Network& network, double scale, int rounds, Progress& progress) {
+    Smoother smoother(network, scale, rounds);
+    for (int k = 0; k < rounds; ++k) {
         smoother.round(progress);
-        progress.update(static_cast<double>(k + 1) / tuning.rounds);
+        progress.update(static_cast<double>(k + 1) / rounds);
     }
 }
 
