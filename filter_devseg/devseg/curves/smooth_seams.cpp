@@ -12,9 +12,9 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    int attempts = 6;         // each keeps the curves on their edges that failed before
-    double crease = 4.0;      // scales: shorter creases are bumps, and hold nothing
-    double rounds = 12.0;      // for each edge in one scale: curves pass one vertex in each
+    int attempts = 6;     // each keeps the curves on their edges that failed before
+    double crease = 4.0;  // scales: shorter creases are bumps, and hold nothing
+    double rounds = 12.0; // for each edge in one scale: curves pass one vertex in each
     double least_rounds = 24.0;
     double most_rounds = 120.0;
     double least_edges = 1.0; // mean edges of the seams: the least scale, below which edges show
@@ -83,10 +83,10 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
     const double scale = std::max(options.smoothness * diagonal(mesh), tuning.least_edges * edge);
-    const int rounds =
-        edge > 0.0 ? static_cast<int>(std::clamp(tuning.rounds * scale / edge, tuning.least_rounds,
-                                                 tuning.most_rounds))
-                   : 1;
+    const int rounds = edge > 0.0
+                           ? static_cast<int>(std::clamp(tuning.rounds * scale / edge,
+                                                         tuning.least_rounds, tuning.most_rounds))
+                           : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
     SmoothSeams result;
     bool done = false;
@@ -94,7 +94,7 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
         auto part = progress.part("smoothing seams", attempt == 0 ? 0.7 : 0.5 * progress.left());
         Network network(mesh, charts, held);
         smooth(network, scale, rounds, part);
-        SplitMesh split = split_along(network, charts);
+        SplitMesh split = split_along(network, charts, progress);
         done = split.failed.empty();
         result.smooth_seams = result.kept_seams = 0;
         for (const Curve& curve : network.curves)

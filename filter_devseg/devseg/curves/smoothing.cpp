@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "devseg/curves/chains.h"
 #include "devseg/curves/strip.h"
 
 namespace devseg::curves {
@@ -13,20 +14,12 @@ namespace {
 struct Tuning {
     double samples = 5.0;        // of the smooth curve, in one scale
     double stiffness = 0.5;      // scales: waves of 2 π of these shrink by a factor of e
-    double straight = 50.0;      // degrees: curves that turn by less at a junction go on there
-    double tangent = 1.0;        // scales: over which the direction at a junction is taken
     double farthest_end = 0.999; // of an edge: how near crossings come to its ends
     double margin = 6.0;         // scales: how far closed curves are smoothed beyond their ends
     double apart = 0.01;         // of an edge: how near curves come to each other on it
     double inside = 0.05;        // barycentric: how near junctions come to the edges of a face
 };
 constexpr Tuning tuning;
-
-// One or more curves, each going on into the next.
-struct Chain {
-    std::vector<std::pair<Index, bool>> links; // curve, forwards
-    bool closed = false;
-};
 
 // Where the chains through a junction want it.
 struct Pull {
@@ -146,9 +139,7 @@ std::optional<double> meet(const SmoothCurve& curve, const FlatStop& stop) {
 class Smoother {
 public:
     Smoother(Network& network, double scale, int rounds)
-        : net_(network), scale_(scale), rounds_(rounds) {
-        make_chains();
-    }
+        : net_(network), scale_(scale), rounds_(rounds), chains_(make_chains(network, scale)) {}
 
     void round(const Progress& progress) {
         pulls_.assign(net_.nodes.size(), {});
@@ -162,7 +153,6 @@ public:
 private:
     std::vector<Stop> stops_of(const Chain& chain) const;
     void add_stops(Index curve, bool forwards, std::vector<Stop>& stops) const;
-    void make_chains();
     void move_chain(const Chain& chain);
     void slide(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
                const SmoothCurve& curve, std::size_t first, std::size_t end);
@@ -205,92 +195,6 @@ std::vector<Stop> Smoother::stops_of(const Chain& chain) const {
             {-1, forwards ? net_.curves[curve].end : net_.curves[curve].start, forwards, {}});
     }
     return stops;
-}
-
-// At each junction the two curves that turn least go on into each other.
-void Smoother::make_chains() {
-    struct Leaf {
-        Index curve;
-        bool start;
-        Vec3 direction;
-    };
-    std::vector<std::vector<Leaf>> leaves(net_.nodes.size());
-    for (Index c = 0; c < static_cast<Index>(net_.curves.size()); ++c) {
-        const Curve& curve = net_.curves[c];
-        if (curve.held || curve.is_closed() || curve.first < 0)
-            continue;
-        for (const bool start : {true, false}) {
-            // In space: all directions at a junction are compared with each other.
-            const Index node = start ? curve.start : curve.end;
-            const HalfEdge out = start ? curve.path.front() : net_.mesh.twin[curve.path.back()];
-            const Vec3& from = net_.mesh.points[net_.mesh.origin(out)];
-            Vec3 to = from;
-            double along = 0.0;
-            for (std::size_t i = 0; i < curve.path.size() && along < tuning.tangent * scale_; ++i) {
-                const HalfEdge h = curve.path[start ? i : curve.path.size() - 1 - i];
-                to = net_.mesh.points[start ? net_.mesh.target(h) : net_.mesh.origin(h)];
-                along += net_.mesh.edge_length(h);
-            }
-            leaves[node].push_back({c, start, (to - from).normalized()});
-        }
-    }
-    std::vector<std::array<std::pair<Index, bool>, 2>> on(
-        net_.curves.size(), {std::pair<Index, bool>{-1, true}, std::pair<Index, bool>{-1, true}});
-    const double least = -std::cos(tuning.straight * degrees);
-    for (std::size_t node = 0; node < leaves.size(); ++node) {
-        if (!net_.nodes[node].is_junction())
-            continue;
-        std::vector<Leaf>& here = leaves[node];
-        for (;;) {
-            double best = least;
-            std::pair<std::size_t, std::size_t> pair{0, 0};
-            for (std::size_t i = 0; i < here.size(); ++i)
-                for (std::size_t j = i + 1; j < here.size(); ++j)
-                    if (here[i].direction.dot(here[j].direction) < best) {
-                        best = here[i].direction.dot(here[j].direction);
-                        pair = {i, j};
-                    }
-            if (pair.second == 0)
-                break;
-            const Leaf a = here[pair.first];
-            const Leaf b = here[pair.second];
-            on[a.curve][a.start ? 0 : 1] = {b.curve, b.start};
-            on[b.curve][b.start ? 0 : 1] = {a.curve, a.start};
-            here.erase(here.begin() + static_cast<std::ptrdiff_t>(pair.second));
-            here.erase(here.begin() + static_cast<std::ptrdiff_t>(pair.first));
-        }
-    }
-    std::vector<std::uint8_t> done(net_.curves.size(), 0);
-    const auto follow = [&](Index curve, bool forwards) {
-        Chain chain;
-        while (done[curve] == 0) {
-            done[curve] = 1;
-            chain.links.emplace_back(curve, forwards);
-            const auto [next, start] = on[curve][forwards ? 1 : 0];
-            if (next < 0) {
-                chains_.push_back(std::move(chain));
-                return;
-            }
-            curve = next;
-            forwards = start;
-        }
-        chain.closed = true;
-        chains_.push_back(std::move(chain));
-    };
-    for (const bool closed : {false, true}) // what has ends, then what goes round
-        for (Index c = 0; c < static_cast<Index>(net_.curves.size()); ++c) {
-            const Curve& curve = net_.curves[c];
-            if (curve.held || curve.first < 0 || done[c] != 0)
-                continue;
-            if (curve.is_closed()) {
-                done[c] = 1;
-                chains_.push_back({{{c, true}}, true});
-            } else if (closed || on[c][0].first < 0) {
-                follow(c, true);
-            } else if (on[c][1].first < 0) {
-                follow(c, false);
-            }
-        }
 }
 
 void Smoother::move_chain(const Chain& chain) {

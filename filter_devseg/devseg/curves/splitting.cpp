@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
 #include <utility>
 
 #include "devseg/curves/face_cutting.h"
+#include "devseg/curves/side_labels.h"
 
 namespace devseg::curves {
 
@@ -21,24 +21,14 @@ struct Tuning {
     double apart = 0.12;       // of an edge: distance from others on it beside needles
     double inside = 0.15;      // barycentric: the same of junctions from the edges of a face
     int needle_rounds = 5;
+    double longer = 1.02; // of its length: a curve that grows by more fails
 };
 constexpr Tuning tuning;
 
-// A piece of a curve, between two points of the finer mesh.
-struct Piece {
-    Index from;
-    Index to;
-    Index curve;
-    Index label; // of the chart on its left
-    bool operator<(const Piece& other) const {
-        return std::pair(from, to) < std::pair(other.from, other.to);
-    }
-};
-
 class Splitter {
 public:
-    Splitter(Network& network, const atlas::ChartMap& charts)
-        : net_(network), mesh_(network.mesh), charts_(charts),
+    Splitter(Network& network, const atlas::ChartMap& charts, const Progress& progress)
+        : net_(network), mesh_(network.mesh), charts_(charts), progress_(progress),
           pinned_(network.crossings.size(), Vertex()) {}
 
     SplitMesh run() {
@@ -208,7 +198,9 @@ private:
         angles_.clear();
         unsound_.clear();
         std::size_t line = 0;
+        Heartbeat beat(progress_);
         for (const Face f : faces) {
+            beat();
             while (line < lines_.size() && std::get<0>(lines_[line]) < f)
                 ++line;
             std::size_t end = line;
@@ -347,7 +339,22 @@ private:
             return;
         renumber();
         result.refinement = mesh::refine(mesh_, std::move(points_), splits_);
-        label(result);
+        result.charts = label_sides(result.refinement.mesh, charts_, pieces_, failed_);
+        fail_longer(result.refinement.mesh);
+    }
+
+    // A curve that had to go a longer way is no gain.
+    void fail_longer(const Mesh& fine) {
+        std::vector<double> longer(net_.curves.size(), 0.0);
+        for (const Piece& piece : pieces_)
+            longer[piece.curve] += 0.5 * (fine.points[piece.from] - fine.points[piece.to]).norm();
+        for (std::size_t c = 0; c < longer.size(); ++c) {
+            double before = 0.0;
+            for (const HalfEdge h : net_.curves[c].path)
+                before += mesh_.edge_length(h);
+            if (!net_.curves[c].held && longer[c] > tuning.longer * before)
+                failed_.push_back(static_cast<Index>(c));
+        }
     }
 
     // New points in the order of their crossings and nodes, without those that are not there.
@@ -372,88 +379,10 @@ private:
         std::sort(pieces_.begin(), pieces_.end());
     }
 
-    const Piece* piece_at(Index from, Index to) const {
-        const Piece wanted{from, to, -1, -1};
-        const auto found = std::lower_bound(pieces_.begin(), pieces_.end(), wanted);
-        return found != pieces_.end() && !(wanted < *found) ? &*found : nullptr;
-    }
-
-    // Labels spread from the two sides of the curves.
-    void label(SplitMesh& result) {
-        const Mesh& fine = result.refinement.mesh;
-        atlas::ChartMap& charts = result.charts;
-        charts.count = charts_.count;
-        charts.chart.assign(fine.faces.size(), -1);
-        charts.seam.assign(fine.twin.size(), 0);
-        std::vector<std::uint8_t> on_curve(fine.points.size(), 0);
-        for (const Piece& piece : pieces_)
-            on_curve[piece.from] = 1;
-        std::vector<Face> stack;
-        std::size_t found = 0;
-        for (const HalfEdge h : fine.all_half_edges()) {
-            if (on_curve[fine.origin(h)] == 0 || on_curve[fine.target(h)] == 0)
-                continue;
-            const Piece* piece = piece_at(fine.origin(h), fine.target(h));
-            if (piece == nullptr)
-                continue;
-            ++found;
-            charts.seam[h] = 1;
-            const Face f = face_of(h);
-            if (charts.chart[f] >= 0 && charts.chart[f] != piece->label)
-                failed_.push_back(piece->curve);
-            charts.chart[f] = piece->label;
-            stack.push_back(f);
-        }
-        if (found != pieces_.size()) // a piece that is no edge
-            for (const Piece& piece : pieces_)
-                failed_.push_back(piece.curve);
-        spread(fine, charts, stack);
-        for (const Face f : fine.all_faces()) // without seams: as they were
-            if (charts.chart[f] < 0)
-                charts.chart[f] = charts_.chart[f];
-        check_parts(fine, charts);
-    }
-
-    // Every chart hangs together.
-    void check_parts(const Mesh& fine, const atlas::ChartMap& charts) {
-        const mesh::FaceComponents parts =
-            mesh::face_components(fine, [&](HalfEdge h) { return charts.seam[h] == 0; });
-        std::vector<Index> part_of(at(charts.count), -1);
-        std::vector<std::uint8_t> torn(at(charts.count), 0);
-        for (const Face f : fine.all_faces()) {
-            Index& part = part_of[charts.chart[f]];
-            if (part >= 0 && part != parts.label[f])
-                torn[charts.chart[f]] = 1;
-            part = parts.label[f];
-        }
-        for (const Piece& piece : pieces_)
-            if (torn[piece.label] != 0 || part_of[piece.label] < 0)
-                failed_.push_back(piece.curve);
-    }
-
-    void spread(const Mesh& fine, atlas::ChartMap& charts, std::vector<Face>& stack) {
-        while (!stack.empty()) {
-            const Face f = stack.back();
-            stack.pop_back();
-            for (const HalfEdge h : half_edges_of(f)) {
-                const Face g = fine.across(h);
-                if (g < 0 || charts.seam[h] != 0)
-                    continue;
-                if (charts.chart[g] < 0) {
-                    charts.chart[g] = charts.chart[f];
-                    stack.push_back(g);
-                } else if (charts.chart[g] != charts.chart[f]) {
-                    for (const Piece& piece : pieces_)
-                        if (piece.label == charts.chart[g] || piece.label == charts.chart[f])
-                            failed_.push_back(piece.curve);
-                }
-            }
-        }
-    }
-
     Network& net_;
     const Mesh& mesh_;
     const atlas::ChartMap& charts_;
+    const Progress& progress_;
     std::vector<Vertex> pinned_; // of each crossing: the vertex it has moved to
     std::vector<Piece> pieces_;  // of all curves, both ways
     std::vector<std::tuple<Index, Index, Index, Index>> lines_; // face, from, to, curve
@@ -466,8 +395,8 @@ private:
 
 } // namespace
 
-SplitMesh split_along(Network& network, const atlas::ChartMap& charts) {
-    return Splitter(network, charts).run();
+SplitMesh split_along(Network& network, const atlas::ChartMap& charts, const Progress& progress) {
+    return Splitter(network, charts, progress).run();
 }
 
 } // namespace devseg::curves
