@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 import meshes
+from devseg import pipeline
 from devseg.cli import main
+from devseg.methods import METHODS
+from devseg.pipeline import RunOptions, Session
 
 FILTER = "meshing_smooth_chart_seams"
 
@@ -138,6 +141,17 @@ def test_run_smooths_patterns_to_sew_and_to_cut(
     assert (FILTER in result["parameters"]) == smooth
     if smooth:
         assert result["smoothing"]["smooth_seams_number"] > 0
+
+
+def test_the_bound_on_charts_is_kept_while_seams_are_smoothed(tmp_path: Path) -> None:
+    method = METHODS["dcharts"]
+    options = RunOptions(tmp_path, method, {}, "lscm", ("svg",), {}, smooth_seams=True)
+    session = Session(tmp_path, None)
+    for bound, expected in ((1.02, {"max_chart_l2_stretch": 1.02}), (0.0, {})):
+        session.parameters[method.filter] = {"max_chart_l2_stretch": bound}
+        assert pipeline._chart_bound(session, options) == expected
+    session.parameters.clear()
+    assert pipeline._chart_bound(session, options) == {}
 
 
 def test_seams_stay_on_edges_where_smooth_ones_break_a_bound(

@@ -79,7 +79,8 @@ double mean_edge(const Mesh& mesh, const atlas::ChartMap& charts) {
 } // namespace
 
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
-                         const SmoothOptions& options, Progress& progress) {
+                         const SmoothOptions& options, Progress& progress,
+                         const std::vector<std::uint8_t>& held_too) {
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
     const double scale = std::max(options.smoothness * diagonal(mesh), tuning.least_edges * edge);
@@ -88,6 +89,8 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                                          tuning.least_rounds, tuning.most_rounds))
                            : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
+    for (std::size_t h = 0; h < held_too.size(); ++h)
+        held[h] = held[h] != 0 || held_too[h] != 0 ? 1 : 0;
     SmoothSeams result;
     bool done = false;
     for (int attempt = 0; attempt < tuning.attempts && !done; ++attempt) {

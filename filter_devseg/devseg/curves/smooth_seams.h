@@ -5,8 +5,10 @@
 //   Medizin, 2005. doi:10.1007/3-540-26431-0_43
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/option_checks.h"
@@ -35,7 +37,9 @@ struct SmoothSeams {
     double new_length = 0.0;
 };
 
+/// `held` (3 #F, or empty) marks further seams that stay on their edges.
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
-                         const SmoothOptions& options, Progress& progress);
+                         const SmoothOptions& options, Progress& progress,
+                         const std::vector<std::uint8_t>& held = {});
 
 } // namespace devseg::curves

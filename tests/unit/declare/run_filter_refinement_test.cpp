@@ -1,4 +1,6 @@
 // Faces that a filter splits, as the host gets them.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "unit/checks.h"
@@ -61,6 +63,38 @@ TEST(RefinedFaces, AgreeWithTheirNeighboursWhateverTheirOrientation) {
                 break; // enough of them
         }
     }
+}
+
+double largest_chart_stretch(HostMesh host) {
+    const HostResult flat = checks::run("Charts: Flatten", host);
+    host.wedge_uv = flat.wedge_uv;
+    checks::take_charts(host, flat);
+    double largest = 0.0;
+    for (const auto& [name, value] : checks::run("Charts: Measure Flattening", host).values)
+        if (name == "chart_l2_stretch")
+            for (const double l2 : std::get<std::vector<double>>(value))
+                largest = std::max(largest, l2);
+    return largest;
+}
+
+// Seams of the charts that would come out above the bound stay on their edges.
+TEST(RefinedFaces, KeepABoundOnTheStretchOfCharts) {
+    const HostMesh host = with_charts(noisy_torus());
+    const auto smoothed = [&](double most) {
+        const HostResult made =
+            checks::run("Charts: Smooth Seams", host, {{"max_chart_l2_stretch", most}});
+        HostMesh fine = checks::host_of(checks::refined(host.geometry, made));
+        checks::take_charts(fine, made);
+        return std::pair(largest_chart_stretch(fine), checks::value(made, "kept_charts_number"));
+    };
+    const double before = largest_chart_stretch(host);
+    const auto [free, none] = smoothed(0.0);
+    ASSERT_GT(free, before + 1e-4); // smoothing does raise it here
+    EXPECT_EQ(none, 0.0);
+    const double bound = 0.5 * (before + free);
+    const auto [bounded, some] = smoothed(bound);
+    EXPECT_LE(bounded, bound);
+    EXPECT_GT(some, 0.0);
 }
 
 // Files such as STL: no two faces share a vertex, before and afterwards.
