@@ -21,7 +21,7 @@ from PIL import Image, ImageChops, ImageDraw, ImageFont
 from devseg import host
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, METHODS
-from devseg.pipeline import DEFORM_FILTER, FLATTEN_FILTER, Session, simplify
+from devseg.pipeline import DEFORM_FILTER, FLATTEN_FILTER, SMOOTH_FILTER, Session, simplify
 from devseg.plugins import load_plugins
 from devseg.quickstart import sample_mesh
 from devseg.render import render_meshes, render_pair
@@ -231,6 +231,19 @@ def cutting() -> None:
     save(render_pair(data(session), SIZE), "cutting")
 
 
+def smooth_seams() -> None:
+    """Seams on edges, and as smooth curves."""
+    panels = []
+    for smooth in (False, True):
+        session = sample("bunny.obj")
+        session.segment(METHODS["dcharts"].filter, charts_number=12)
+        if smooth:
+            session.apply(SMOOTH_FILTER)
+        session.apply(FLATTEN_FILTER)
+        panels.append(render_pair(data(session), SIZE))
+    save(titled(panels, ["seams on edges", "smooth seams"]), "smooth_seams")
+
+
 def packing() -> None:
     """Nesting, and first fit."""
     panels = []
@@ -354,6 +367,7 @@ PICTURES: dict[str, Callable[[], None]] = {
         baselines,
         flattening,
         cutting,
+        smooth_seams,
         packing,
         deformation,
         pieces,

@@ -6,6 +6,7 @@
 #include "host/host_errors.h"
 #include "host/layout_uv.h"
 #include "host/rich_parameters.h"
+#include "host/split_faces.h"
 
 namespace devseg::host {
 
@@ -85,7 +86,11 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
         std::optional<NewLayer> layer;
         if (result.layer)
             layer.emplace(document, *result.layer);
+        if (result.refinement)
+            split_faces(*model, *result.refinement);
         run.changed = write_host_result(*model, result);
+        if (result.refinement)
+            run.changed |= MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE;
         if (layer)
             layer->keep();
         run.log = std::move(result.notes);
@@ -108,6 +113,8 @@ int written_elements(const declare::FilterDeclaration& filter) {
         mask |= MeshModel::MM_WEDGTEXCOORD;
     if (filter.writes & declare::writes_points)
         mask |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+    if (filter.writes & declare::writes_mesh)
+        mask |= MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE;
     return mask;
 }
 

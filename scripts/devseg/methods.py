@@ -56,6 +56,9 @@ METHODS = {
     for name, row in TABLE.items()
 }
 
+# Methods whose seams may leave the mesh's edges; the others' charts are made of whole faces.
+SMOOTH_METHODS = ("dcharts", "t-flooding", "plush")
+
 # Words of --flatten and the values of the filter's parameter "method".
 FLATTENINGS = {
     "symmetric-dirichlet": "Symmetric Dirichlet",

@@ -124,6 +124,39 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
     });
 }
 
+TEST(Property, SmoothSeamsOfRandomChartsAreSound) {
+    for_random_cases(60, [](Random& random) {
+        const bool proper = random.below(2) == 0;
+        const RandomMesh mesh = shapes::random_mesh(random, proper ? Defects::none : Defects::any);
+        if (!has_area(mesh.raw))
+            return;
+        SCOPED_TRACE(mesh.recipe);
+        declare::HostMesh host = host_of(mesh.raw);
+        const Index labels = 1 + random.below(4);
+        const Index cuts = random.below(3) == 0 ? 0 : 1 + random.below(30);
+        for (std::size_t f = 0; f < mesh.raw.faces.size(); ++f) {
+            const bool same = f > 0 && random.below(8) > 0;
+            host.chart_id.push_back(same ? host.chart_id.back() : random.below(labels));
+            host.seam_edges.push_back(cuts > 0 && random.below(cuts) == 0 ? random.below(8) : 0);
+        }
+        const declare::FilterDeclaration& filter = filter_named("Charts: Smooth Seams");
+        const auto made = attempt(
+            filter, host,
+            random_values(filter, static_cast<Index>(mesh.raw.faces.size()), "", random), false);
+        if (!made)
+            return;
+        checks::expect_complete(mesh.raw, *made);
+        declare::HostMesh fine = host_of(checks::refined(mesh.raw, *made));
+        checks::take_charts(fine, *made);
+        const declare::HostResult measured = checks::run("Charts: Measure Segmentation", fine);
+        // Where the gate has to cut, it cuts elsewhere once there are other faces.
+        if (proper && mesh.recipe.find("moebius") == std::string::npos) {
+            EXPECT_EQ(checks::value(measured, "charts_number"),
+                      checks::value(*made, "charts_number"));
+        }
+    });
+}
+
 // What hosts may have on a mesh: anything.
 void add_random_attributes(declare::HostMesh& host, Random& random) {
     const double odd[] = {std::numeric_limits<double>::quiet_NaN(),

@@ -47,6 +47,31 @@ void take_charts(declare::HostMesh& host, const declare::HostResult& result) {
     host.seam_edges.assign(result.seam_edges.begin(), result.seam_edges.end());
 }
 
+mesh::RawMesh refined(mesh::RawMesh raw, const declare::HostResult& result) {
+    if (!result.refinement)
+        return raw;
+    const mesh::RawMesh old = raw;
+    const auto place = [&](Index face, const Vec3& weights) {
+        Vec3 sum = Vec3::Zero();
+        for (Index k = 0; k < 3; ++k)
+            sum += weights[k] * old.points.at(at(old.faces.at(at(face))[at(k)]));
+        return sum;
+    };
+    for (const declare::HostRefinement::Point& p : result.refinement->points)
+        raw.points.push_back(place(p.face, p.weights));
+    for (const declare::HostRefinement::Part& part : result.refinement->parts) {
+        if (at(part.face) >= raw.faces.size())
+            raw.faces.resize(at(part.face) + 1);
+        raw.faces[part.face] = part.corners;
+        for (Index k = 0; k < 3; ++k)
+            EXPECT_LT(
+                (place(part.source, part.weights[at(k)]) - raw.points.at(at(part.corners[at(k)])))
+                    .norm(),
+                1e-9);
+    }
+    return raw;
+}
+
 Edges edges_of(const mesh::RawMesh& raw) {
     Edges edges;
     for (std::size_t f = 0; f < raw.faces.size(); ++f)

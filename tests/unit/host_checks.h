@@ -19,6 +19,9 @@ double number(const declare::ParameterValue& value);
 declare::HostMesh host_of(const mesh::RawMesh& raw);
 void take_charts(declare::HostMesh& host, const declare::HostResult& result);
 
+/// The host's mesh with its faces split as the result says.
+mesh::RawMesh refined(mesh::RawMesh raw, const declare::HostResult& result);
+
 /// All (face, edge) at each edge, by the host's vertices.
 using Edges = std::map<std::set<Index>, std::vector<std::pair<std::size_t, int>>>;
 Edges edges_of(const mesh::RawMesh& raw);

@@ -79,13 +79,102 @@ std::vector<Value> of_faces(const std::vector<Value>& source, const mesh::GatedM
     return values;
 }
 
-// Bits of the source face's cut edges; edges that the gate had to cut are seams as well.
-int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, Face f) {
+// A face of the output as the host has it: whole, or a part of a face that was split.
+struct OutputFace {
+    Face face;       // of the output
+    Face gated;      // the face behind the gate that it is, or is a part of
+    bool own = true; // not a stand-in for a face that the gate has left out
+    const mesh::Refinement::Part* part = nullptr;
+};
+
+// Bits of the host face's cut edges; edges that the gate had to cut are seams as well.
+int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, const OutputFace& f) {
     int bits = 0;
-    for (Index e = 0; e < 3; ++e)
-        if (charts.seam[3 * f + e] != 0 || gated.cut[3 * f + e] != 0)
-            bits |= 1 << gated.source_edge(f, e);
+    for (Index e = 0; e < 3; ++e) {
+        const Index edge = f.part != nullptr ? mesh::old_edge(*f.part, e) : e;
+        if (charts.seam[3 * f.face + e] != 0 || (edge >= 0 && gated.cut[3 * f.gated + edge] != 0))
+            bits |= 1 << gated.source_edge(f.gated, e);
+    }
     return bits;
+}
+
+// The host's faces in their order, then those that splitting adds.
+std::vector<OutputFace> output_faces(const mesh::GatedMesh& gated, const FilterOutput& output) {
+    std::vector<OutputFace> faces;
+    for (std::size_t source = 0; source < gated.stand_in.size(); ++source) {
+        const Face f = gated.stand_in[source];
+        faces.push_back({f, f, gated.source_face[f] == static_cast<Index>(source), nullptr});
+    }
+    if (!output.refinement)
+        return faces;
+    std::vector<const mesh::Refinement::Part*> first(gated.source_face.size(), nullptr);
+    for (const mesh::Refinement::Part& part : output.refinement->parts)
+        if (at(part.face) < first.size())
+            first[part.face] = &part;
+    for (OutputFace& f : faces)
+        f.part = f.own ? first[f.gated] : nullptr;
+    for (const mesh::Refinement::Part& part : output.refinement->parts)
+        if (at(part.face) >= first.size())
+            faces.push_back({part.face, part.source, true, &part});
+    return faces;
+}
+
+// Barycentric coordinates in the host's face, whose last corners may be swapped.
+Vec3 of_source_corners(const mesh::GatedMesh& gated, Face f, const Vec3& weights) {
+    Vec3 turned;
+    for (Index k = 0; k < 3; ++k)
+        turned[gated.source_corner(f, k)] = weights[k];
+    return turned;
+}
+
+// Parts share the vertices that their faces share. Where the gate has joined vertices at one place
+// (files such as STL), each part gets its own: else the host would no longer join them.
+HostRefinement host_refinement(const HostMesh& host, const mesh::GatedMesh& gated,
+                               const mesh::Refinement& fine, const std::vector<OutputFace>& faces) {
+    HostRefinement result;
+    const auto old_count = static_cast<Index>(gated.mesh.points.size());
+    const auto host_count = static_cast<Index>(host.geometry.points.size());
+    bool apart = false;
+    for (const Face f : gated.mesh.all_faces())
+        for (Index k = 0; k < 3; ++k)
+            apart =
+                apart || host.geometry.faces[gated.source_face[f]][at(gated.source_corner(f, k))] !=
+                             gated.source_vertex[gated.mesh.faces[f][at(k)]];
+    const auto host_point = [&](const mesh::Refinement::Point& p) {
+        return HostRefinement::Point{gated.source_face[p.face],
+                                     of_source_corners(gated, p.face, p.weights)};
+    };
+    if (!apart)
+        for (const mesh::Refinement::Point& p : fine.points)
+            result.points.push_back(host_point(p));
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (faces[i].part == nullptr)
+            continue;
+        const mesh::Refinement::Part& part = *faces[i].part;
+        const Index source = gated.source_face[part.source];
+        HostRefinement::Part out{static_cast<Index>(i), source, {}, {}};
+        for (Index k = 0; k < 3; ++k) {
+            const Index to = gated.source_corner(part.source, k);
+            const Vec3 weights = of_source_corners(gated, part.source, part.corners[at(k)]);
+            const Index vertex = fine.mesh.faces[part.face][at(k)];
+            Index corner = -1;
+            weights.maxCoeff(&corner);
+            out.weights[at(to)] = weights;
+            if (vertex < old_count && (!apart || i < host.geometry.faces.size()))
+                out.corners[at(to)] = host.geometry.faces[source][at(corner)];
+            else if (!apart)
+                out.corners[at(to)] = host_count + vertex - old_count;
+            else {
+                // The same place for all parts, to the last bit.
+                out.corners[at(to)] = host_count + static_cast<Index>(result.points.size());
+                result.points.push_back(vertex < old_count
+                                            ? HostRefinement::Point{source, weights}
+                                            : host_point(fine.points[at(vertex - old_count)]));
+            }
+        }
+        result.parts.push_back(out);
+    }
+    return result;
 }
 
 // Where the vertices have moved to, all that were joined alike; those that no face uses stay.
@@ -112,21 +201,23 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
     result.layer = std::move(output.layer);
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
-    for (std::size_t source = 0; source < gated.stand_in.size(); ++source) {
-        const Face f = gated.stand_in[source];
-        const bool own = gated.source_face[f] == static_cast<Index>(source);
+    const std::vector<OutputFace> faces = output_faces(gated, output);
+    if (output.refinement && !output.refinement->parts.empty())
+        result.refinement = host_refinement(host, gated, *output.refinement, faces);
+    for (const OutputFace& f : faces) {
         if (output.charts) {
-            result.chart_id.push_back(output.charts->chart[f]);
-            result.seam_edges.push_back(own ? seam_bits(gated, *output.charts, f) : 0);
+            result.chart_id.push_back(output.charts->chart[f.face]);
+            result.seam_edges.push_back(f.own ? seam_bits(gated, *output.charts, f) : 0);
         }
         if (output.face_quality)
-            result.face_quality.push_back((*output.face_quality)[f]);
+            result.face_quality.push_back((*output.face_quality)[f.face]);
         if (output.face_color)
-            result.face_color.push_back((*output.face_color)[f]);
+            result.face_color.push_back((*output.face_color)[f.face]);
         if (output.uv) {
             std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
             for (Index k = 0; k < 3; ++k) // faces that were left out collapse onto one corner
-                corners[gated.source_corner(f, k)] = (*output.uv)[3 * f + (own ? k : 0)];
+                corners[gated.source_corner(f.gated, k)] =
+                    (*output.uv)[3 * f.face + (f.own ? k : 0)];
             result.wedge_uv.push_back(corners);
         }
     }

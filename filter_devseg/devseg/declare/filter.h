@@ -15,6 +15,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
 #include "devseg/mesh/input_gate.h"
+#include "devseg/mesh/refinement.h"
 
 namespace devseg::declare {
 
@@ -72,8 +73,9 @@ enum Writes : unsigned {
     writes_quality = 2,
     writes_color = 4,
     writes_uv = 8,
-    writes_layer = 16, // a new mesh; the host's own stays as it is
-    writes_points = 32 // coordinates of the vertices
+    writes_layer = 16,  // a new mesh; the host's own stays as it is
+    writes_points = 32, // coordinates of the vertices
+    writes_mesh = 64    // faces are split: new faces and vertices
 };
 
 /// What filters see of a mesh: checked, in internal units.
@@ -100,6 +102,7 @@ struct FilterOutput {
     std::optional<CornerUv> uv;
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
+    std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
     std::function<void()> save;     // writes the filter's file, if it has one: comes last, because
@@ -145,7 +148,24 @@ struct HostMesh {
     std::vector<Color> face_color;
 };
 
-/// The results for the host's own elements. Vectors are for all faces or empty.
+/// How the host's own faces are split. All that a host keeps for its faces and vertices is carried
+/// over: a part has what its face has, a new vertex the mean of what is at the corners.
+struct HostRefinement {
+    struct Point {
+        Index face;
+        Vec3 weights; // barycentric: of the face's corners
+    };
+    struct Part {
+        Index face;       // from the number of faces on: a new one, all of them in their order
+        Index source;     // the face that it is a part of
+        Triangle corners; // from the number of vertices on: new ones
+        std::array<Vec3, 3> weights; // barycentric: each corner in the source face
+    };
+    std::vector<Point> points; // new vertices
+    std::vector<Part> parts;   // ascending
+};
+
+/// The results for the host's own elements, new faces included. Vectors are for all faces or empty.
 struct HostResult {
     std::vector<int> chart_id;
     std::vector<int> seam_edges;
@@ -154,6 +174,7 @@ struct HostResult {
     std::vector<std::array<Vec2, 3>> wedge_uv;
     std::vector<Vec3> points; // for all vertices or empty
     std::optional<LayerMesh> layer;
+    std::optional<HostRefinement> refinement;
     ResultValues values;
     std::vector<std::string> notes;
 };

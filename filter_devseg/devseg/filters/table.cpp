@@ -29,6 +29,7 @@ namespace filters {
 
 // Each stage declares its filters in a source of this folder.
 Filters chart_filters();
+Filters smooth_filters();
 Filters deformation_filters();
 Filters flattening_filters();
 Filters pattern_filters();
@@ -39,8 +40,8 @@ const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), chart_filters(), t_flooding::filters(), plush::filters(),
-              papercraft::filters(), baselines::filters(), deformation_filters(),
+             {dcharts::filters(), chart_filters(), smooth_filters(), t_flooding::filters(),
+              plush::filters(), papercraft::filters(), baselines::filters(), deformation_filters(),
               flattening_filters(), pattern_filters(), sewn_preview_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;

@@ -43,10 +43,11 @@ HostResult run(const FilterDeclaration& filter, const HostMesh& host,
 
 TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
     const HostMesh host = prepared();
-    const std::size_t faces = host.geometry.faces.size();
     for (const FilterDeclaration& filter : filters::filter_table()) {
         SCOPED_TRACE(filter.menu_name);
         const HostResult r = run(filter, host, {});
+        EXPECT_EQ(r.refinement.has_value(), (filter.writes & writes_mesh) != 0);
+        const std::size_t faces = checks::refined(host.geometry, r).faces.size();
         std::vector<std::string> declared;
         std::vector<std::string> returned;
         for (const ResultField& field : filter.results)
@@ -81,8 +82,19 @@ bool same_layer(const HostResult& a, const HostResult& b) {
            a.layer->face_attributes == b.layer->face_attributes;
 }
 
+bool same_refinement(const HostResult& a, const HostResult& b) {
+    return a.refinement.has_value() == b.refinement.has_value() &&
+           (!a.refinement ||
+            (a.refinement->points.size() == b.refinement->points.size() &&
+             a.refinement->parts.size() == b.refinement->parts.size() &&
+             std::equal(a.refinement->points.begin(), a.refinement->points.end(),
+                        b.refinement->points.begin(), [](const auto& p, const auto& q) {
+                            return p.face == q.face && p.weights == q.weights;
+                        })));
+}
+
 bool same(const HostResult& a, const HostResult& b) {
-    return a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
+    return same_refinement(a, b) && a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
            a.face_quality == b.face_quality && a.face_color == b.face_color &&
            a.wedge_uv == b.wedge_uv && a.points == b.points && same_layer(a, b);
 }

@@ -1,0 +1,28 @@
+// Charts of a finer mesh, from the curves between them.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "devseg/atlas/charts.h"
+
+namespace devseg::curves {
+
+/// A piece of a curve, between two vertices of the finer mesh. Each comes in both directions.
+struct Piece {
+    Index from;
+    Index to;
+    Index curve;
+    Index label; // of the chart on its left
+    bool operator<(const Piece& other) const {
+        return std::pair(from, to) < std::pair(other.from, other.to);
+    }
+};
+
+/// Labels spread from the two sides of the pieces (sorted) over the finer mesh; components without
+/// seams keep theirs: old face f is face f or a part of it. Curves whose pieces are no edges, or
+/// whose charts would fall apart, are added to `failed`.
+atlas::ChartMap label_sides(const Mesh& fine, const atlas::ChartMap& old,
+                            const std::vector<Piece>& pieces, std::vector<Index>& failed);
+
+} // namespace devseg::curves
