@@ -60,6 +60,8 @@ std::vector<Index> neighbourhood(const Mesh& mesh, Face centre,
 } // namespace
 
 double roughness(const Mesh& mesh, const std::vector<Index>& faces, Progress& progress) {
+    if (tuning.most_share * static_cast<double>(faces.size()) < 2.0)
+        return 0.0; // every face is large
     std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
     for (const Face f : faces)
         inside[f] = 1;

@@ -399,11 +399,9 @@ DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponent
     result.above.assign(mesh.faces.size(), 0);
     double excess = 0.0;
     Index first = 0; // number of the component's first chart
-    std::vector<std::vector<Index>> groups(at(components.count));
-    for (const Face f : mesh.all_faces())
-        groups[components.label[f]].push_back(f);
-    for (const std::vector<Index>& faces : groups) {
-        const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, result.seam);
+    const atlas::ChartMap whole{components.label, result.seam, components.count};
+    for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, whole)) {
+        const std::vector<Index>& faces = surface.face;
         const Mesh part = atlas::mesh_of(mesh, surface);
         const double share = part.total_area / mesh.total_area;
         DevelopableChartsOptions own = options;
