@@ -218,10 +218,9 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
     with progress.stage("segment"):
         made = segment(session, options.method, options.segmentation)
     found["method_results"] = made
-    if not made.get("bounds_kept", True):
+    if not made.get("bounds_kept", True) and not made.get("charts_above_bound_number"):
         session.warnings.append(
-            "no number of charts that was tried keeps the bounds on the stretch; "
-            "these charts come nearest"
+            "the bounds on the stretch of the whole map are not kept; these charts come nearest"
         )
     if options.method.deforms:
         with progress.stage("deform"):

@@ -195,11 +195,13 @@ def test_bounds_on_the_stretch_find_the_number_of_charts(obj: Callable, tmp_path
     assert numbers[0] < numbers[1]
 
 
-def test_a_bound_that_cannot_be_kept_is_reported(obj: Callable, tmp_path: Path) -> None:
+def test_every_chart_keeps_its_bound(obj: Callable, tmp_path: Path) -> None:
     path = obj(meshes.sphere())
-    done = run_devseg("run", path, "-o", tmp_path, "--max-l2-stretch", 1.0000002)
+    done = run_devseg("run", path, "-o", tmp_path, "--json", "--charts", 1)
     assert done.returncode == 0
-    assert "keeps the bounds on the stretch" in done.stderr
+    result = json.loads(done.stdout)
+    assert result["parametrization"]["l2_stretch"] <= 1.02
+    assert result["method_results"]["charts_above_bound_number"] == 0
 
 
 def test_json_is_all_there_is_on_stdout(obj: Callable, tmp_path: Path) -> None:

@@ -126,7 +126,7 @@ std::vector<FilterDeclaration> smooth_filters() {
                       "are. 180 = none.")
                 .real(&O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
                       "Seams of a chart stay on their edges where smooth ones bring its root mean "
-                      "square stretch above this bound, from 1 on. 0 = none, which saves the trial "
+                      "square stretch above this bound, without unit, from 1 on. 0 = none, which saves the trial "
                       "flattenings.")
                 .writes(writes_charts | writes_mesh)
                 .result("charts_number", "charts, as many as before")

@@ -19,8 +19,7 @@ struct Tuning {
 constexpr Tuning tuning;
 
 // Faces around one, nearest first: whole rings.
-std::vector<Index> neighbourhood(const Mesh& mesh, Face centre,
-                                 const std::vector<std::uint8_t>& inside) {
+std::vector<Index> neighbourhood(const Mesh& mesh, Face centre) {
     const double radius = tuning.radius * std::sqrt(mesh.model_area());
     const double most_area = tuning.most_share * mesh.total_area;
     std::vector<Index> faces{centre};
@@ -33,7 +32,7 @@ std::vector<Index> neighbourhood(const Mesh& mesh, Face centre,
         for (const Face f : ring)
             for (const HalfEdge h : half_edges_of(f)) {
                 const Face g = mesh.across(h);
-                if (g >= 0 && inside[g] != 0)
+                if (g >= 0)
                     next.push_back(g);
             }
         std::sort(next.begin(), next.end());
@@ -59,34 +58,32 @@ std::vector<Index> neighbourhood(const Mesh& mesh, Face centre,
 
 } // namespace
 
-double roughness(const Mesh& mesh, const std::vector<Index>& faces, Progress& progress) {
-    if (tuning.most_share * static_cast<double>(faces.size()) < 2.0)
-        return 0.0; // every face is large
-    std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
-    for (const Face f : faces)
-        inside[f] = 1;
+Roughness roughness(const Mesh& mesh, Progress& progress) {
+    const Index count = mesh.face_count();
+    if (tuning.most_share * count < 2.0)
+        return {}; // every face is large
     const std::vector<std::uint8_t> no_cuts(mesh.twin.size(), 0);
-    const Index count = static_cast<Index>(faces.size());
-    const Index samples = std::min(tuning.samples, count);
-    std::vector<TrialMap> maps(at(samples));
+    std::vector<TrialMap> maps(at(std::min(tuning.samples, count)));
     parallel_for(
-        samples,
+        static_cast<int>(maps.size()),
         [&](int i) {
-            const Face centre =
-                faces[at(static_cast<Index>(static_cast<std::int64_t>(i) * count / samples))];
-            const std::vector<Index> around = neighbourhood(mesh, centre, inside);
+            const auto centre = static_cast<Index>(static_cast<std::int64_t>(i) * count /
+                                                   static_cast<std::int64_t>(maps.size()));
+            const std::vector<Index> around = neighbourhood(mesh, centre);
             if (around.size() > 1)
                 maps[at(i)] = try_chart(mesh, around, no_cuts, TrialEffort(), progress);
         },
         progress);
-    double excess = 0.0;
+    Roughness result;
     double area = 0.0;
     for (const TrialMap& map : maps)
         if (map.flat) {
-            excess += map.excess();
+            result.excess += map.excess();
+            result.linf = std::max(result.linf, map.linf);
             area += map.area;
         }
-    return area > 0.0 ? std::max(0.0, excess / area) : 0.0;
+    result.excess = area > 0.0 ? std::max(0.0, result.excess / area) : 0.0;
+    return result;
 }
 
 } // namespace devseg::judge

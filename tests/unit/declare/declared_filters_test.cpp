@@ -135,7 +135,7 @@ std::vector<ParameterValue> other_values(const Parameter& p) {
     case ParameterKind::real:
         break;
     }
-    if (p.name == "max_linf_stretch")
+    if (p.name == "max_linf_stretch" || p.name == "max_chart_l2_stretch")
         return {1.01}; // 0 means no bound, and between 0 and 1 there is nothing to ask for
     return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
 }

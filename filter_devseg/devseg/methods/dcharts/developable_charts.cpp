@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "devseg/atlas/fragments.h"
@@ -40,16 +39,20 @@ bool is_creased(const Mesh& mesh) {
     return sharp > std::sqrt(mesh.total_area) && sharp > tuning.sharp_share * bent;
 }
 
+bool is_rough(double excess) {
+    return excess > tuning.rough;
+}
+
 // How the surface at hand is segmented.
 struct SegmentationPlan {
     const DevelopableChartsOptions& options;
     bool creased;
     DChartsOptions growing;
-    double roughness = 0.0; // l2² − 1 that bounds allow on top
+    judge::Roughness rough; // of the surface on which is decided, where it is rough
 };
 
 SegmentationPlan make_plan(const Mesh& mesh, const DevelopableChartsOptions& options) {
-    SegmentationPlan plan{options, is_creased(mesh), options};
+    SegmentationPlan plan{options, is_creased(mesh), options, {}};
     if (options.charts_number == 0)
         plan.growing.charts_number = std::min(tuning.automatic_seeds, mesh.face_count());
     if (plan.creased)
@@ -69,7 +72,8 @@ Aim aim_of(const SegmentationPlan& plan) {
     Aim aim;
     aim.chart =
         bounds_from(plan.options.merge_threshold * (plan.creased ? tuning.creased_threshold : 1.0));
-    aim.chart.l2 = std::sqrt(aim.chart.l2 * aim.chart.l2 + plan.roughness);
+    aim.chart.l2 = std::sqrt(aim.chart.l2 * aim.chart.l2 + plan.rough.excess);
+    aim.chart.linf += plan.rough.linf - 1.0;
     return aim;
 }
 
@@ -152,7 +156,7 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
         merging.chart.hard_l2 =
-            std::sqrt(options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.roughness);
+            std::sqrt(options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.rough.excess);
         merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
     }
     merging.max_excess = aim.max_excess;
@@ -263,7 +267,7 @@ void keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
     const DevelopableChartsOptions& options = plan.options;
     FinalBounds bounds;
     bounds.chart_l2 = options.max_chart_l2_stretch;
-    bounds.roughness = plan.roughness;
+    bounds.roughness = is_rough(charts.roughness) ? charts.roughness : 0.0;
     charts.above.assign(mesh.faces.size(), 0);
     if (options.charts_number == 0) {
         bounds.linf = options.max_linf_stretch;
@@ -302,7 +306,7 @@ void split_worst(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim,
 // where the map of the full surface does not keep them, and what is still above is cut.
 DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                               const SegmentationPlan& plan, const DChartsResult& patches,
-                              Progress& progress) {
+                              double roughness, Progress& progress) {
     const DevelopableChartsOptions& options = plan.options;
     const Mesh& coarse = decimation ? decimation->mesh : mesh;
     const double allowed = options.max_l2_stretch * options.max_l2_stretch - 1.0;
@@ -337,16 +341,11 @@ DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::Coarse
             break;
         share *= std::min(0.9, allowed / reached);
     }
+    best.roughness = roughness;
     auto keeping = progress.part(progress.left());
     keep_final_bounds(mesh, plan, aim, best, keeping);
     best.bounds_kept = distance(options, best) <= 1.0;
     return best;
-}
-
-double roughness_of(const Mesh& mesh, Progress& progress) {
-    std::vector<Index> faces(mesh.faces.size());
-    std::iota(faces.begin(), faces.end(), 0);
-    return judge::roughness(mesh, faces, progress);
 }
 
 // A surface in one piece.
@@ -358,24 +357,23 @@ DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOpt
         mesh, plan.creased, std::max(options.charts_number, tuning.automatic_seeds), coarsening);
     const Mesh& coarse = decimation ? decimation->mesh : mesh;
     auto feeling = progress.part("measuring roughness", 0.02);
-    const double roughness = roughness_of(mesh, feeling);
-    if (roughness > tuning.rough)
-        plan.roughness = roughness;
+    const judge::Roughness rough = judge::roughness(mesh, feeling);
+    const judge::Roughness of_coarse = decimation ? judge::roughness(coarse, feeling) : rough;
+    if (is_rough(of_coarse.excess))
+        plan.rough = of_coarse;
     auto growing = progress.part(0.15);
     DChartsResult patches = grow_patches(coarse, plan, growing);
     if (options.charts_number == 0) {
         auto deciding = progress.part(progress.left());
-        DevelopableCharts fewest = find_fewest(mesh, decimation, plan, patches, deciding);
-        fewest.roughness = roughness;
-        return fewest;
+        return find_fewest(mesh, decimation, plan, patches, rough.excess, deciding);
     }
     auto deciding = progress.part(0.6);
     DevelopableCharts result =
         finish(mesh, decimation, plan, decide(coarse, plan, std::move(patches), deciding),
                Straightening::smooth, deciding);
+    result.roughness = rough.excess;
     auto keeping = progress.part(progress.left());
     keep_final_bounds(mesh, plan, aim_of(plan), result, keeping);
-    result.roughness = roughness;
     return result;
 }
 

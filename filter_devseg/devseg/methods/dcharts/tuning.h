@@ -24,7 +24,7 @@ struct Tuning {
 
     // Stretch that equal lengths of border are worth when two joins cost next to nothing: a share
     // of the area for each √area of border.
-    double negligible = 1e-5;
+    double negligible = 1e-5; // and of √area: a cut of this length is none
     double small_allowance = 3.0; // of small charts, over the bounds of others
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
