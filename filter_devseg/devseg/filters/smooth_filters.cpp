@@ -116,27 +116,29 @@ FilterOutput run_smooth(const FilterInput& input, const Options& options, Progre
 
 std::vector<FilterDeclaration> smooth_filters() {
     using O = Options;
-    return {Declare<O>("Charts: Smooth Seams", "meshing_smooth_chart_seams",
-                       FilterCategory::remeshing, smooth_help)
-                .real(&O::smoothness, "Smoothness",
-                      "Length of the waves that go, as a share of the diagonal of the model's box: "
-                      "0.01 = 1 %; at least that of the edges on seams.")
-                .real(&O::keep_creases, "Keep creases (degrees)",
-                      "Seams on edges where the surface bends by more, in degrees, stay where they "
-                      "are. 180 = none.")
-                .real(&O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
-                      "Seams of a chart stay on their edges where smooth ones bring its root mean "
-                      "square stretch above this bound, from 1 on. 0 = none, which saves the trial "
-                      "flattenings.")
-                .writes(writes_charts | writes_mesh)
-                .result("charts_number", "charts, as many as before")
-                .result("kept_charts_number", "charts whose seams stay because of the bound")
-                .result("smooth_seams_number", "seams, darts and slits that are smooth curves now")
-                .result("kept_seams_number", "those that stay on their edges")
-                .result("new_faces_number", "faces that splitting added")
-                .result("seam_length_before", "length of all cut edges before, model units")
-                .result("seam_length", "the same afterwards")
-                .runs(run_smooth)};
+    return {
+        Declare<O>("Charts: Smooth Seams", "meshing_smooth_chart_seams", FilterCategory::remeshing,
+                   smooth_help)
+            .real(&O::smoothness, "Smoothness",
+                  "Length of the waves that go, as a share of the diagonal of the model's box: "
+                  "0.01 = 1 %; at least that of the edges on seams.")
+            .real(&O::keep_creases, "Keep creases (degrees)",
+                  "Seams on edges where the surface bends by more, in degrees, stay where they "
+                  "are. 180 = none.")
+            .real(
+                &O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
+                "Seams of a chart stay on their edges where smooth ones bring its root mean "
+                "square stretch, which has no unit, above this bound. 0 = none, which saves the trial "
+                "flattenings.")
+            .writes(writes_charts | writes_mesh)
+            .result("charts_number", "charts, as many as before")
+            .result("kept_charts_number", "charts whose seams stay because of the bound")
+            .result("smooth_seams_number", "seams, darts and slits that are smooth curves now")
+            .result("kept_seams_number", "those that stay on their edges")
+            .result("new_faces_number", "faces that splitting added")
+            .result("seam_length_before", "length of all cut edges before, model units")
+            .result("seam_length", "the same afterwards")
+            .runs(run_smooth)};
 }
 
 } // namespace devseg::filters
