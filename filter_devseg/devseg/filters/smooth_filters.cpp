@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
 #include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
@@ -49,9 +50,13 @@ std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
-            const judge::TrialMap map = judge::try_chart(mesh, {faces[c].begin(), faces[c].end()},
-                                                         charts.seam, effort, progress);
-            result[at(c)] = !map.flat || map.l2_squared > bound * bound ? 1 : 0;
+            try {
+                const judge::TrialMap map = judge::try_chart(
+                    mesh, {faces[c].begin(), faces[c].end()}, charts.seam, effort, progress);
+                result[at(c)] = !map.flat || map.l2_squared > bound * bound ? 1 : 0;
+            } catch (const NumericalFailure&) { // no way to flatten it at all
+                result[at(c)] = 1;
+            }
         },
         progress);
     return result;
