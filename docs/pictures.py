@@ -236,7 +236,7 @@ def smooth_seams() -> None:
     panels = []
     for smooth in (False, True):
         session = sample("bunny.obj")
-        session.segment(METHODS["dcharts"].filter, charts_number=12)
+        session.apply(METHODS["dcharts"].filter, charts_number=12)
         if smooth:
             session.apply(SMOOTH_FILTER)
         session.apply(FLATTEN_FILTER)

@@ -11,7 +11,7 @@ from typing import Any
 
 from devseg.errors import DevsegError, one_line
 from devseg.lengths import length, millimetres, number, shown, size
-from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS
+from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
 from devseg.pattern import (
     PATTERN_FORMATS,
     PRESETS,
@@ -132,6 +132,12 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--flatten",
         choices=FLATTENINGS,
         help="default: symmetric-dirichlet; lpfb with --method plush",
+    )
+    parser.add_argument(
+        "--seams",
+        choices=("smooth", "edges"),
+        help="smooth curves, which split faces, or edges of the mesh; default: smooth in patterns "
+        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges",
     )
     parser.add_argument(
         "--formats",
@@ -290,6 +296,7 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         tuple(args.objects),
         args.picture,
         args.keep_texcoords,
+        _smooth_seams(args, pattern, parser),
     )
     results = []
     for path in args.input:
@@ -320,6 +327,21 @@ def _list_objects(args: argparse.Namespace) -> None:
         for name, faces in objects.items():
             head = f"{path}: " if len(found) > 1 else ""
             print(f"{head}{name or '(no name)'}\t{faces} faces")
+
+
+def _smooth_seams(
+    args: argparse.Namespace, pattern: dict[str, Any], parser: argparse.ArgumentParser
+) -> bool:
+    """Whether seams become smooth curves: asked for, or a pattern to sew or to cut."""
+    if args.seams == "smooth" and args.method not in SMOOTH_METHODS:
+        parser.error(f"--seams smooth does not apply to --method {args.method}")
+    if args.seams == "smooth" and args.keep_texcoords:
+        parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
+    if args.seams:
+        return args.seams == "smooth"
+    is_pattern = any(kind in PATTERN_FORMATS for kind in args.formats)
+    fits = args.method in SMOOTH_METHODS and not args.keep_texcoords
+    return fits and is_pattern and pattern.get("preset") != PRESETS["papercraft"]
 
 
 def _check_names(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 import platform
 import re
@@ -28,6 +29,7 @@ from devseg.progress import Progress
 SIMPLIFY_FILTER = "meshing_decimation_quadric_edge_collapse"
 DISTANCE_FILTER = "get_hausdorff_distance"
 DEFORM_FILTER = "apply_coord_developable_charts"
+SMOOTH_FILTER = "meshing_smooth_chart_seams"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
@@ -68,6 +70,7 @@ class RunOptions:
         objects: names of the objects of the file to take; none: all.
         picture: whether to draw one.
         keep_texcoords: whether PLY files keep the coordinates of the file beside the new ones.
+        smooth_seams: whether seams become smooth curves, along which the faces are split.
     """
 
     out: Path
@@ -82,6 +85,7 @@ class RunOptions:
     objects: tuple[str, ...] = ()
     picture: bool = True
     keep_texcoords: bool = False
+    smooth_seams: bool = False
 
 
 class Session:
@@ -222,17 +226,67 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         session.warnings.append(
             "the bounds on the stretch of the whole map are not kept; these charts come nearest"
         )
+    kept = None  # the mesh before, where smooth seams may break bounds
+    if options.smooth_seams:
+        with progress.stage("smooth"):
+            if _bounds(options) and made.get("bounds_kept", True):
+                kept = _copy(session)
+            found["smoothing"] = session.apply(SMOOTH_FILTER, **_chart_bound(session, options))
     if options.method.deforms:
         with progress.stage("deform"):
             found["deformation"] = _deform(session)
+    measures = _flatten(session, options, progress)
+    flat = measures["parametrization"]
+    if kept is not None and any(flat[name] > most for name, most in _bounds(options).items()):
+        session.warnings.append(
+            "smooth seams would break the bounds on the stretch: seams stay on edges"
+        )
+        del found["smoothing"]
+        session.meshes.set_current_mesh(kept)
+        measures = _flatten(session, options, progress)
+    return {**found, **measures}
+
+
+def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
+    """Flattens the charts; measures of them, by kind."""
     with progress.stage("flatten"):
         session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
     with progress.stage("measure"):
         return {
-            **found,
             "segmentation": session.apply(SEGMENTATION_MEASURES),
             "parametrization": session.apply(PARAMETRIZATION_MEASURES),
         }
+
+
+def _chart_bound(session: Session, options: RunOptions) -> dict[str, float]:
+    """The bound on each chart that the segmentation kept, for the filter that smooths its seams."""
+    name = "max_chart_l2_stretch"
+    used = session.parameters.get(options.method.filter, {})
+    return {name: used[name]} if used.get(name) else {}
+
+
+def _bounds(options: RunOptions) -> dict[str, float]:
+    """Bounds on the stretch that the segmentation was given, by the name of the measure."""
+    names = {"max_l2_stretch": "l2_stretch", "max_linf_stretch": "linf_stretch"}
+    given = options.segmentation
+    return {measure: given[bound] for bound, measure in names.items() if given.get(bound)}
+
+
+def _copy(session: Session) -> int:
+    """Copies the current mesh with its attributes, which the host's own copy lacks; its number."""
+    meshes = session.meshes
+    original = meshes.current_mesh()
+    number = meshes.current_mesh_id()
+    values = {}
+    for name in ("chart_id", "seam_edges", scene.PART_ATTRIBUTE):
+        with contextlib.suppress(host.pymeshlab().PyMeshLabException):
+            values[name] = original.face_custom_scalar_attribute_array(name)
+    session.call("generate_copy_of_current_mesh")
+    copy = meshes.current_mesh_id()
+    for name, of_faces in values.items():
+        meshes.current_mesh().add_face_custom_scalar_attribute(of_faces, name)
+    meshes.set_current_mesh(number)
+    return copy
 
 
 def simplify(session: Session, target_faces: int) -> dict[str, Any]:

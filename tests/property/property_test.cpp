@@ -142,7 +142,7 @@ TEST(Property, SmoothSeamsOfRandomChartsAreSound) {
         const declare::FilterDeclaration& filter = filter_named("Charts: Smooth Seams");
         const auto made = attempt(
             filter, host,
-            random_values(filter, static_cast<Index>(mesh.raw.faces.size()), "", random), false);
+            random_values(filter, static_cast<Index>(mesh.raw.faces.size()), "", random), true);
         if (!made)
             return;
         checks::expect_complete(mesh.raw, *made);

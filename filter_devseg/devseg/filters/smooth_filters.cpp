@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
 #include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
@@ -49,9 +50,13 @@ std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
-            const judge::TrialMap map = judge::try_chart(mesh, {faces[c].begin(), faces[c].end()},
-                                                         charts.seam, effort, progress);
-            result[at(c)] = !map.flat || map.l2_squared > bound * bound ? 1 : 0;
+            try {
+                const judge::TrialMap map = judge::try_chart(
+                    mesh, {faces[c].begin(), faces[c].end()}, charts.seam, effort, progress);
+                result[at(c)] = !map.flat || map.l2_squared > bound * bound ? 1 : 0;
+            } catch (const NumericalFailure&) { // no way to flatten it at all
+                result[at(c)] = 1;
+            }
         },
         progress);
     return result;
@@ -116,27 +121,29 @@ FilterOutput run_smooth(const FilterInput& input, const Options& options, Progre
 
 std::vector<FilterDeclaration> smooth_filters() {
     using O = Options;
-    return {Declare<O>("Charts: Smooth Seams", "meshing_smooth_chart_seams",
-                       FilterCategory::remeshing, smooth_help)
-                .real(&O::smoothness, "Smoothness",
-                      "Length of the waves that go, as a share of the diagonal of the model's box: "
-                      "0.01 = 1 %; at least that of the edges on seams.")
-                .real(&O::keep_creases, "Keep creases (degrees)",
-                      "Seams on edges where the surface bends by more, in degrees, stay where they "
-                      "are. 180 = none.")
-                .real(&O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
-                      "Seams of a chart stay on their edges where smooth ones bring its root mean "
-                      "square stretch above this bound, without unit, from 1 on. 0 = none, which saves the trial "
-                      "flattenings.")
-                .writes(writes_charts | writes_mesh)
-                .result("charts_number", "charts, as many as before")
-                .result("kept_charts_number", "charts whose seams stay because of the bound")
-                .result("smooth_seams_number", "seams, darts and slits that are smooth curves now")
-                .result("kept_seams_number", "those that stay on their edges")
-                .result("new_faces_number", "faces that splitting added")
-                .result("seam_length_before", "length of all cut edges before, model units")
-                .result("seam_length", "the same afterwards")
-                .runs(run_smooth)};
+    return {
+        Declare<O>("Charts: Smooth Seams", "meshing_smooth_chart_seams", FilterCategory::remeshing,
+                   smooth_help)
+            .real(&O::smoothness, "Smoothness",
+                  "Length of the waves that go, as a share of the diagonal of the model's box: "
+                  "0.01 = 1 %; at least that of the edges on seams.")
+            .real(&O::keep_creases, "Keep creases (degrees)",
+                  "Seams on edges where the surface bends by more, in degrees, stay where they "
+                  "are. 180 = none.")
+            .real(
+                &O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
+                "Seams of a chart stay on their edges where smooth ones bring its root mean "
+                "square stretch, which has no unit, above this bound. 0 = none, which saves the trial "
+                "flattenings.")
+            .writes(writes_charts | writes_mesh)
+            .result("charts_number", "charts, as many as before")
+            .result("kept_charts_number", "charts whose seams stay because of the bound")
+            .result("smooth_seams_number", "seams, darts and slits that are smooth curves now")
+            .result("kept_seams_number", "those that stay on their edges")
+            .result("new_faces_number", "faces that splitting added")
+            .result("seam_length_before", "length of all cut edges before, model units")
+            .result("seam_length", "the same afterwards")
+            .runs(run_smooth)};
 }
 
 } // namespace devseg::filters

@@ -137,6 +137,12 @@ std::vector<ParameterValue> other_values(const Parameter& p) {
     }
     if (p.name == "max_linf_stretch" || p.name == "max_chart_l2_stretch")
         return {1.01}; // 0 means no bound, and between 0 and 1 there is nothing to ask for
+    if (p.name == "max_chart_l2_stretch") { // one between a chart's stretch before and afterwards
+        std::vector<ParameterValue> bounds;
+        for (double excess = 1e-3; excess < 1.0; excess *= 1.03)
+            bounds.emplace_back(1.0 + excess);
+        return bounds;
+    }
     return {p.maximum, p.minimum + 0.1, p.minimum + 1e-3 * (now - p.minimum)};
 }
 
