@@ -92,14 +92,6 @@ void set_thread_limit(int threads) {
 void parallel_for(int count, const std::function<void(int)>& task, Progress& progress) {
     if (count <= 0)
         return;
-    if (worker_count(count) == 1) { // a thread costs more than many a task
-        for (int index = 0; index < count; ++index) {
-            progress.check();
-            task(index);
-            progress.update((index + 1.0) / count);
-        }
-        return;
-    }
     Pool pool;
     std::vector<std::thread> workers = start_workers(pool, count, task);
 

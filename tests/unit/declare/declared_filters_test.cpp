@@ -135,7 +135,7 @@ std::vector<ParameterValue> other_values(const Parameter& p) {
     case ParameterKind::real:
         break;
     }
-    if (p.name == "max_linf_stretch" || p.name == "max_chart_l2_stretch")
+    if (p.name == "max_linf_stretch")
         return {1.01}; // 0 means no bound, and between 0 and 1 there is nothing to ask for
     if (p.name == "max_chart_l2_stretch") { // one between a chart's stretch before and afterwards
         std::vector<ParameterValue> bounds;
@@ -154,15 +154,21 @@ HostMesh cubes_and_a_finger() {
     return checks::host_of(all);
 }
 
+HostResult refused(const std::exception& error) {
+    HostResult result;
+    result.notes = {error.what()};
+    return result;
+}
+
 // A filter that refuses because it cannot reach a bound has another result than one that does.
 HostResult run_or_refuse(const FilterDeclaration& filter, const HostMesh& host,
                          const ParameterValues& values) {
     try {
         return run(filter, host, values);
     } catch (const NumericalFailure& error) {
-        HostResult refused;
-        refused.notes = {error.what()};
-        return refused;
+        return refused(error);
+    } catch (const InvalidParameter& error) {
+        return refused(error);
     }
 }
 

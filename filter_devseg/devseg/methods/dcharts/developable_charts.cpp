@@ -351,6 +351,15 @@ DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::Coarse
 // A surface in one piece.
 DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOptions& options,
                                     Progress& progress) {
+    if (mesh::flat_regions(mesh).count == 1) {
+        DevelopableCharts sheet;
+        sheet.chart.assign(mesh.faces.size(), 0);
+        sheet.seam.assign(mesh.twin.size(), 0);
+        sheet.above.assign(mesh.faces.size(), 0);
+        sheet.converged = true;
+        sheet.l2_stretch = sheet.linf_stretch = options.charts_number == 0 ? 1.0 : 0.0;
+        return sheet;
+    }
     SegmentationPlan plan = make_plan(mesh, options);
     auto coarsening = progress.part("coarsening", 0.06);
     const std::optional<mesh::CoarseMesh> decimation = decimate(

@@ -144,7 +144,7 @@ TEST(ChartBounds, ANoisyCylinderStaysInFewCharts) {
     const DevelopableCharts charts = segment(mesh, 10);
     EXPECT_LE(count(charts), 2);
     EXPECT_EQ(std::count(charts.above.begin(), charts.above.end(), 1), 0);
-    EXPECT_GT(charts.roughness, 0.001);
+    EXPECT_GT(charts.roughness, 1e-4);
 }
 
 TEST(ChartBounds, CleanSurfacesAreNotRough) {
@@ -189,7 +189,9 @@ TEST(Joins, PartsOfBordersAreClosedWhereTheWholeIsNotFlat) {
     merge_charts(mesh, options, draft, progress);
     EXPECT_EQ(draft.charts_number(), 1);
     EXPECT_NEAR(draft.excess(), 0.0, 1e-9);
-    const auto cuts = std::count(draft.seam.begin(), draft.seam.end(), 1) / 2;
+    const atlas::DiskCuts net = atlas::cut_charts_to_disks(
+        mesh, atlas::make_chart_map(mesh, draft.chart, draft.seam, false), progress);
+    const auto cuts = std::count(net.charts.seam.begin(), net.charts.seam.end(), 1) / 2;
     EXPECT_EQ(cuts, 7); // of the 12 edges a net folds 5
 
     options.parts_above = 6; // whole borders alone
