@@ -15,6 +15,7 @@ TABLE = {
             "add_darts",
             "max_l2_stretch",
             "max_linf_stretch",
+            "max_chart_l2_stretch",
             "max_iterations",
             "random_seed",
             "weld",

@@ -78,7 +78,7 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
     const bool few = problem.outlines.size() <= few_charts;
     const bool many = problem.outlines.size() > many_charts; // whose work is enough for two chains
     std::vector<CoarseLayout> begun(few ? std::size(few_aspects) : many ? finished_chains : chains);
-    auto beginning = progress.part(0.5);
+    auto beginning = progress.part(0.4);
     parallel_for(
         static_cast<int>(begun.size()),
         [&](int k) {
@@ -95,7 +95,7 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
         begun.resize(finished_chains);
     }
     std::vector<std::vector<Placement>> found(begun.size());
-    auto finishing = progress.part(0.5);
+    auto finishing = progress.part(0.6);
     parallel_for(
         static_cast<int>(found.size()),
         [&](int k) { found[k] = finish_nesting(problem, begun[k], finishing); }, finishing);
@@ -117,7 +117,7 @@ std::vector<Placement> nest(NestProblem& problem, Progress& progress) {
 std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& options,
                                    Progress& progress) {
     const std::vector<Outline>& outlines = problem.outlines;
-    auto fitting = progress.part(0.3);
+    auto fitting = progress.part(0.2);
     std::vector<Placement> fitted = pack_first_fit(outlines, options, problem.side, fitting);
     auto compacting = progress.part(0.1);
     parallel_for(
@@ -129,7 +129,7 @@ std::vector<Placement> fit_or_nest(NestProblem& problem, const PackOptions& opti
     if (outlines.size() > most_nested ||
         area >= (many ? enough_use_of_many : enough_use) * fitted_box.prod())
         return fitted;
-    auto nesting = progress.part(0.6);
+    auto nesting = progress.part(0.7);
     std::vector<Placement> nested = nest(problem, nesting);
     return badness(box_of(outlines, nested).sizes()) < badness(fitted_box) ? nested : fitted;
 }
