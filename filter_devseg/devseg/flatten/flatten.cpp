@@ -19,9 +19,11 @@ namespace {
 
 struct Tuning {
     double sliver_share = 0.01; // of the mesh's area: smaller parts are slivers
-    // What a joined map may lose: excess of its energy, as a share of the mesh's area, and the
-    // stretch of its worst face, which may in any case be as high as that of the parts.
-    double allowed_excess = 2e-4;
+    // What a joined map may lose over the worse one of its parts: excess of its mean energy, as a
+    // share and as such, and the stretch of its worst face, which may in any case be as high as
+    // that of the parts. So charts keep bounds of their stretch but for 5 %.
+    double excess_factor = 1.05;
+    double allowed_excess = 1e-4;
     double allowed_stretch = 1.5;
     double least_hinge = 0.3; // length of the edge over the root of the part's area
 };
@@ -151,10 +153,10 @@ private:
             return false;
         if (!flatten_one(mesh_, method, joined, progress).empty())
             return false;
-        const double before = excess_of(small) + excess_of(large);
+        const double before = std::max(small.energy, large.energy) - 1.0;
         const double worst =
             std::max({tuning.allowed_stretch, stretch_of(small), stretch_of(large)});
-        if (excess_of(joined) > before + tuning.allowed_excess * mesh_.total_area ||
+        if (joined.energy - 1.0 > tuning.excess_factor * before + tuning.allowed_excess ||
             stretch_of(joined) > worst)
             return false;
         result_.charts.seam = std::move(seam);
@@ -193,10 +195,6 @@ private:
         for (const Face f : flat(part).surface.face)
             result_.charts.chart[f] = other;
         flat(other) = std::move(joined);
-    }
-
-    double excess_of(const FlatChart& chart) const {
-        return (chart.energy - 1.0) * atlas::area_of(mesh_, chart.surface);
     }
 
     double stretch_of(const FlatChart& chart) const {

@@ -10,6 +10,8 @@
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/maps/lscm.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/plane/overlap.h"
 
 namespace devseg::judge {
 
@@ -65,6 +67,8 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
         place[f] = seen[at(part.chart[f])]++;
     for (std::size_t c = 0; c < maps.size(); ++c)
         maps[c].turns.resize(charts[c].size());
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        maps[c].part.resize(charts[c].size());
     std::vector<double> excess(charts.size(), 0.0);
     std::vector<int> parts(charts.size(), 0);
     for (const flatten::FlatChart& flat : result.flat) {
@@ -76,12 +80,17 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
         maps[at(c)].area += map.area;
         maps[at(c)].linf = std::max(maps[at(c)].linf, map.linf);
         const std::vector<Vec2> turns = flatten::face_turns(problem, flat.uv);
-        for (std::size_t f = 0; f < turns.size(); ++f)
-            maps[at(c)].turns[at(place[at(flat.surface.face[f])])] = turns[f];
+        for (std::size_t f = 0; f < turns.size(); ++f) {
+            const Index at_place = place[at(flat.surface.face[f])];
+            maps[at(c)].turns[at(at_place)] = turns[f];
+            maps[at(c)].part[at(at_place)] = parts[at(c)];
+        }
         ++parts[at(c)];
     }
     for (std::size_t c = 0; c < maps.size(); ++c) {
         maps[c].flat = parts[c] == 1;
+        if (maps[c].flat)
+            maps[c].part.clear();
         if (maps[c].area > 0.0)
             maps[c].l2_squared = 1.0 + excess[c] / maps[c].area;
     }
@@ -101,7 +110,9 @@ bool is_surely_within(const Mesh& mesh, const std::vector<Index>& faces,
         flatten::scale_to_area(problem, map);
         return map;
     });
-    if (uv.empty() || flatten::count_flips(problem, uv) > 0)
+    if (uv.empty() || flatten::count_flips(problem, uv) > 0 ||
+        !flatten::overlapping_pairs(surface, uv, plane::layout_tolerance(problem.model_size))
+             .empty())
         return false;
     return 2.0 * (flatten::symmetric_dirichlet_energy(problem, uv) - 1.0) <= l2 * l2 - 1.0;
 }

@@ -11,8 +11,9 @@ namespace devseg::judge {
 
 /// The final maps of disjoint charts, each given by its faces (ascending), cut open along the
 /// marked edges (`seam`, 3 #F of the mesh) and to disks: cut, flattened and repaired as the filter
-/// does it. `flat` is false where a chart lies on itself and is cut apart by that; the stretch is
-/// then that of its parts. All cores; only the thread that runs the filter may call it.
+/// does it. `flat` is false where a chart lies on itself and is cut apart by that; `part` is then
+/// filled in, and the stretch is that of the parts. All cores; only the thread that runs the filter
+/// may call it.
 std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, Progress& progress);
 

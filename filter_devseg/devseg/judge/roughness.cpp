@@ -74,15 +74,19 @@ Roughness roughness(const Mesh& mesh, Progress& progress) {
                 maps[at(i)] = try_chart(mesh, around, no_cuts, TrialEffort(), progress);
         },
         progress);
+    // The median: neighbourhoods of corners and tips are no roughness.
+    std::vector<double> excess;
     Roughness result;
-    double area = 0.0;
     for (const TrialMap& map : maps)
         if (map.flat) {
-            result.excess += map.excess();
+            excess.push_back(map.l2_squared - 1.0);
             result.linf = std::max(result.linf, map.linf);
-            area += map.area;
         }
-    result.excess = area > 0.0 ? std::max(0.0, result.excess / area) : 0.0;
+    if (excess.empty())
+        return {};
+    const auto middle = excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2);
+    std::nth_element(excess.begin(), middle, excess.end());
+    result.excess = std::max(0.0, *middle);
     return result;
 }
 

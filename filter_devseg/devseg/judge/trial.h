@@ -20,6 +20,7 @@ struct TrialMap {
     double cut_length = 0.0; // of the cuts that made it a disk, internal units
     std::vector<Index> worst_faces; // of the mesh: local maxima of the stretch, the worst first
     std::vector<double> peaks;      // Γ there
+    std::vector<Index> part; // of each face, where flattening cuts the chart apart; else empty
     std::vector<Vec2> turns; // of each face, see flatten::face_turns, in the order of the faces
 
     /// Σ A (l2² − 1): what the charts of a segmentation add up to.

@@ -95,8 +95,9 @@ private:
     bool is_above(Index c) const {
         const TrialMap& map = draft_.map[c];
         return known_[c] == Known::map &&
-               ((bounds_.chart_l2 > 0.0 && map.l2_squared - 1.0 - bounds_.roughness >
-                                               bounds_.chart_l2 * bounds_.chart_l2 - 1.0) ||
+               ((bounds_.chart_l2 > 0.0 &&
+                 map.l2_squared - 1.0 - bounds_.roughness >
+                     tuning.certain * (bounds_.chart_l2 * bounds_.chart_l2 - 1.0)) ||
                 (bounds_.linf > 0.0 && map.linf > bounds_.linf));
     }
 
@@ -108,7 +109,7 @@ private:
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c) {
             if (draft_.faces[c].empty() || whole_[c] != 0)
                 continue;
-            if (is_above(c)) {
+            if (is_above(c) || !draft_.map[c].part.empty()) {
                 above.push_back(c);
             } else {
                 excess += draft_.map[c].excess();
@@ -126,9 +127,13 @@ private:
         return above;
     }
 
-    // Darts first; then the chart is split.
+    // Parts that flattening cuts apart become charts. Else darts first; then the chart is split.
     bool take_down(Index c, Progress& progress) {
         const std::size_t before = draft_.faces.size();
+        if (!draft_.map[c].part.empty()) {
+            divide(c);
+            return true;
+        }
         if (bounds_.add_darts && darted_[c] == 0 && cut_darts(c, progress)) {
             darted_[c] = touched_[c] = 1;
             known_[c] = Known::nothing;
@@ -147,6 +152,25 @@ private:
         for (std::size_t n = before; n < draft_.faces.size(); ++n)
             touched_[n] = 1;
         return true;
+    }
+
+    // The first part keeps the number.
+    void divide(Index c) {
+        const std::vector<Index> part = std::move(draft_.map[c].part);
+        const std::vector<Index> faces = std::move(draft_.faces[c]);
+        const Index first_new = static_cast<Index>(draft_.faces.size()) - 1;
+        draft_.faces[c].clear();
+        draft_.faces.resize(draft_.faces.size() + at(*std::max_element(part.begin(), part.end())));
+        draft_.map.resize(draft_.faces.size());
+        resize();
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            const Index to = part[i] == 0 ? c : first_new + part[i];
+            draft_.chart[faces[i]] = to;
+            draft_.faces[to].push_back(faces[i]);
+            touched_[to] = 1;
+        }
+        draft_.map[c] = {};
+        known_[c] = Known::nothing;
     }
 
     // On a coarse version of the chart. False where that does not bring it within its bounds.

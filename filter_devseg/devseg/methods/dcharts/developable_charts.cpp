@@ -155,8 +155,8 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     merging.keep_corners = plan.creased;
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
-        merging.chart.hard_l2 =
-            std::sqrt(options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.rough.excess);
+        merging.chart.hard_l2 = std::sqrt(
+            options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.rough.excess);
         merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
     }
     merging.max_excess = aim.max_excess;

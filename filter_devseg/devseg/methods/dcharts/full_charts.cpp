@@ -135,8 +135,7 @@ void measure_stretch(const Mesh& mesh, DevelopableCharts& charts, Progress& prog
     const Draft draft = make_untried_draft(mesh, charts.chart);
     double excess = 0.0;
     charts.linf_stretch = 1.0;
-    for (const judge::TrialMap& map :
-         judge::final_maps(mesh, draft.faces, charts.seam, progress)) {
+    for (const judge::TrialMap& map : judge::final_maps(mesh, draft.faces, charts.seam, progress)) {
         excess += map.excess();
         charts.linf_stretch = std::max(charts.linf_stretch, map.linf);
     }

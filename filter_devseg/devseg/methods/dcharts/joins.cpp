@@ -374,7 +374,8 @@ private:
         const bool may_overlap = verdict.whole && !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
             !bounds_of(closing.charts).hold(verdict.map) ||
-            !(excess + verdict.added <= options_.max_excess) || !(verdict.saved > tuning.negligible * std::sqrt(mesh_.total_area)) ||
+            !(excess + verdict.added <= options_.max_excess) ||
+            !(verdict.saved > tuning.negligible * std::sqrt(mesh_.total_area)) ||
             verdict.saved < least)
             return infinite;
         return (std::max(0.0, verdict.added) + tuning.negligible * mesh_.total_area) /

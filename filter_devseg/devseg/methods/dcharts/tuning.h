@@ -24,7 +24,7 @@ struct Tuning {
 
     // Stretch that equal lengths of border are worth when two joins cost next to nothing: a share
     // of the area for each √area of border.
-    double negligible = 1e-5; // and of √area: a cut of this length is none
+    double negligible = 1e-5;     // and of √area: a cut of this length is none
     double small_allowance = 3.0; // of small charts, over the bounds of others
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
@@ -68,10 +68,12 @@ struct Tuning {
     int most_splits = 200;
     double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
     int most_attempts = 2;       // on the coarse surface; then the full one decides
-    int few_darts = 4;           // of a chart above its bound; then it is split
-    double first_share = 0.9;    // of the allowed stretch that the coarse surface may use
-    double chart_excess = 4.0;   // of one chart over that of the whole
-    double loose_linf = 8.0;     // worst spots count little where they have no bound
+    // Of a chart's bound, that its map may use: flattening may give it slivers of its neighbours.
+    double certain = 0.95;
+    int few_darts = 4;         // of a chart above its bound; then it is split
+    double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
+    double chart_excess = 4.0; // of one chart over that of the whole
+    double loose_linf = 8.0;   // worst spots count little where they have no bound
 };
 inline constexpr Tuning tuning;
 
