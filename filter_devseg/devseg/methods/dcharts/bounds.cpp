@@ -119,8 +119,8 @@ private:
         if (draft_.excess() <= bounds_.max_excess)
             return above;
         std::sort(rest.begin(), rest.end());
-        for (std::size_t i = 0;
-             i < rest.size() && excess > tuning.room_for_joins * bounds_.max_excess; ++i) {
+        for (std::size_t i = 0; i < rest.size() && excess > tuning.first_share * bounds_.max_excess;
+             ++i) {
             above.push_back(rest[i].second);
             excess += rest[i].first;
         }

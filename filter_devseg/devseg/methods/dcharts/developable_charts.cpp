@@ -279,6 +279,9 @@ void keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
     MergeOptions merging = merge_options(plan, aim);
     merging.max_excess = bounds.max_excess;
     merging.confirm = options.merge_charts;
+    // Parts of borders are many, and a trial on a large surface is slow.
+    if (mesh.face_count() > tuning.decimated_faces)
+        merging.parts_above = mesh.face_count();
     bounds.add_darts = options.add_darts;
     keep_bounds(mesh, bounds, plan.growing, merging, charts, progress);
 }
@@ -302,8 +305,8 @@ void split_worst(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim,
     }
 }
 
-// The fewest charts within the bounds: what the coarse surface may use of them is lowered once
-// where the map of the full surface does not keep them, and what is still above is cut.
+// The fewest charts within the bounds: found on the coarse surface, then cut where the map of the
+// full one does not keep them.
 DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::CoarseMesh>& decimation,
                               const SegmentationPlan& plan, const DChartsResult& patches,
                               double roughness, Progress& progress) {
@@ -316,36 +319,21 @@ DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::Coarse
     aim.chart.linf = options.max_linf_stretch > 0.0
                          ? options.max_linf_stretch
                          : bounds_from(tuning.loose_linf * (options.max_l2_stretch - 1.0)).linf;
-    double share = tuning.first_share;
+    aim.max_excess = tuning.first_share * allowed * coarse.total_area;
     auto trying = progress.part("trying charts", 0.04);
     Decided decided{patches, make_draft(coarse, patches.chart, {}, options.max_l2_stretch, trying)};
-    const Draft start = decided.draft;
-    DevelopableCharts best;
-    for (int attempt = 0; attempt < tuning.most_attempts; ++attempt) {
-        aim.max_excess = share * allowed * coarse.total_area;
-        decided.draft = start;
-        auto trial = progress.part(0.4);
-        auto splitting = trial.part("splitting charts", 0.04);
-        split_worst(coarse, plan, aim, decided.draft, splitting);
-        auto improving = trial.part(0.76);
-        improve(coarse, plan, aim, decided.draft, improving);
-        auto finishing = trial.part(0.1);
-        DevelopableCharts found =
-            finish(mesh, decimation, plan, decided, Straightening::smooth, finishing);
-        auto measuring = trial.part(1.0);
-        measure_stretch(mesh, found, measuring);
-        const double reached = found.l2_stretch * found.l2_stretch - 1.0;
-        if (best.chart.empty() || distance(options, found) < distance(options, best))
-            best = std::move(found);
-        if (distance(options, best) <= 1.0)
-            break;
-        share *= std::min(0.9, allowed / reached);
-    }
-    best.roughness = roughness;
+    auto splitting = progress.part("splitting charts", 0.04);
+    split_worst(coarse, plan, aim, decided.draft, splitting);
+    auto improving = progress.part(0.5);
+    improve(coarse, plan, aim, decided.draft, improving);
+    auto finishing = progress.part(0.1);
+    DevelopableCharts found =
+        finish(mesh, decimation, plan, decided, Straightening::smooth, finishing);
+    found.roughness = roughness;
     auto keeping = progress.part(progress.left());
-    keep_final_bounds(mesh, plan, aim, best, keeping);
-    best.bounds_kept = distance(options, best) <= 1.0;
-    return best;
+    keep_final_bounds(mesh, plan, aim, found, keeping);
+    found.bounds_kept = distance(options, found) <= 1.0;
+    return found;
 }
 
 // A surface in one piece.

@@ -5,7 +5,6 @@
 
 #include "devseg/atlas/fragments.h"
 #include "devseg/graph/shortest_paths.h"
-#include "devseg/judge/final_map.h"
 #include "devseg/mesh/flat_regions.h"
 #include "devseg/methods/dcharts/tuning.h"
 #include "devseg/methods/growth/borders.h"
@@ -129,17 +128,6 @@ DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMes
     result.chart = atlas::make_chart_map(mesh, result.chart, result.seam, true).chart;
     progress.check();
     return result;
-}
-
-void measure_stretch(const Mesh& mesh, DevelopableCharts& charts, Progress& progress) {
-    const Draft draft = make_untried_draft(mesh, charts.chart);
-    double excess = 0.0;
-    charts.linf_stretch = 1.0;
-    for (const judge::TrialMap& map : judge::final_maps(mesh, draft.faces, charts.seam, progress)) {
-        excess += map.excess();
-        charts.linf_stretch = std::max(charts.linf_stretch, map.linf);
-    }
-    charts.l2_stretch = std::sqrt(1.0 + std::max(0.0, excess) / mesh.total_area);
 }
 
 } // namespace devseg::dcharts

@@ -27,7 +27,4 @@ DevelopableCharts transfer(const Mesh& mesh, const std::optional<mesh::CoarseMes
                            double max_fitting_error, Straightening straightening,
                            Progress& progress);
 
-/// Fills in the stretch of the charts' final map.
-void measure_stretch(const Mesh& mesh, DevelopableCharts& charts, Progress& progress);
-
 } // namespace devseg::dcharts

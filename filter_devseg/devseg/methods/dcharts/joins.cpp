@@ -371,7 +371,7 @@ private:
                 ? 0.0
                 : options_.least_neck *
                       std::sqrt(std::min(draft_.map[first].area, draft_.map[second].area));
-        const bool may_overlap = verdict.whole && !options_.keep_corners;
+        const bool may_overlap = verdict.whole && !options_.keep_corners && !options_.confirm;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
             !bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) ||

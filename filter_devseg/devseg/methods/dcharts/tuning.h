@@ -67,7 +67,6 @@ struct Tuning {
     Index automatic_seeds = 10; // where the number of charts is to be found
     int most_splits = 200;
     double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
-    int most_attempts = 2;       // on the coarse surface; then the full one decides
     // Of a chart's bound, that its map may use: flattening may give it slivers of its neighbours.
     double certain = 0.95;
     int few_darts = 4;         // of a chart above its bound; then it is split
