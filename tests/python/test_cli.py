@@ -180,19 +180,18 @@ def run_devseg(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 def test_bounds_on_the_stretch_find_the_number_of_charts(obj: Callable, tmp_path: Path) -> None:
     path = obj(meshes.sphere())
     stretches = []
-    numbers = []
+    seams = []
     for bound in (1.05, 1.0005):
-        done = run_devseg(
-            "run", path, "-o", tmp_path, "--json", "--max-l2-stretch", bound, "--height", "9cm"
-        )
+        limits = ["--max-l2-stretch", bound, "--height", "9cm", "--seams", "edges"]
+        done = run_devseg("run", path, "-o", tmp_path, "--json", *limits)
         assert done.returncode == 0
         result = json.loads(done.stdout)
         filter_name = "compute_segmentation_dcharts_per_face"
         assert result["parameters"][filter_name]["charts_number"] == 0
         stretches.append(result["parametrization"]["l2_stretch"])
-        numbers.append(result["parametrization"]["charts_number"])
+        seams.append(result["parametrization"]["seam_length"])
         assert 1 < stretches[-1] <= bound
-    assert numbers[0] < numbers[1]
+    assert seams[0] < seams[1]
 
 
 def test_every_chart_keeps_its_bound(obj: Callable, tmp_path: Path) -> None:
@@ -259,8 +258,8 @@ def test_measure_needs_texture_coordinates(obj: Callable, fails: Callable[..., s
 
 
 def test_filter_errors_are_passed_on(obj: Callable, tmp_path: Path, fails: Callable) -> None:
-    error = fails("run", obj(meshes.cube()), "-o", tmp_path / "out", "--charts", 13)
-    assert "12" in error and "13" in error and "Failed to apply" not in error
+    error = fails("run", obj(meshes.cube()), "-o", tmp_path / "out", "--fold-angle", 999)
+    assert "180" in error and "999" in error and "Failed to apply" not in error
     assert not (tmp_path / "out").exists()
 
 

@@ -45,13 +45,16 @@ FIRST = [
     "compute_texcoord_parametrization_charts_per_wedge",
 ]
 
+SMOOTH = "meshing_smooth_chart_seams"
+
 
 def filter_names() -> list[str]:
     """All filters of the plugins: before there are charts and coordinates, and after."""
     names = [filter_["python_name"] for filter_ in hosts.declarations()]
     segmentations = [name for name in names if name.startswith("compute_segmentation")]
-    rest = [name for name in names if name not in segmentations and name != FIRST[-1]]
-    return [*FIRST[:4], *reversed(segmentations), FIRST[-1], *rest]
+    last = (SMOOTH, FIRST[-1])  # as `devseg run` does it: coordinates come after the last cuts
+    rest = [name for name in names if name not in segmentations and name not in last]
+    return [*FIRST[:4], *reversed(segmentations), *last, *rest]
 
 
 def processor_seconds(pid: int) -> float:

@@ -189,7 +189,7 @@ def test_neighbors_differ_in_color(segmented: Any) -> None:
     ("parameter", "value"),
     [
         ("charts_number", -1),
-        ("charts_number", 10**6),
+        ("max_chart_l2_stretch", 0.5),
         ("max_fitting_error", 0.0),
         ("max_fitting_error", -1.0),
     ],

@@ -97,7 +97,7 @@ def test_objects_are_listed_and_chosen(
     assert main(["run", str(tree), "--list-objects", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)[str(tree)]["object 0"] == 12
     out = ["-o", str(tmp_path / "out"), "--json", "--formats", "svg", "--longest-mm", "90"]
-    chosen = ["--object", "object 0", "--object", "object 2"]
+    chosen = ["--object", "object 0", "--object", "object 2", "--seams", "edges"]
     assert main(["run", str(tree), *out, *chosen]) == 0
     result = json.loads(capfd.readouterr().out)
     assert [(part["object"], part["faces"]) for part in result["parts"]] == [
@@ -241,7 +241,7 @@ def test_parts_survive_simplification(tmp_path: Path) -> None:
         lines += [f"o {name}", *("f {} {} {}".format(*(f + shift)) for f in faces)]
     path = tmp_path / "balls.obj"
     path.write_text("\n".join(lines) + "\n")
-    result = run_json(path, "-o", tmp_path / "out", "--target-faces", 600)
+    result = run_json(path, "-o", tmp_path / "out", "--target-faces", 600, "--seams", "edges")
     assert [part["object"] for part in result["parts"]] == ["left", "right"]
     assert [part["faces"] for part in result["parts"]] == pytest.approx([300, 300], abs=30)
 
@@ -374,17 +374,15 @@ def test_a_solid_that_is_inside_out_is_turned(obj: Callable, tmp_path: Path) -> 
 
 
 def test_notes_of_the_export_are_warnings(obj: Callable, tmp_path: Path) -> None:
-    vertices, faces = meshes.cylinder(20, 100)
-    path = obj((vertices, faces))
-    limits = ["--max-piece-mm", "5", "--charts", "1", "--preset", "plain"]
-    warnings = run_json(path, "-o", tmp_path / "out", *limits)["warnings"]
-    assert any("larger than max_piece_mm" in warning for warning in warnings)
+    path = obj(meshes.cube())
+    warnings = run_json(path, "-o", tmp_path / "out", "--longest-mm", "1")["warnings"]
+    assert any("no room for a name" in warning for warning in warnings)
 
 
 def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[..., str]) -> None:
     path = obj((90 * meshes.cube()[0], meshes.cube()[1]))
-    error = fails("run", path, "-o", tmp_path / "out", "--charts", "13")
-    assert ": --charts: expected" in error
+    error = fails("run", path, "-o", tmp_path / "out", "--fold-angle", "999")
+    assert ": --fold-angle: expected" in error
     error = fails("run", path, "-o", tmp_path / "out", "--page", "a4", "--page-margin-mm", "100")
     assert ": --page-margin-mm: expected margins" in error
 
