@@ -27,8 +27,9 @@ struct Closing {
     std::vector<Index> edges;
 };
 
-// What a trial has found. Parts of borders are tried again only where an older verdict makes them
-// the best that there is: the more of a chart is closed, the more another part costs.
+// What a trial has found. Parts of borders, and on the surface itself all borders, are tried again
+// only where an older verdict makes them the best that there is: the more of a chart is closed, the
+// more another part costs.
 struct Verdict {
     TrialMap map;       // of the joined chart
     double added = 0.0; // excess
@@ -189,7 +190,8 @@ private:
         if (encloses_corner(closing))
             return nullptr;
         const auto known = last.find(key);
-        const bool is_known = known != last.end() && (known->second.second.fresh || !whole);
+        const bool is_known =
+            known != last.end() && (known->second.second.fresh || !whole || options_.confirm);
         const auto [entry, is_new] = verdicts_.try_emplace(
             std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
         if (is_new)
