@@ -96,7 +96,18 @@ TEST(Property, AtlasesOfBrokenMeshesAreValid) {
     });
 }
 
-// Charts that nobody would make: random labels and cuts.
+// Charts that nobody would make: random labels, which change at one of `run` faces, and cuts.
+declare::HostMesh with_random_charts(declare::HostMesh host, Index run, Random& random) {
+    const Index labels = 1 + random.below(4);
+    const Index cuts = random.below(3) == 0 ? 0 : 1 + random.below(30);
+    for (std::size_t f = 0; f < host.geometry.faces.size(); ++f) {
+        const bool same = f > 0 && random.below(run) > 0;
+        host.chart_id.push_back(same ? host.chart_id.back() : random.below(labels));
+        host.seam_edges.push_back(cuts > 0 && random.below(cuts) == 0 ? random.below(8) : 0);
+    }
+    return host;
+}
+
 TEST(Property, AtlasesOfRandomChartsAreValid) {
     for_random_cases(30, [](Random& random) {
         const RandomMesh mesh =
@@ -104,14 +115,7 @@ TEST(Property, AtlasesOfRandomChartsAreValid) {
         if (!has_area(mesh.raw))
             return;
         SCOPED_TRACE(mesh.recipe);
-        declare::HostMesh host = host_of(mesh.raw);
-        const Index labels = 1 + random.below(4);
-        const Index cuts = random.below(3) == 0 ? 0 : 1 + random.below(30);
-        for (std::size_t f = 0; f < mesh.raw.faces.size(); ++f) {
-            const bool same = f > 0 && random.below(4) > 0;
-            host.chart_id.push_back(same ? host.chart_id.back() : random.below(labels));
-            host.seam_edges.push_back(cuts > 0 && random.below(cuts) == 0 ? random.below(8) : 0);
-        }
+        declare::HostMesh host = with_random_charts(host_of(mesh.raw), 4, random);
         const declare::ParameterValues choice = flattening(random);
         const auto flat = attempt(filter_named("Charts: Flatten"), host, choice, false);
         if (!flat)
@@ -131,14 +135,7 @@ TEST(Property, SmoothSeamsOfRandomChartsAreSound) {
         if (!has_area(mesh.raw))
             return;
         SCOPED_TRACE(mesh.recipe);
-        declare::HostMesh host = host_of(mesh.raw);
-        const Index labels = 1 + random.below(4);
-        const Index cuts = random.below(3) == 0 ? 0 : 1 + random.below(30);
-        for (std::size_t f = 0; f < mesh.raw.faces.size(); ++f) {
-            const bool same = f > 0 && random.below(8) > 0;
-            host.chart_id.push_back(same ? host.chart_id.back() : random.below(labels));
-            host.seam_edges.push_back(cuts > 0 && random.below(cuts) == 0 ? random.below(8) : 0);
-        }
+        declare::HostMesh host = with_random_charts(host_of(mesh.raw), 8, random);
         const declare::FilterDeclaration& filter = filter_named("Charts: Smooth Seams");
         const auto made = attempt(
             filter, host,
