@@ -23,6 +23,14 @@ double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vec
 
 namespace {
 
+struct Tuning {
+    // What an edge between two faces of one plane (normals within 1e-3 rad) costs to cut, over one
+    // on a fold: a person would cut around a flat face.
+    double through_flat = 10.0;
+    double flat_cosine = 1.0 - 0.5e-6;
+};
+constexpr Tuning tuning;
+
 class LoopJoiner {
 public:
     LoopJoiner(const Mesh& mesh, const ChartSurface& surface)
@@ -49,8 +57,7 @@ public:
                     return --open > 0;
                 }
                 for (const HalfEdge e : edges_[v])
-                    paths_.reach(s_.target(e), distance + mesh_.edge_length(s_.mesh_half_edge(e)),
-                                 s_.twin[e]);
+                    paths_.reach(s_.target(e), distance + cost(s_.mesh_half_edge(e)), s_.twin[e]);
                 return true;
             },
             progress);
@@ -58,6 +65,12 @@ public:
     }
 
 private:
+    double cost(HalfEdge h) const {
+        const double cosine =
+            mesh_.face_normals[face_of(h)].dot(mesh_.face_normals[mesh_.across(h)]);
+        return mesh_.edge_length(h) * (cosine >= tuning.flat_cosine ? tuning.through_flat : 1.0);
+    }
+
     void absorb_loop(Index loop) {
         for (const HalfEdge h : s_.loops[loop]) {
             open_loop_[s_.origin(h)] = -1;

@@ -137,6 +137,24 @@ TEST(ChartBounds, NoBorderRunsThroughAFlatFace) {
         }
 }
 
+// A block of an L: closing borders leaves rings, whose cuts go around flat faces as well.
+TEST(ChartBounds, NoCutOfARingRunsThroughAFlatFace) {
+    const mesh::RawMesh raw = shapes::slab({"##", "#."});
+    const Mesh mesh = checks::gated(raw);
+    const DevelopableCharts charts = segment(mesh, 1);
+    Progress progress;
+    const atlas::ChartMap disks =
+        atlas::cut_charts_to_disks(
+            mesh, atlas::make_chart_map(mesh, charts.chart, charts.seam, false), progress)
+            .charts;
+    const mesh::FaceComponents regions = mesh::flat_regions(mesh);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 && regions.label[face_of(h)] == regions.label[mesh.across(h)]) {
+            EXPECT_EQ(disks.seam[h], 0);
+        }
+    EXPECT_LE(worst(mesh, charts), 1.0 + 1e-6);
+}
+
 TEST(ChartBounds, ANoisyCylinderStaysInFewCharts) {
     // Noise of 0.3 % of the size, a seventh of the edges.
     const mesh::RawMesh raw = shapes::with_noise(shapes::cylinder_tube(150, 80), 0.0085, 7);
