@@ -152,6 +152,14 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
     )
     parser.add_argument(
+        "--weld",
+        type=_weld,
+        default=0.0,
+        metavar="on|off|SHARE",
+        help="join border vertices at the same place where that closes open edges (on), or within "
+        "a share of the size up to 0.01, or not (off); default: on",
+    )
+    parser.add_argument(
         "--keep-texcoords",
         action="store_true",
         help="PLY: the file's own texture coordinates as well, as texcoord_before",
@@ -223,6 +231,14 @@ def _above(least: float) -> Callable[[str], float]:
 
 
 _positive = _above(0)
+
+
+def _weld(text: str) -> float:
+    named = {"on": 0.0, "off": -1.0}
+    share = number(text)
+    if text not in named and not 0 < share <= 0.01:
+        raise argparse.ArgumentTypeError(f"expected on, off or a share to 0.01, found '{text}'")
+    return named.get(text, share)
 
 
 def _size_mm(text: str) -> float:
@@ -297,6 +313,7 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         args.picture,
         args.keep_texcoords,
         _smooth_seams(args, pattern, parser),
+        args.weld,
     )
     results = []
     for path in args.input:

@@ -86,13 +86,17 @@ class RunOptions:
     picture: bool = True
     keep_texcoords: bool = False
     smooth_seams: bool = False
+    weld: float = 0.0  # as the parameter of all filters
 
 
 class Session:
     """The filters applied to one mesh, with the parameters that were in force."""
 
-    def __init__(self, path: Path, meshes: Any, warnings: Sequence[str] = ()) -> None:
+    def __init__(
+        self, path: Path, meshes: Any, warnings: Sequence[str] = (), weld: float = 0.0
+    ) -> None:
         self.path = path
+        self._weld = {"weld": weld} if weld else {}
         self.meshes = meshes
         self.parameters: dict[str, dict[str, Any]] = {}
         self.warnings = list(warnings)
@@ -104,6 +108,7 @@ class Session:
         Raises:
             DevsegError: with the filter's own message.
         """
+        parameters = {**self._weld, **parameters}
         values = self._guard(self.meshes.filter_parameter_values, name, **parameters)
         if values:
             self.parameters[name] = values
@@ -115,7 +120,7 @@ class Session:
 
     def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
         """Writes the pattern, in the format of the file's extension."""
-        self._noted(EXPORT_FILTER, output_file=str(file), **parameters)
+        self._noted(EXPORT_FILTER, output_file=str(file), **self._weld, **parameters)
 
     def save(self, file: Path, **parameters: Any) -> None:
         """Saves the current mesh, in the format of the file's extension."""
@@ -183,7 +188,7 @@ def _process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[
         scene.turn(loaded.meshes, up)
     mesh = loaded.meshes.current_mesh()
     size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
-    session = Session(path, loaded.meshes, loaded.warnings)
+    session = Session(path, loaded.meshes, loaded.warnings, options.weld)
     texcoords = old_texcoords(session, options)
     measures = flatten_mesh(session, options, progress)
     pattern, extents = scaled(session, options, loaded.frame, up)

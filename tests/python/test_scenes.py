@@ -392,3 +392,16 @@ def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path) -> None:
     warnings = run_json(obj((90 * vertices, faces)), "-o", tmp_path / "out")["warnings"]
     assert any("more than two faces" in warning for warning in warnings)
     assert not any("Repair" in warning for warning in warnings)
+
+
+def test_vertices_at_the_same_place_are_joined_or_left(obj: Callable, tmp_path: Path) -> None:
+    vertices, faces = meshes.cube()
+    apart = (90 * vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
+    path = obj(apart)
+    for how, charts in (("on", 1), ("0.001", 1), ("off", len(faces))):
+        result = run_json(path, "-o", tmp_path / how, "--weld", how, "--no-picture")
+        assert result["parametrization"]["charts_number"] == charts, how
+        joined = any("were joined" in warning for warning in result["warnings"])
+        assert joined == (how != "off")
+    with pytest.raises(SystemExit):
+        main(["run", str(path), "-o", str(tmp_path / "none"), "--weld", "no"])
