@@ -67,7 +67,8 @@ private:
                 [&](int i) {
                     const Index c = unknown[at(i)];
                     if (judge::is_surely_within(mesh_, draft_.faces[c], draft_.seam,
-                                                bounds_.chart_l2, looking))
+                                                std::sqrt(1.0 + allowed_excess(tuning.certain)),
+                                                looking))
                         known_[c] = Known::within;
                 },
                 looking);
@@ -91,13 +92,15 @@ private:
         }
     }
 
-    // Roughness counts apart.
-    bool is_above(Index c) const {
+    // l2² − 1 that a chart may use of this share of its bound. Roughness counts apart.
+    double allowed_excess(double share) const {
+        return share * (bounds_.chart_l2 * bounds_.chart_l2 - 1.0) + bounds_.roughness;
+    }
+
+    bool is_above(Index c, double share) const {
         const TrialMap& map = draft_.map[c];
         return known_[c] == Known::map &&
-               ((bounds_.chart_l2 > 0.0 &&
-                 map.l2_squared - 1.0 - bounds_.roughness >
-                     tuning.certain * (bounds_.chart_l2 * bounds_.chart_l2 - 1.0)) ||
+               ((bounds_.chart_l2 > 0.0 && map.l2_squared - 1.0 > allowed_excess(share)) ||
                 (bounds_.linf > 0.0 && map.linf > bounds_.linf));
     }
 
@@ -109,7 +112,7 @@ private:
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c) {
             if (draft_.faces[c].empty() || whole_[c] != 0)
                 continue;
-            if (is_above(c) || !draft_.map[c].part.empty()) {
+            if (is_above(c, tuning.certain) || !draft_.map[c].part.empty()) {
                 above.push_back(c);
             } else {
                 excess += draft_.map[c].excess();
@@ -175,7 +178,7 @@ private:
 
     // On a coarse version of the chart. False where that does not bring it within its bounds.
     bool cut_darts(Index c, Progress& progress) {
-        if (!is_above(c))
+        if (!is_above(c, tuning.certain))
             return false;
         const atlas::ChartSurface surface = atlas::extract_surface(
             mesh_, draft_.faces[c], atlas::enclose(mesh_, draft_.faces[c], draft_.seam));
@@ -214,6 +217,8 @@ private:
         auto measuring = progress.part(0.2);
         measure(beside, measuring);
         MergeOptions merging = merging_;
+        if (bounds_.chart_l2 > 0.0)
+            merging.chart.hard_l2 = std::sqrt(1.0 + allowed_excess(tuning.certain));
         merging.open = touched_;
         auto joining = progress.part("joining charts", 1.0);
         merge_charts(mesh_, merging, draft_, joining);
@@ -232,7 +237,7 @@ private:
         charts_.seam = draft_.seam;
         charts_.chart = atlas::make_chart_map(mesh_, draft_.chart, charts_.seam, false).chart;
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c)
-            if (!draft_.faces[c].empty() && is_above(c))
+            if (!draft_.faces[c].empty() && is_above(c, 1.0))
                 for (const Face f : draft_.faces[c])
                     charts_.above[f] = 1;
         if (bounds_.max_excess == infinite && bounds_.linf == 0.0)
