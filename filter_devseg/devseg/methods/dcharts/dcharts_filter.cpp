@@ -13,6 +13,18 @@ namespace devseg::dcharts {
 
 using namespace declare;
 
+OptionRanges<DevelopableChartsOptions> DevelopableChartsOptions::ranges() {
+    using O = DevelopableChartsOptions;
+    OptionRanges<O> ranges = {{&O::charts_number, {"charts_number", 0, 1e9}},
+                              {&O::merge_threshold, {"merge_threshold", 0.0, 1.0, true}},
+                              {&O::max_l2_stretch, {"max_l2_stretch", 1.0, 100.0, true}},
+                              {&O::max_linf_stretch, {"max_linf_stretch", 0.0, 1000.0}},
+                              {&O::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}}};
+    for (const auto& [field, range] : DChartsOptions::ranges())
+        std::visit([&, &r = range](auto f) { ranges.push_back({f, r}); }, field);
+    return ranges;
+}
+
 namespace {
 
 constexpr const char* help =

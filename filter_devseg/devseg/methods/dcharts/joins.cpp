@@ -10,7 +10,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/judge/final_map.h"
-#include "devseg/mesh/angle_defects.h"
+#include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
 
 namespace devseg::dcharts {
@@ -19,14 +19,6 @@ namespace {
 
 using judge::TrialEffort;
 using judge::TrialMap;
-using Pair = std::pair<Index, Index>; // of charts, the lower number first, or twice the same
-
-// Seam edges that may be closed together, each by its half-edge with the lower number.
-struct Closing {
-    Pair charts;
-    std::vector<Index> edges;
-};
-
 // What a trial has found. Parts of borders, and on the surface itself all borders, are tried again
 // only where an older verdict makes them the best that there is: the more of a chart is closed, the
 // more another part costs.
@@ -39,71 +31,6 @@ struct Verdict {
     bool confirmed = false;
 };
 using Verdicts = std::map<std::vector<Index>, std::pair<Closing, Verdict>>; // by edges, ascending
-
-// Finds the seams: chains of seam edges from node to node. Nodes are vertices where not just two
-// seam edges meet, those on the mesh's boundary, and corners of the surface where these count.
-class SeamChains {
-public:
-    SeamChains(const Mesh& mesh, bool keep_corners)
-        : mesh_(mesh), corner_(mesh::boundary_vertices(mesh)) {
-        if (!keep_corners)
-            return;
-        const std::vector<double> defects = mesh::angle_defects(mesh);
-        for (std::size_t v = 0; v < defects.size(); ++v)
-            if (std::abs(defects[v]) > tuning.corner_defect)
-                corner_[v] = corner;
-    }
-
-    bool is_corner(Vertex v) const { return corner_[v] == corner; }
-
-    // Each in the order of its edges.
-    std::vector<Closing> find(const Draft& draft) const {
-        const auto is_seam = [&](HalfEdge h) {
-            return mesh_.twin[h] >= 0 &&
-                   (draft.seam[h] != 0 || draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
-        };
-        std::vector<HalfEdge> seams;
-        for (const HalfEdge h : mesh_.all_half_edges())
-            if (is_seam(h))
-                seams.push_back(h);
-        const Buckets<HalfEdge> leaving =
-            make_buckets<HalfEdge>(mesh_.vertex_count(), [&](auto put) {
-                for (const HalfEdge h : seams)
-                    put(mesh_.origin(h), h);
-            });
-        const auto is_node = [&](Vertex v) { return corner_[v] != 0 || leaving[v].size() != 2; };
-        std::vector<std::uint8_t> seen(mesh_.twin.size(), 0);
-        std::vector<Closing> chains;
-        const auto trace = [&](HalfEdge h) {
-            Closing chain;
-            chain.charts =
-                std::minmax(Index{draft.chart[face_of(h)]}, Index{draft.chart[mesh_.across(h)]});
-            while (seen[h] == 0) {
-                seen[h] = seen[mesh_.twin[h]] = 1;
-                chain.edges.push_back(std::min<Index>(h, mesh_.twin[h]));
-                const Vertex v = mesh_.target(h);
-                if (is_node(v))
-                    break;
-                const Span<HalfEdge> both = leaving[v];
-                h = *both.begin() == mesh_.twin[h] ? *(both.begin() + 1) : *both.begin();
-            }
-            chains.push_back(std::move(chain));
-        };
-        for (const HalfEdge h : seams)
-            if (seen[h] == 0 && is_node(mesh_.origin(h)))
-                trace(h);
-        for (const HalfEdge h : seams) // loops without a node
-            if (seen[h] == 0)
-                trace(h);
-        return chains;
-    }
-
-private:
-    static constexpr std::uint8_t corner = 2;
-
-    const Mesh& mesh_;
-    std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
-};
 
 class Joining {
 public:

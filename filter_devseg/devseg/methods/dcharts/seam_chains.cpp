@@ -1,0 +1,62 @@
+#include "devseg/methods/dcharts/seam_chains.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devseg/base/buckets.h"
+#include "devseg/mesh/angle_defects.h"
+#include "devseg/methods/dcharts/tuning.h"
+
+namespace devseg::dcharts {
+
+SeamChains::SeamChains(const Mesh& mesh, bool keep_corners)
+    : mesh_(mesh), corner_(mesh::boundary_vertices(mesh)) {
+    if (!keep_corners)
+        return;
+    const std::vector<double> defects = mesh::angle_defects(mesh);
+    for (std::size_t v = 0; v < defects.size(); ++v)
+        if (std::abs(defects[v]) > tuning.corner_defect)
+            corner_[v] = corner;
+}
+
+std::vector<Closing> SeamChains::find(const Draft& draft) const {
+    const auto is_seam = [&](HalfEdge h) {
+        return mesh_.twin[h] >= 0 &&
+               (draft.seam[h] != 0 || draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
+    };
+    std::vector<HalfEdge> seams;
+    for (const HalfEdge h : mesh_.all_half_edges())
+        if (is_seam(h))
+            seams.push_back(h);
+    const Buckets<HalfEdge> leaving = make_buckets<HalfEdge>(mesh_.vertex_count(), [&](auto put) {
+        for (const HalfEdge h : seams)
+            put(mesh_.origin(h), h);
+    });
+    const auto is_node = [&](Vertex v) { return corner_[v] != 0 || leaving[v].size() != 2; };
+    std::vector<std::uint8_t> seen(mesh_.twin.size(), 0);
+    std::vector<Closing> chains;
+    const auto trace = [&](HalfEdge h) {
+        Closing chain;
+        chain.charts =
+            std::minmax(Index{draft.chart[face_of(h)]}, Index{draft.chart[mesh_.across(h)]});
+        while (seen[h] == 0) {
+            seen[h] = seen[mesh_.twin[h]] = 1;
+            chain.edges.push_back(std::min<Index>(h, mesh_.twin[h]));
+            const Vertex v = mesh_.target(h);
+            if (is_node(v))
+                break;
+            const Span<HalfEdge> both = leaving[v];
+            h = *both.begin() == mesh_.twin[h] ? *(both.begin() + 1) : *both.begin();
+        }
+        chains.push_back(std::move(chain));
+    };
+    for (const HalfEdge h : seams)
+        if (seen[h] == 0 && is_node(mesh_.origin(h)))
+            trace(h);
+    for (const HalfEdge h : seams) // loops without a node
+        if (seen[h] == 0)
+            trace(h);
+    return chains;
+}
+
+} // namespace devseg::dcharts

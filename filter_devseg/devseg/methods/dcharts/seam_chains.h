@@ -1,0 +1,37 @@
+// Seams as chains of edges, which joins close as a whole or in part.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "devseg/methods/dcharts/draft.h"
+
+namespace devseg::dcharts {
+
+using Pair = std::pair<Index, Index>; // of charts, the lower number first, or twice the same
+
+// Seam edges that may be closed together, each by its half-edge with the lower number.
+struct Closing {
+    Pair charts;
+    std::vector<Index> edges;
+};
+
+// Finds the seams: chains of seam edges from node to node. Nodes are vertices where not just two
+// seam edges meet, those on the mesh's boundary, and corners of the surface where these count.
+class SeamChains {
+public:
+    SeamChains(const Mesh& mesh, bool keep_corners);
+
+    bool is_corner(Vertex v) const { return corner_[v] == corner; }
+
+    /// Of the draft's borders and cuts, each in the order of its edges.
+    std::vector<Closing> find(const Draft& draft) const;
+
+private:
+    static constexpr std::uint8_t corner = 2;
+
+    const Mesh& mesh_;
+    std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
+};
+
+} // namespace devseg::dcharts
