@@ -111,8 +111,7 @@ bool is_surely_within(const Mesh& mesh, const std::vector<Index>& faces,
         return map;
     });
     if (uv.empty() || flatten::count_flips(problem, uv) > 0 ||
-        !flatten::overlapping_pairs(surface, uv, plane::layout_tolerance(problem.model_size))
-             .empty())
+        flatten::overlaps_itself(surface, uv, plane::layout_tolerance(problem.model_size)))
         return false;
     return 2.0 * (flatten::symmetric_dirichlet_energy(problem, uv) - 1.0) <= l2 * l2 - 1.0;
 }

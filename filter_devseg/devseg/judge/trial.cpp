@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/flatten/energy/laplacian.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/arap.h"
@@ -25,39 +27,74 @@ struct Tuning {
     int few_rounds = 40;
     int many_rounds = 200;
     double near_excess = 10.0; // over the wanted one: a start that is farther is not near
-    int stitching_rounds = 2;  // spread what does not fit over more faces than those at the border
 };
 constexpr Tuning tuning;
 
-// Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over 1,
-// depending on how much of the distortion is shear: an energy whose excess is that of the wanted
-// l2² is hopeless.
-std::vector<Vec2> trial_uv(const flatten::FlatteningProblem& problem, const TrialEffort& effort,
-                           const std::vector<Vec2>& turns, const Progress& progress) {
-    flatten::SymmetricDirichletOptions options;
-    const double excess = effort.wanted_l2 * effort.wanted_l2 - 1.0;
-    options.relative_tolerance = std::min(tuning.share_of_excess * excess, tuning.coarsest);
-    options.max_iterations =
-        tuning.share_of_excess * excess < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
-    if (effort.give_up)
-        options.give_up_energy = 1.0 + excess;
-    std::vector<Vec2> start;
-    if (!turns.empty())
-        start = flatten::attempt(
-            [&] { return flatten::stitch(problem, turns, tuning.stitching_rounds); });
-    if (start.empty() || flatten::count_flips(problem, start) > 0) {
-        if (effort.only_near)
+// Flattens one chart on trial.
+class Trial {
+public:
+    Trial(const atlas::ChartSurface& surface, const flatten::FlatteningProblem& problem,
+          const TrialEffort& effort, const Progress& progress)
+        : surface_(surface), problem_(problem), effort_(effort), progress_(progress),
+          laplacian_(problem), excess_(effort.wanted_l2 * effort.wanted_l2 - 1.0) {}
+
+    // Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over
+    // 1, depending on how much of the distortion is shear: an energy whose excess is that of the
+    // wanted l2² is hopeless; so is such an energy of stitched faces, which is about the same where
+    // it is small. Empty where there is no map worth looking at.
+    std::vector<Vec2> flatten(const std::vector<Vec2>& turns) const {
+        std::vector<Vec2> start;
+        if (!turns.empty()) {
+            const auto stitched = stitch(turns);
+            if (stitched && stitched->empty())
+                return {};
+            start = stitched.value_or(std::vector<Vec2>());
+        }
+        if (start.empty() || flatten::count_flips(problem_, start) > 0) {
+            if (effort_.only_near)
+                return {};
+            start = flatten::simple_map(problem_);
+        } else if (effort_.only_near && !is_near(start)) {
             return {};
-        start = flatten::simple_map(problem);
-    } else if (effort.only_near && flatten::symmetric_dirichlet_energy(problem, start) - 1.0 >
-                                       tuning.near_excess * excess) {
-        return {};
+        }
+        std::vector<Vec2> uv = polish(start);
+        flatten::scale_to_area(problem_, uv);
+        return uv;
     }
-    std::vector<Vec2> uv =
-        flatten::minimise_symmetric_dirichlet(problem, start, options, progress).uv;
-    flatten::scale_to_area(problem, uv);
-    return uv;
-}
+
+private:
+    std::optional<std::vector<Vec2>> stitch(const std::vector<Vec2>& turns) const {
+        flatten::StitchOptions options;
+        if (effort_.give_up)
+            options.give_up_energy = excess_;
+        return flatten::attempt(
+            [&] { return std::optional(flatten::stitch(problem_, laplacian_, turns, options)); });
+    }
+
+    // Parts that overlap in a map so near to the best one are not going to come apart.
+    bool is_near(const std::vector<Vec2>& start) const {
+        return flatten::symmetric_dirichlet_energy(problem_, start) - 1.0 <=
+                   tuning.near_excess * excess_;
+    }
+
+    std::vector<Vec2> polish(const std::vector<Vec2>& start) const {
+        flatten::SymmetricDirichletOptions options;
+        const double gain = tuning.share_of_excess * excess_;
+        options.relative_tolerance = std::min(gain, tuning.coarsest);
+        options.max_iterations = gain < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
+        if (effort_.give_up)
+            options.give_up_energy = 1.0 + excess_;
+        options.laplacian = &laplacian_;
+        return flatten::minimise_symmetric_dirichlet(problem_, start, options, progress_).uv;
+    }
+
+    const atlas::ChartSurface& surface_;
+    const flatten::FlatteningProblem& problem_;
+    const TrialEffort& effort_;
+    const Progress& progress_;
+    flatten::Laplacian laplacian_;
+    double excess_; // wanted
+};
 
 // Faces that are stretched more than all faces around them.
 std::vector<Index> local_maxima(const atlas::ChartSurface& surface,
@@ -113,20 +150,25 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     if (developed)
         uv = std::move(*development);
     else
-        uv = flatten::attempt([&] { return trial_uv(problem, effort, turns, progress); });
+        uv = flatten::attempt(
+            [&] { return Trial(surface, problem, effort, progress).flatten(turns); });
     map.flat = !uv.empty();
     if (!map.flat)
         return map;
+    std::vector<double> stretch = measure_stretch(problem, uv, map);
+    if (effort.give_up && map.l2_squared > effort.wanted_l2 * effort.wanted_l2)
+        return map; // whatever else there is to know
     const double tolerance = plane::layout_tolerance(problem.model_size);
-    auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
-    map.overlaps = !pairs.empty();
+    map.overlaps = flatten::overlaps_itself(surface, uv, tolerance);
     if (map.overlaps && effort.push_apart && !developed) // developments stay as they are
-        if (auto apart =
-                flatten::push_apart(problem, surface, uv, std::move(pairs), tolerance, progress)) {
+        if (auto apart = flatten::push_apart(problem, surface, uv,
+                                             flatten::overlapping_pairs(surface, uv, tolerance),
+                                             tolerance, progress)) {
             uv = std::move(*apart);
             map.overlaps = false;
+            map.linf = 1.0;
+            stretch = measure_stretch(problem, uv, map);
         }
-    const std::vector<double> stretch = measure_stretch(problem, uv, map);
     map.turns = flatten::face_turns(problem, uv);
     map.worst_faces = local_maxima(surface, stretch);
     for (Index& f : map.worst_faces) {

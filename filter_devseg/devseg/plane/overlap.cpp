@@ -119,15 +119,17 @@ private:
 
 } // namespace
 
-std::vector<std::pair<Index, Index>> find_overlapping_pairs(const CornerUv& corners,
-                                                            double tolerance) {
-    std::vector<std::pair<Index, Index>> pairs;
+namespace {
+
+// Calls each({f, g}), f < g, of the pairs that overlap, in no order, until it returns false.
+template <class Each>
+void visit_overlapping_pairs(const CornerUv& corners, double tolerance, Each each) {
     std::vector<Index> faces;
     for (Index f = 0; f < static_cast<Index>(corners.size() / 3); ++f)
         if (std::abs(uv_area(corners, f)) > 0.0) // false for NaN as well
             faces.push_back(f);
     if (faces.empty())
-        return pairs;
+        return;
     const Grid grid(corners, faces);
     std::vector<Corners> in_cell;
     for (Index c = 0; c < grid.cell_count(); ++c) {
@@ -137,11 +139,32 @@ std::vector<std::pair<Index, Index>> find_overlapping_pairs(const CornerUv& corn
         for (std::size_t i = 0; i < in_cell.size(); ++i)
             for (std::size_t j = i + 1; j < in_cell.size(); ++j)
                 if (grid.owner(in_cell[i], in_cell[j]) == c &&
-                    overlap(in_cell[i], in_cell[j], tolerance))
-                    pairs.emplace_back(std::minmax(grid.first(c)[i], grid.first(c)[j]));
+                    overlap(in_cell[i], in_cell[j], tolerance) &&
+                    !each(std::minmax(grid.first(c)[i], grid.first(c)[j])))
+                    return;
     }
+}
+
+} // namespace
+
+std::vector<std::pair<Index, Index>> find_overlapping_pairs(const CornerUv& corners,
+                                                            double tolerance) {
+    std::vector<std::pair<Index, Index>> pairs;
+    visit_overlapping_pairs(corners, tolerance, [&](const std::pair<Index, Index>& pair) {
+        pairs.push_back(pair);
+        return true;
+    });
     std::sort(pairs.begin(), pairs.end());
     return pairs;
+}
+
+bool any_overlap(const CornerUv& corners, double tolerance) {
+    bool any = false;
+    visit_overlapping_pairs(corners, tolerance, [&](const std::pair<Index, Index>&) {
+        any = true;
+        return false;
+    });
+    return any;
 }
 
 double layout_tolerance(double extent) {

@@ -16,6 +16,9 @@ namespace devseg::plane {
 std::vector<std::pair<Index, Index>> find_overlapping_pairs(const CornerUv& corners,
                                                             double tolerance);
 
+/// Whether there are any: stops at the first.
+bool any_overlap(const CornerUv& corners, double tolerance);
+
 /// What coordinates of 32 bit can tell apart in a layout of the given extent: the tolerance for
 /// find_overlapping_pairs.
 double layout_tolerance(double extent);

@@ -96,7 +96,9 @@ TEST(OverlappingPairs, TouchingIsNotOverlapping) {
     for (std::size_t i = 3; i < 6; ++i)
         deeper[i] -= Vec2(1e-5, 1e-5);
     EXPECT_EQ(find_overlapping_pairs(deeper, 0.0).size(), 1U);
+    EXPECT_TRUE(any_overlap(deeper, 0.0));
     EXPECT_TRUE(find_overlapping_pairs(deeper, 1e-4).empty()); // but not beyond the tolerance
+    EXPECT_FALSE(any_overlap(deeper, 1e-4));
 }
 
 TEST(OverlappingPairs, EqualTrianglesOverlapWhateverTheirOrientation) {
@@ -115,6 +117,7 @@ TEST(OverlappingPairs, TrianglesWithoutAreaOverlapNothing) {
                          {nan, nan}, {nan, nan}, {nan, 1}, {4, 4}, {4, 4}, {4, 4}};
     EXPECT_TRUE(find_overlapping_pairs(uv, 0.0).empty());
     EXPECT_TRUE(find_overlapping_pairs({}, 0.0).empty());
+    EXPECT_FALSE(any_overlap({}, 0.0));
     EXPECT_TRUE(find_overlapping_pairs({{1, 1}, {1, 1}, {1, 1}}, 0.0).empty());
 }
 

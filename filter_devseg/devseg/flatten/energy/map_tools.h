@@ -15,6 +15,9 @@ using plane::orientation;
 /// far below what could flip a triangle, far above rounding.
 constexpr double constraint_met = 1e-8;
 
+/// Gains like the last one that a descent may still hope for: what gives up early counts with them.
+constexpr double gains_to_come = 4.0;
+
 /// What find() returns, and an empty value where its equations have no solution (NumericalFailure):
 /// that is no error as long as there is another way.
 template <class Find>

@@ -8,10 +8,10 @@
 
 #include <algorithm>
 #include <deque>
-
-#include <Eigen/SparseCholesky>
+#include <optional>
 
 #include "devseg/base/errors.h"
+#include "devseg/flatten/energy/laplacian.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/plane/plane.h"
 
@@ -22,10 +22,8 @@ namespace {
 struct Tuning {
     std::size_t history = 6;       // pairs that L-BFGS remembers
     std::size_t stall_window = 10; // steps over which progress is judged
-    double immovable = 1e20;       // stiffness of vertices that stay: their steps vanish
     double near_isometry = 1.2;    // energy below which one factorization is enough
     double newton_gain = 1e-3;     // share of the energy that a Newton step must gain
-    double gains_to_come = 4.0;    // like the last one, that a descent may still hope for
 };
 constexpr Tuning tuning;
 
@@ -52,74 +50,14 @@ SignedDistance signed_distance(const Contact& contact, const Positions& x) {
     return d;
 }
 
-// The cotangent Laplacian of the rest shape, made definite by a shift far below its own size: the
-// energy's Hessian at an isometry, up to a factor and the rotations.
-class Preconditioner {
-public:
-    Preconditioner(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed) {
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(12 * problem.faces.size());
-        const double scale = 0.5 / problem.total_area;
-        for (std::size_t f = 0; f < problem.faces.size(); ++f)
-            for (Index k = 0; k < 3; ++k) {
-                const Index i = problem.faces[f][k];
-                const Index j = problem.faces[f][(k + 1) % 3];
-                const double w = scale * problem.cotangent[f][k];
-                entries.emplace_back(i, i, w);
-                entries.emplace_back(j, j, w);
-                entries.emplace_back(i, j, -w);
-                entries.emplace_back(j, i, -w);
-            }
-        double shift = 1e-8 / problem.total_area;
-        for (Vertex v = 0; v < problem.vertex_count; ++v)
-            entries.emplace_back(v, v, fixed.empty() || fixed[v] == 0 ? shift : tuning.immovable);
-        Eigen::SparseMatrix<double> matrix(problem.vertex_count, problem.vertex_count);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        solver_.compute(matrix);
-        // The cotangents of needles swallow the shift.
-        for (; solver_.info() != Eigen::Success && shift < tuning.immovable; shift *= 1e3) {
-            matrix.diagonal().array() += shift;
-            solver_.factorize(matrix);
-        }
-        if (solver_.info() != Eigen::Success)
-            throw NumericalFailure("expected a positive definite Laplacian, found a singular one");
-    }
-
-    // Eigen reads the factor anew for each column; here it is read once for both.
-    Positions solve(const Positions& rhs) const {
-        const Eigen::SparseMatrix<double>& lower = solver_.matrixL().nestedExpression();
-        const Index* begin = lower.outerIndexPtr();
-        const Index* row = lower.innerIndexPtr();
-        const double* value = lower.valuePtr();
-        Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> x = solver_.permutationP() * rhs;
-        for (Eigen::Index j = 0; j < x.rows(); ++j) {
-            const Eigen::RowVector2d known = x.row(j);
-            for (Index k = begin[j]; k < begin[j + 1]; ++k)
-                x.row(row[k]) -= value[k] * known;
-        }
-        x.array().colwise() /= solver_.vectorD().array();
-        for (Eigen::Index j = x.rows(); j-- > 0;) {
-            Eigen::RowVector2d sum = x.row(j);
-            for (Index k = begin[j]; k < begin[j + 1]; ++k)
-                sum -= value[k] * x.row(row[k]);
-            x.row(j) = sum;
-        }
-        return solver_.permutationPinv() * x;
-    }
-
-private:
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-};
-
 double dot(const Positions& a, const Positions& b) {
     return (a.array() * b.array()).sum();
 }
 
-// Limited-memory BFGS with the preconditioner as initial inverse Hessian.
+// Limited-memory BFGS; the initial Hessian is the Laplacian.
 class QuasiNewton {
 public:
-    QuasiNewton(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed)
-        : preconditioner_(problem, fixed) {}
+    explicit QuasiNewton(const Laplacian& laplacian) : laplacian_(laplacian) {}
 
     Positions direction(const Positions& gradient) const {
         Positions q = gradient;
@@ -128,7 +66,7 @@ public:
             alpha[i] = dot(pairs_[i].step, q) / pairs_[i].curvature;
             q -= alpha[i] * pairs_[i].change;
         }
-        q = preconditioner_.solve(q);
+        q = laplacian_.solve(q);
         for (std::size_t i = 0; i < pairs_.size(); ++i) {
             const double beta = dot(pairs_[i].change, q) / pairs_[i].curvature;
             q += (alpha[i] - beta) * pairs_[i].step;
@@ -152,7 +90,7 @@ private:
         Positions change;
         double curvature;
     };
-    Preconditioner preconditioner_;
+    const Laplacian& laplacian_;
     std::deque<Pair> pairs_;
 };
 
@@ -204,17 +142,19 @@ private:
 };
 
 bool is_hopeless(double energy, double last_gain, const SymmetricDirichletOptions& options) {
-    return energy - tuning.gains_to_come * last_gain > options.give_up_energy;
+    return energy - gains_to_come * last_gain > options.give_up_energy;
 }
 
 // Newton's method until the map is near enough to an isometry for the Laplacian to be a good model
 // of the Hessian, or until it gains little.
 void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
               const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
-    if (descent.energy() < tuning.near_isometry)
+    // A penalty is none of the Hessian's business.
+    const auto is_near = [&] { return distortion(problem, descent.x()) < tuning.near_isometry; };
+    if (is_near())
         return;
     ProjectedNewton newton(problem, options.fixed);
-    while (result.iterations < options.max_iterations && descent.energy() > tuning.near_isometry) {
+    while (result.iterations < options.max_iterations && !is_near()) {
         progress.check();
         const double before = descent.energy();
         if (!descent.advance(newton.direction(descent.x(), descent.gradient())))
@@ -228,7 +168,10 @@ void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions&
 
 void polish(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
             const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
-    QuasiNewton model(problem, options.fixed);
+    std::optional<Laplacian> own;
+    if (options.laplacian == nullptr)
+        own.emplace(problem, options.fixed);
+    QuasiNewton model(own ? *own : *options.laplacian);
     std::deque<double> recent{descent.energy()};
     while (result.iterations < options.max_iterations && !result.converged) {
         progress.check();

@@ -16,6 +16,8 @@
 
 namespace devseg::flatten {
 
+class Laplacian;
+
 /// A boundary vertex that lies on another part of the chart, and the boundary edge from → to (the
 /// chart on its left) across which it leaves that part on the shortest way.
 struct Contact {
@@ -44,7 +46,8 @@ struct SymmetricDirichletOptions {
     double relative_tolerance = 1e-6; // stop when ten steps gain less than this share of the energy
     // Stop as soon as the energy will clearly not fall below this.
     double give_up_energy = infinite;
-    std::vector<std::uint8_t> fixed; // #v: 1 for vertices that stay; empty = all are free
+    std::vector<std::uint8_t> fixed;      // #v: 1 for vertices that stay; empty = all are free
+    const Laplacian* laplacian = nullptr; // of the problem, where there is one already
 };
 
 struct SymmetricDirichletResult {

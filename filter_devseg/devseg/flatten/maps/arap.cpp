@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
-
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/map_tools.h"
 
@@ -31,57 +29,29 @@ Eigen::Matrix2d rotation_of(const Vec2& turn) {
     return rotation;
 }
 
-// The cotangent Laplacian with vertex 0 held at its place, factorized once.
-class GlobalStep {
-public:
-    explicit GlobalStep(const FlatteningProblem& problem) : problem_(problem) {
-        std::vector<Eigen::Triplet<double>> entries;
-        entries.reserve(9 * problem.faces.size());
-        const auto add = [&](Index i, Index j, double w) {
-            if (i > 0 && j > 0)
-                entries.emplace_back(std::max(i, j) - 1, std::min(i, j) - 1, w);
-        };
-        for (std::size_t f = 0; f < problem.faces.size(); ++f)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Index i = problem.faces[f][k];
-                const Index j = problem.faces[f][(k + 1) % 3];
-                add(i, i, problem.cotangent[f][k]);
-                add(j, j, problem.cotangent[f][k]);
-                add(i, j, -problem.cotangent[f][k]);
-            }
-        Eigen::SparseMatrix<double> matrix(problem.vertex_count - 1, problem.vertex_count - 1);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        solver_.compute(matrix);
-        if (solver_.info() != Eigen::Success)
-            throw NumericalFailure("expected a positive definite Laplacian, found a singular one");
-    }
-
-    // [LZXGG08, equation 6]: every edge of a face wants to be the rest edge, turned.
-    std::vector<Vec2> operator()(const std::vector<Vec2>& turns) const {
-        Eigen::MatrixX2d rhs = Eigen::MatrixX2d::Zero(problem_.vertex_count, 2);
-        for (std::size_t f = 0; f < problem_.faces.size(); ++f) {
-            const Eigen::Matrix2d wanted = rotation_of(turns[f]) * problem_.edges[f];
-            const std::array<Vec2, 3> edge = {wanted.col(0), wanted.col(1) - wanted.col(0),
-                                              -wanted.col(1)};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vec2 force = problem_.cotangent[f][k] * edge[k];
-                rhs.row(problem_.faces[f][k]) -= force.transpose();
-                rhs.row(problem_.faces[f][(k + 1) % 3]) += force.transpose();
-            }
+// [LZXGG08, equation 6]: every edge of a face wants to be the rest edge, turned.
+std::vector<Vec2> global_step(const FlatteningProblem& problem, const Laplacian& laplacian,
+                              const std::vector<Vec2>& turns) {
+    Positions rhs = Positions::Zero(problem.vertex_count, 2);
+    const double scale = 0.5 / problem.total_area; // that of the Laplacian
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d wanted = scale * rotation_of(turns[f]) * problem.edges[f];
+        const std::array<Vec2, 3> edge = {wanted.col(0), wanted.col(1) - wanted.col(0),
+                                          -wanted.col(1)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 force = problem.cotangent[f][k] * edge[k];
+            rhs.row(problem.faces[f][k]) -= force.transpose();
+            rhs.row(problem.faces[f][(k + 1) % 3]) += force.transpose();
         }
-        const Eigen::MatrixX2d solution = solver_.solve(rhs.bottomRows(problem_.vertex_count - 1));
-        if (!solution.allFinite())
-            throw NumericalFailure("expected a finite map, found one that is not");
-        std::vector<Vec2> next(at(problem_.vertex_count), Vec2::Zero());
-        for (Vertex v = 1; v < problem_.vertex_count; ++v)
-            next[v] = solution.row(v - 1).transpose();
-        return next;
     }
-
-private:
-    const FlatteningProblem& problem_;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-};
+    const Positions solution = laplacian.solve(rhs);
+    if (!solution.allFinite())
+        throw NumericalFailure("expected a finite map, found one that is not");
+    std::vector<Vec2> next(at(problem.vertex_count));
+    for (Vertex v = 0; v < problem.vertex_count; ++v)
+        next[v] = (solution.row(v) - solution.row(0)).transpose();
+    return next;
+}
 
 } // namespace
 
@@ -93,12 +63,18 @@ std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector
     return turns;
 }
 
-std::vector<Vec2> stitch(const FlatteningProblem& problem, const std::vector<Vec2>& turns,
-                         int rounds) {
-    const GlobalStep global(problem);
-    std::vector<Vec2> uv = global(turns);
-    for (int i = 0; i < rounds; ++i)
-        uv = global(face_turns(problem, uv));
+std::vector<Vec2> stitch(const FlatteningProblem& problem, const Laplacian& laplacian,
+                         const std::vector<Vec2>& turns, const StitchOptions& options) {
+    std::vector<Vec2> uv = global_step(problem, laplacian, turns);
+    double energy = arap_energy(problem, uv);
+    for (int i = 0; i < options.rounds || (i < options.most_rounds && count_flips(problem, uv) > 0);
+         ++i) {
+        uv = global_step(problem, laplacian, face_turns(problem, uv));
+        const double gain = energy - arap_energy(problem, uv);
+        energy -= gain;
+        if (energy - gains_to_come * gain > options.give_up_energy)
+            return {};
+    }
     return uv;
 }
 
@@ -113,13 +89,13 @@ double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv
 
 ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec2>& start,
                          const ArapOptions& options, const Progress& progress) {
-    const GlobalStep global(problem);
+    const Laplacian laplacian(problem);
     ArapResult result;
     result.uv = start;
     result.energy = arap_energy(problem, start);
     while (result.rounds < options.max_rounds && !result.converged) {
         progress.check();
-        std::vector<Vec2> next = global(face_turns(problem, result.uv));
+        std::vector<Vec2> next = global_step(problem, laplacian, face_turns(problem, result.uv));
         const double energy = arap_energy(problem, next);
         result.converged = result.energy - energy <= options.relative_tolerance * result.energy;
         if (!(energy < result.energy))

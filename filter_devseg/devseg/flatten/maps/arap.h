@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "devseg/base/progress.h"
-#include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/flatten/energy/laplacian.h"
 
 namespace devseg::flatten {
 
@@ -33,10 +33,16 @@ double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv
 /// the face as FlatteningProblem lays it into the plane. uv is #v.
 std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
 
+struct StitchOptions {
+    int rounds = 2;                   // of minimise_arap, after the first map
+    int most_rounds = 20;             // while faces are flipped
+    double give_up_energy = infinite; // of minimise_arap, below which the map will not come
+};
+
 /// The map whose edges are, in the least squares sense, those of faces that are turned so: charts
 /// that are joined, each with the turns of its own map, fit together along the common border. Faces
-/// may flip. `rounds` of minimise_arap follow. Throws NumericalFailure.
-std::vector<Vec2> stitch(const FlatteningProblem& problem, const std::vector<Vec2>& turns,
-                         int rounds);
+/// may stay flipped. Empty where the energy is hopeless. Throws NumericalFailure.
+std::vector<Vec2> stitch(const FlatteningProblem& problem, const Laplacian& laplacian,
+                         const std::vector<Vec2>& turns, const StitchOptions& options);
 
 } // namespace devseg::flatten

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <queue>
 #include <set>
 
+#include "devseg/flatten/energy/laplacian.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/graph/min_cut.h"
@@ -18,6 +20,7 @@ namespace {
 
 struct Tuning {
     int push_rounds = 10;           // each twice as stiff as the one before
+    int idle_rounds = 2;            // rounds that may not lower the number of overlaps
     double first_stiffness = 100.0; // in units of the energy per chart area
     // Shape that pushing apart may cost, as growth of the symmetric Dirichlet energy: beyond it, a
     // cut keeps the pattern truer than a deformation.
@@ -197,12 +200,51 @@ public:
         }
     }
 
+    // Boundary edges of f and g that cross although no end lies on the other face: the end that is
+    // least far inside leaves.
+    void find_crossings(Face f, Face g) {
+        for (const HalfEdge h : half_edges_of(f))
+            for (const HalfEdge k : half_edges_of(g))
+                if (s_.twin[h] < 0 && s_.twin[k] < 0 && !has_contact(h) && !has_contact(k) &&
+                    cross(segment(h), segment(k)))
+                    add_least_deep(h, k);
+    }
+
     std::vector<Contact> contacts() const { return {contacts_.begin(), contacts_.end()}; }
 
 private:
     void add(Vertex v, HalfEdge h) {
         if (s_.origin(h) != v && s_.target(h) != v)
             contacts_.insert({v, s_.origin(h), s_.target(h)});
+    }
+
+    Segment segment(HalfEdge h) const {
+        return {uv_[s_.origin(h)], uv_[s_.target(h)], s_.origin(h), s_.target(h)};
+    }
+
+    bool has_contact(HalfEdge h) const {
+        return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
+            return contact.vertex == s_.origin(h) || contact.vertex == s_.target(h);
+        });
+    }
+
+    void add_least_deep(HalfEdge h, HalfEdge k) {
+        Vertex best;
+        HalfEdge out;
+        double least = infinite;
+        for (const auto& [edge, other] : {std::pair(h, k), std::pair(k, h)})
+            for (const Vertex v : {s_.origin(other), s_.target(other)}) {
+                const Vec2 along = uv_[s_.target(edge)] - uv_[s_.origin(edge)];
+                const double depth =
+                    plane::left_of(along).dot(uv_[v] - uv_[s_.origin(edge)]) / along.norm();
+                if (depth >= 0.0 && depth < least) {
+                    least = depth;
+                    best = v;
+                    out = edge;
+                }
+            }
+        if (least < infinite)
+            add(best, out);
     }
 
     const atlas::ChartSurface& s_;
@@ -222,6 +264,8 @@ std::vector<Contact> find_contacts(const atlas::ChartSurface& surface, const std
         finder.find_inside(f, g);
         finder.find_inside(g, f);
     }
+    for (const auto& [f, g] : pairs)
+        finder.find_crossings(f, g);
     return finder.contacts();
 }
 
@@ -237,6 +281,15 @@ std::vector<Contact> merge_contacts(const std::vector<Contact>& old,
     return contacts;
 }
 
+CornerUv corners_of(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
+    CornerUv corners;
+    corners.reserve(3 * surface.faces.size());
+    for (const Triangle& t : surface.faces)
+        for (const Vertex v : t)
+            corners.push_back(uv[v]);
+    return corners;
+}
+
 } // namespace
 
 bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
@@ -247,12 +300,13 @@ Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Ve
                         double tolerance) {
     if (!boundary_crosses_itself(surface, uv))
         return {};
-    CornerUv corners;
-    corners.reserve(3 * surface.faces.size());
-    for (const Triangle& t : surface.faces)
-        for (const Vertex v : t)
-            corners.push_back(uv[v]);
-    return plane::find_overlapping_pairs(corners, tolerance);
+    return plane::find_overlapping_pairs(corners_of(surface, uv), tolerance);
+}
+
+bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                     double tolerance) {
+    return boundary_crosses_itself(surface, uv) &&
+           plane::any_overlap(corners_of(surface, uv), tolerance);
 }
 
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
@@ -277,18 +331,27 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
                                             const atlas::ChartSurface& surface,
                                             std::vector<Vec2> uv, Pairs pairs, double tolerance,
                                             const Progress& progress, double gap_share) {
+    const auto laplacian = attempt([&] { return std::make_unique<Laplacian>(problem); });
+    if (!laplacian) // needles: a cut is left
+        return std::nullopt;
     const double before = symmetric_dirichlet_energy(problem, uv);
     ContactPenalty penalty;
     penalty.stiffness = tuning.first_stiffness / problem.total_area;
     penalty.gap = gap_share * std::sqrt(problem.total_area);
     SymmetricDirichletOptions options;
     options.max_iterations = 30;
-    for (int round = 0; round < tuning.push_rounds; ++round) {
-        penalty.contacts = merge_contacts(penalty.contacts, find_contacts(surface, uv, pairs));
+    options.laplacian = laplacian.get();
+    std::size_t fewest = pairs.size();
+    int idle = 0;
+    for (int round = 0; round < tuning.push_rounds && idle < tuning.idle_rounds; ++round) {
+        const ContactPenalty found{find_contacts(surface, uv, pairs), penalty.stiffness, 0.0};
+        if (found.energy(positions_of(uv)) == 0.0) // nothing to push: more than a turn too much
+            return std::nullopt;
+        penalty.contacts = merge_contacts(penalty.contacts, found.contacts);
         uv = attempt([&] {
             return minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
         });
-        if (uv.empty()) // needles: a cut is left
+        if (uv.empty())
             return std::nullopt;
         scale_to_area(problem, uv);
         if (symmetric_dirichlet_energy(problem, uv) > before + tuning.push_cost)
@@ -296,6 +359,8 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
         pairs = overlapping_pairs(surface, uv, tolerance);
         if (pairs.empty())
             return uv;
+        idle = pairs.size() < fewest ? 0 : idle + 1;
+        fewest = std::min(fewest, pairs.size());
         penalty.stiffness *= 2.0;
     }
     return std::nullopt;

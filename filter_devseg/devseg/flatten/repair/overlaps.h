@@ -28,6 +28,10 @@ bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vect
 Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                         double tolerance);
 
+/// Whether there are any: stops at the first.
+bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                     double tolerance);
+
 /// Half-edges of the surface that cut it in two along a short path, such that the two faces of the
 /// first overlapping pair, with as many of the faces around them that take part in the overlap as
 /// possible, come apart. Half-edges are local, one for each edge.

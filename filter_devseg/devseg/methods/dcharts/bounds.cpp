@@ -28,11 +28,15 @@ public:
         resize();
     }
 
-    void run(Progress& progress) {
+    bool run(Progress& progress) {
         while (true) {
             auto judging = progress.part(0.2 * progress.left());
             judge_unknown(bounds_.linf == 0.0 && bounds_.max_excess == infinite, judging);
             const std::vector<Index> above = charts_above();
+            if (!bounds_.may_cut) {
+                hand_back();
+                return above.empty();
+            }
             auto cutting = progress.part(0.2 * progress.left());
             bool changed = false;
             for (const Index c : above)
@@ -42,6 +46,7 @@ public:
         }
         join_again(progress);
         hand_back();
+        return !any_touched();
     }
 
 private:
@@ -122,7 +127,7 @@ private:
         if (draft_.excess() <= bounds_.max_excess)
             return above;
         std::sort(rest.begin(), rest.end());
-        for (std::size_t i = 0; i < rest.size() && excess > tuning.first_share * bounds_.max_excess;
+        for (std::size_t i = 0; i < rest.size() && excess > tuning.certain * bounds_.max_excess;
              ++i) {
             above.push_back(rest[i].second);
             excess += rest[i].first;
@@ -207,8 +212,7 @@ private:
     }
 
     void join_again(Progress& progress) {
-        if (!merging_.confirm ||
-            std::none_of(touched_.begin(), touched_.end(), [](auto t) { return t != 0; }))
+        if (!merging_.confirm || !any_touched())
             return;
         std::vector<Index> beside; // of the charts that were cut, and themselves
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c)
@@ -222,6 +226,10 @@ private:
         merging.open = touched_;
         auto joining = progress.part("joining charts", 1.0);
         merge_charts(mesh_, merging, draft_, joining);
+    }
+
+    bool any_touched() const {
+        return std::any_of(touched_.begin(), touched_.end(), [](auto t) { return t != 0; });
     }
 
     bool is_beside_touched(Index c) const {
@@ -263,9 +271,9 @@ private:
 
 } // namespace
 
-void keep_bounds(const Mesh& mesh, const FinalBounds& bounds, const DChartsOptions& growing,
+bool keep_bounds(const Mesh& mesh, const FinalBounds& bounds, const DChartsOptions& growing,
                  const MergeOptions& merging, DevelopableCharts& charts, Progress& progress) {
-    BoundKeeping(mesh, bounds, growing, merging, charts).run(progress);
+    return BoundKeeping(mesh, bounds, growing, merging, charts).run(progress);
 }
 
 } // namespace devseg::dcharts

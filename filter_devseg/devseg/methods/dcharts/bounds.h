@@ -14,13 +14,14 @@ struct FinalBounds {
     double linf = 0.0;            // stretch of the worst spot
     double max_excess = infinite; // Σ A (l2² − 1) over the charts, internal units squared
     bool add_darts = true;        // where they bring a chart within its bound
+    bool may_cut = true;          // else the charts are only judged
 };
 
 /// Judges every chart by its final map. Charts above a bound get darts where these are enough, and
 /// are split otherwise; what was split is joined again where the final map allows it. Fills in the
 /// stretch of the whole where it is bounded, and what is still above a bound: charts of single
-/// faces and rough ones.
-void keep_bounds(const Mesh& mesh, const FinalBounds& bounds, const DChartsOptions& growing,
+/// faces and rough ones. False where a chart was cut, or would have to be.
+bool keep_bounds(const Mesh& mesh, const FinalBounds& bounds, const DChartsOptions& growing,
                  const MergeOptions& merging, DevelopableCharts& charts, Progress& progress);
 
 } // namespace devseg::dcharts

@@ -43,6 +43,7 @@ struct StretchBounds {
     double l2 = 1.005;
     double linf = 1.5;
     double hard_l2 = infinite; // what not even a small chart may exceed
+    double hard_linf = infinite; // the same of linf
 
     bool hold(const judge::TrialMap& map) const {
         return map.l2_squared <= l2 * l2 && map.linf <= linf;

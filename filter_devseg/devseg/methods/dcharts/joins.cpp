@@ -19,9 +19,9 @@ namespace {
 
 using judge::TrialEffort;
 using judge::TrialMap;
-// What a trial has found. Parts of borders, and on the surface itself all borders, are tried again
-// only where an older verdict makes them the best that there is: the more of a chart is closed, the
-// more another part costs.
+// What a trial has found. It is tried again, after its charts have changed, only where the older
+// verdict makes it the best that there is, and at the end: the more of a chart is closed, the more
+// another part costs.
 struct Verdict {
     TrialMap map;       // of the joined chart
     double added = 0.0; // excess
@@ -46,6 +46,8 @@ public:
             for (propose(); !untried_.empty(); propose())
                 try_again(untried_, trying);
             Entry* best = choose(progress);
+            if (best == nullptr && try_old_again(trying))
+                best = choose(progress);
             const bool may_part = draft_.charts_number() > options_.parts_above;
             if (best != nullptr)
                 close(best->first, best->second);
@@ -117,8 +119,7 @@ private:
         if (encloses_corner(closing))
             return nullptr;
         const auto known = last.find(key);
-        const bool is_known =
-            known != last.end() && (known->second.second.fresh || !whole || options_.confirm);
+        const bool is_known = known != last.end();
         const auto [entry, is_new] = verdicts_.try_emplace(
             std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
         if (is_new)
@@ -163,6 +164,16 @@ private:
                        verdict);
             },
             progress);
+    }
+
+    // Whole borders with old verdicts. False where there is none.
+    bool try_old_again(Progress& progress) {
+        std::vector<Entry*> old;
+        for (auto& item : verdicts_)
+            if (item.second.second.whole && !item.second.second.fresh)
+                old.push_back(&item.second);
+        try_again(old, progress);
+        return !old.empty();
     }
 
     void assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
@@ -280,7 +291,7 @@ private:
         const TrialMap& a = draft_.map[pair.first];
         const TrialMap& b = draft_.map[pair.second];
         StretchBounds limit = options_.chart;
-        limit.linf = std::max({limit.linf, a.linf, b.linf});
+        limit.linf = std::max(limit.linf, tuning.like_spot * std::max(a.linf, b.linf));
         if (std::min(a.area, b.area) < options_.small_share * mesh_.total_area &&
             pair.first != pair.second) {
             limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
@@ -288,6 +299,7 @@ private:
             limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
         }
         limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
+        limit.linf = std::min(limit.linf, options_.chart.hard_linf);
         return limit;
     }
 
@@ -300,7 +312,7 @@ private:
                 ? 0.0
                 : options_.least_neck *
                       std::sqrt(std::min(draft_.map[first].area, draft_.map[second].area));
-        const bool may_overlap = verdict.whole && !options_.keep_corners && !options_.confirm;
+        const bool may_overlap = !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
             !bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) ||
@@ -347,21 +359,23 @@ private:
         }
     }
 
+    // Overlaps first: a final map that lies on itself is cut apart, which takes long.
     void confirm(const Closing& closing, Verdict& verdict, Progress& progress) {
         const std::vector<std::uint8_t> seam = seam_without(closing);
-        if (options_.confirm) {
-            auto judging = progress.part(0.0);
-            TrialMap map =
-                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
-            map.cut_length = verdict.map.cut_length;
-            assess(closing, std::move(map), verdict);
-        } else {
+        if (verdict.map.overlaps) {
             TrialEffort effort;
             effort.wanted_l2 = bounds_of(closing.charts).l2;
             effort.push_apart = true;
             TrialMap map = judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
-                                            turns_of(closing));
+                                            verdict.map.turns);
             map.flat = map.flat && !map.overlaps;
+            assess(closing, std::move(map), verdict);
+        }
+        if (options_.confirm && verdict.map.flat) {
+            auto judging = progress.part(0.0);
+            TrialMap map =
+                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
+            map.cut_length = verdict.map.cut_length;
             assess(closing, std::move(map), verdict);
         }
         verdict.confirmed = true;

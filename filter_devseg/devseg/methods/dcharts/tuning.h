@@ -1,6 +1,8 @@
 // The numbers of D-Charts, and why they have these values.
 #pragma once
 
+#include <array>
+
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::dcharts {
@@ -26,6 +28,7 @@ struct Tuning {
     // of the area for each √area of border.
     double negligible = 1e-5;     // and of √area: a cut of this length is none
     double small_allowance = 3.0; // of small charts, over the bounds of others
+    double like_spot = 1.1; // stretch over that of the parts' worst spots that is like theirs
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
     double corner_defect = 0.2;
@@ -69,8 +72,10 @@ struct Tuning {
     double room_for_joins = 0.6; // of the allowed stretch: splitting goes below it
     // Of a chart's bound, that its map may use: flattening may give it slivers of its neighbours.
     double certain = 0.95;
-    int few_darts = 4;         // of a chart above its bound; then it is split
-    double first_share = 0.9;  // of the allowed stretch that the coarse surface may use
+    int few_darts = 4; // of a chart above its bound; then it is split
+    // Of the allowed stretch, that the coarse surface may use, one after the other: the final map
+    // has a little more or less, and has the last word.
+    std::array<double, 3> shares{0.8, 0.9, 1.0};
     double chart_excess = 4.0; // of one chart over that of the whole
     double loose_linf = 8.0;   // worst spots count little where they have no bound
 };

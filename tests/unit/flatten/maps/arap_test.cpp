@@ -165,5 +165,35 @@ TEST(Arap, RunsAreEqualAndCanBeCancelled) {
     EXPECT_THROW(minimise_arap(disk.problem, start, ArapOptions{}, stopped), Cancelled);
 }
 
+// Half of the faces a little askew: the parts of a join, laid out apart.
+TEST(Stitch, FitsPartsTogetherThatAreIsometricTogether) {
+    for (const Disk& disk : developables()) {
+        const ArapResult map = minimise(disk, flatten_lscm(disk.problem));
+        std::vector<Vec2> turns = face_turns(disk.problem, map.uv);
+        for (std::size_t f = turns.size() / 2; f < turns.size(); ++f)
+            turns[f] = Eigen::Rotation2Dd(0.05) * turns[f];
+        const Laplacian laplacian(disk.problem);
+        StitchOptions options;
+        const std::vector<Vec2> once = stitch(disk.problem, laplacian, turns, options);
+        options.rounds = 20;
+        const std::vector<Vec2> often = stitch(disk.problem, laplacian, turns, options);
+        EXPECT_EQ(checks::count_flips(disk.problem.faces, often), 0);
+        EXPECT_LT(arap_energy(disk.problem, often), 0.5 * arap_energy(disk.problem, once));
+        EXPECT_LT(arap_energy(disk.problem, often), 1e-4);
+    }
+}
+
+TEST(Stitch, GivesUpWhereTheEnergyIsHopeless) {
+    const Disk disk(shapes::hemisphere(20, 8));
+    const ArapResult map = minimise(disk, flatten_lscm(disk.problem));
+    const std::vector<Vec2> turns = face_turns(disk.problem, map.uv);
+    const Laplacian laplacian(disk.problem);
+    StitchOptions options;
+    options.give_up_energy = 2.0 * map.energy;
+    EXPECT_FALSE(stitch(disk.problem, laplacian, turns, options).empty());
+    options.give_up_energy = 0.5 * map.energy;
+    EXPECT_TRUE(stitch(disk.problem, laplacian, turns, options).empty());
+}
+
 } // namespace
 } // namespace devseg::flatten

@@ -230,5 +230,31 @@ TEST(Joins, StopAtTheNumberThatIsEnough) {
     EXPECT_EQ(draft.charts_number(), 4);
 }
 
+// Fewest first: what a looser bound allows is not less, and is used where it shortens seams.
+TEST(AutomaticCharts, LooserBoundsGiveNoMoreChartsAndShorterSeams) {
+    const Mesh mesh = checks::gated(shapes::torus(40, 20));
+    Index charts = mesh.face_count();
+    double seams = infinite;
+    for (const double bound : {1.001, 1.005, 1.02, 1.05}) {
+        DevelopableChartsOptions options;
+        options.charts_number = 0;
+        options.max_l2_stretch = bound;
+        options.max_chart_l2_stretch = 0.0;
+        Progress progress;
+        const DevelopableCharts found = segment_developable_charts(mesh, options, progress);
+        EXPECT_TRUE(found.bounds_kept);
+        EXPECT_LE(found.l2_stretch, bound);
+        EXPECT_LE(count(found), charts);
+        double length = 0.0;
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] > h &&
+                (found.seam[h] != 0 || found.chart[face_of(h)] != found.chart[mesh.across(h)]))
+                length += mesh.edge_length(h);
+        EXPECT_LT(length, seams);
+        charts = count(found);
+        seams = length;
+    }
+}
+
 } // namespace
 } // namespace devseg::dcharts
