@@ -7,8 +7,9 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from devseg.batch_cli import add_batch_options, batch_command
 from devseg.errors import DevsegError, one_line
 from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
@@ -18,6 +19,9 @@ from devseg.pattern import (
     add_pattern_options,
     pattern_parameters,
 )
+
+if TYPE_CHECKING:
+    from devseg.pipeline import RunOptions
 
 FORMATS = (*PATTERN_FORMATS, "ply", "obj")
 
@@ -67,6 +71,13 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("-o", "--out", type=Path, metavar="DIR", help="for the files")
     add_run_options(run)
     run.set_defaults(command=run_command, subparser=run)
+
+    batch = commands.add_parser("batch", help="devseg run for thousands of meshes, with a report")
+    add_batch_options(batch)
+    add_run_options(batch)
+    batch.set_defaults(
+        command=lambda args, parser: batch_command(args, parser, run_options), subparser=batch
+    )
 
     compare = commands.add_parser("compare", help="methods side by side: measures and a picture")
     compare.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
@@ -270,13 +281,31 @@ def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """`devseg run`; parser reports wrong usage."""
     from devseg.outputs import to_json
-    from devseg.pipeline import RunOptions, run
+    from devseg.pipeline import run
 
     if args.list_objects:
         _list_objects(args)
         return
     if args.out is None:
         parser.error("the following arguments are required: -o/--out")
+    options = run_options(args, parser)
+    _check_names(args, parser)
+    results = []
+    for path in args.input:
+        result = run(path, options)
+        for warning in result["warnings"]:
+            print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
+        results.append(result)
+        if not args.json:
+            print(_summary(result, args.out))
+    if args.json:
+        sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
+
+
+def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> RunOptions:
+    """What the options of add_run_options ask for; parser reports those that do not fit."""
+    from devseg.pipeline import RunOptions
+
     if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
         parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
     method = METHODS[args.method]
@@ -294,12 +323,11 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         segmentation["charts_number"] = 0
     elif args.charts == 0 and "max_l2_stretch" not in method.options:
         parser.error(f"--charts auto does not apply to --method {method.name}")
-    _check_names(args, parser)
     pattern = pattern_parameters(args)
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
     flattening = args.flatten or method.flatten
-    options = RunOptions(
+    return RunOptions(
         args.out,
         method,
         segmentation,
@@ -315,16 +343,6 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         _smooth_seams(args, pattern, parser),
         args.weld,
     )
-    results = []
-    for path in args.input:
-        result = run(path, options)
-        for warning in result["warnings"]:
-            print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
-        results.append(result)
-        if not args.json:
-            print(_summary(result, args.out))
-    if args.json:
-        sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
 
 
 def _list_objects(args: argparse.Namespace) -> None:

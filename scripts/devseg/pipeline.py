@@ -174,10 +174,11 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
         DevsegError: with nothing written.
     """
     with staged(options.out) as folder:
-        return run_apart(str(path), lambda tell: _process(path, options, folder, tell))
+        return run_apart(str(path), lambda tell: process(path, options, folder, tell))
 
 
-def _process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+    """Runs the whole pipeline on one file, in this process, and writes into `folder`."""
     name = path.stem
     progress = Progress(name, tell=tell)
     with progress.stage("start"):
