@@ -13,7 +13,7 @@ from devseg.batch_cli import add_batch_options, batch_command
 from devseg.errors import DevsegError, one_line
 from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
-from devseg.pattern import (
+from devseg.pattern_options import (
     PATTERN_FORMATS,
     PRESETS,
     add_pattern_options,

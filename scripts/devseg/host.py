@@ -9,7 +9,7 @@ import os
 import sys
 import tempfile
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from devseg.errors import DevsegError, one_line
 
@@ -26,6 +26,17 @@ class Chatter:
     text = ""
 
 
+@dataclass(frozen=True)
+class _Terminal:
+    """Where output went before a `captured` block."""
+
+    descriptors: tuple[int, int]
+    streams: tuple[TextIO, TextIO]
+
+
+_terminals: list[_Terminal] = []
+
+
 @contextlib.contextmanager
 def captured() -> Iterator[Chatter]:
     """Keeps what the host prints off the terminal and out of a JSON on stdout.
@@ -38,6 +49,7 @@ def captured() -> Iterator[Chatter]:
     _flush()
     with tempfile.TemporaryFile() as sink:
         saved = os.dup(1), os.dup(2)
+        _terminals.append(_Terminal(saved, (sys.stdout, sys.stderr)))
         try:
             os.dup2(sink.fileno(), 1)
             os.dup2(sink.fileno(), 2)
@@ -46,6 +58,7 @@ def captured() -> Iterator[Chatter]:
         finally:
             # What is still in the C library's buffers belongs to this block.
             _flush()
+            _terminals.pop()
             os.dup2(saved[0], 1)
             os.dup2(saved[1], 2)
             os.close(saved[0])
@@ -54,6 +67,28 @@ def captured() -> Iterator[Chatter]:
             chatter.text = printed.getvalue() + sink.read().decode(errors="replace")
             if os.environ.get("DEVSEG_DEBUG") and chatter.text:
                 sys.stderr.write(chatter.text)
+
+
+@contextlib.contextmanager
+def uncaptured() -> Iterator[None]:
+    """Lets a callback print that the host calls inside of a `captured` block."""
+    if not _terminals:
+        yield
+        return
+    terminal = _terminals[-1]
+    _flush()
+    sinks = os.dup(1), os.dup(2)
+    try:
+        for number, descriptor in enumerate(terminal.descriptors, start=1):
+            os.dup2(descriptor, number)
+        out, err = terminal.streams
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            yield
+            _flush()
+    finally:
+        for number, sink in enumerate(sinks, start=1):
+            os.dup2(sink, number)
+            os.close(sink)
 
 
 def _flush() -> None:
