@@ -122,5 +122,5 @@ def pattern(
         given["mm_per_unit"] = longest_mm / float(extents.max())
     with array_session(None) as session:
         session.add_atlas(atlas)
-        known_options(EXPORT_FILTER, session.meshes, given, ("output_file",))
+        given = known_options(EXPORT_FILTER, session.meshes, given, ("output_file",))
     return Pattern(atlas, up, given)

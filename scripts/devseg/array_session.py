@@ -167,16 +167,21 @@ def known_word(name: str, word: str, known: Mapping[str, T]) -> T:
 def known_options(
     filter_name: str, meshes: Any, options: Mapping[str, Any], without: tuple[str, ...] = ()
 ) -> dict[str, Any]:
-    """The options, all of which are parameters of the filter.
+    """The options as the host takes them, all of which are parameters of the filter.
 
     Raises:
-        DevsegError: for a word that the filter does not know, with those that it knows.
+        DevsegError: for a word that the filter does not know, with those that it knows, and for
+            something that is neither a number nor a text.
     """
     known = [n for n in meshes.filter_parameter_values(filter_name) if n not in without]
-    for name in options:
+    found = {}
+    for name, value in options.items():
         if name not in known:
             raise DevsegError(f"{name}: expected one of {', '.join(known)}")
-    return dict(options)
+        found[name] = value.item() if hasattr(value, "item") else value  # a number of NumPy
+        if not isinstance(found[name], bool | int | float | str):
+            raise DevsegError(f"{name}: expected a number or a text, found {value!r}")
+    return found
 
 
 def _shape(array: np.ndarray) -> str:
