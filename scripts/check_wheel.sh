@@ -3,7 +3,7 @@
 # pattern of the Stanford bunny with it, and prints a row for each: what of, seconds of both.
 #   scripts/check_wheel.sh [PYTHON | debian:DIR]...
 # PYTHON is an interpreter; default: python3. DIR is a Debian without anything else, such as
-#   debootstrap --variant=minbase --include=python3-venv testing DIR
+#   debootstrap --variant=minbase --include=python3-venv,libgl1,libopengl0,libcom-err2 testing DIR
 # whose Python is used inside of it, by root; its packages are fetched from outside.
 
 # shellcheck source=scripts/setup.sh
@@ -32,7 +32,7 @@ assert atlas.uv.shape == (4, 3, 2) and atlas.measures["flipped_faces_number"] ==
 in_debian() {
     local dir=$1
     shift
-    env -i PATH=/usr/bin:/bin HOME=/root LANG=C.UTF-8 chroot "$dir" "$@"
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 chroot "$dir" "$@"
 }
 
 # check_python WHEEL PYTHON

@@ -133,10 +133,20 @@ class Store:
         for folder in self._work.iterdir():
             host, _, rest = folder.name.partition("+")
             pid = rest.partition("+")[0]
-            if host == socket.gethostname() and not Path(f"/proc/{pid}").exists():
+            if host == socket.gethostname() and not _runs(int(pid)):
                 shutil.rmtree(folder, ignore_errors=True)
         with contextlib.suppress(OSError):  # others are at work
             self._work.rmdir()
+
+
+def _runs(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
 
 
 def _move(source: Path, target: Path) -> None:

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from devseg.batch_cli import add_batch_options, batch_command
+from devseg.completion import SHELLS, completion
 from devseg.errors import DevsegError, one_line
+from devseg.help_text import add_examples
 from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
 from devseg.pattern_options import (
@@ -107,7 +109,13 @@ def _parser() -> argparse.ArgumentParser:
     measure.set_defaults(command=_measure_command, subparser=measure)
 
     info = commands.add_parser("info", help="versions, plugins, filters and hosts")
+    info.add_argument("--json", action="store_true", help="print them as JSON")
     info.set_defaults(command=_info_command, subparser=info)
+
+    shell = commands.add_parser("completion", help="a script that completes words in a shell")
+    shell.add_argument("shell", choices=SHELLS, help="of which shell")
+    shell.set_defaults(command=_completion_command, subparser=shell)
+    add_examples(commands)
     return parser
 
 
@@ -491,7 +499,13 @@ def _print_table(prefix: str, measures: dict[str, Any], first: int | None = None
         print("  " + " ".join(f"{number:>16.6g}" for number in numbers))
 
 
-def _info_command(_: argparse.Namespace, __: argparse.ArgumentParser) -> None:
-    from devseg.info import info
+def _info_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    from devseg.info import info, info_text
+    from devseg.outputs import to_json
 
-    print(info())
+    found = info()
+    sys.stdout.write(to_json(found) if args.json else f"{info_text(found)}\n")
+
+
+def _completion_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    print(completion(_parser(), args.shell))

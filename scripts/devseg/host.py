@@ -11,7 +11,8 @@ import tempfile
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO
 
-from devseg.errors import DevsegError, one_line
+from devseg.errors import DevsegError
+from devseg.requirements import loading_advice, version_advice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,6 +36,9 @@ class _Terminal:
 
 
 _terminals: list[_Terminal] = []
+
+# The host's plugin of the usual formats; it goes on without plugins that it cannot load.
+_READERS = "libio_base.so"
 
 
 @contextlib.contextmanager
@@ -101,14 +105,18 @@ def pymeshlab() -> ModuleType:
     """The pymeshlab module; an error that says what to do where it is not installed."""
     if "pymeshlab" in sys.modules:
         return sys.modules["pymeshlab"]
+    # A plugin for another version may be refused, or crash.
+    if (advice := version_advice()) is not None:
+        raise DevsegError(advice)
     try:
         # It loads some sixty plugins and prints a warning about each that it cannot load.
-        with captured():
+        with captured() as chatter:
             import pymeshlab as module
     except ImportError as error:
-        raise DevsegError(
-            f"pymeshlab cannot be imported ({one_line(str(error))}); run scripts/quickstart.sh"
-        ) from error
+        raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
+    for line in chatter.text.splitlines():
+        if "Cannot load library" in line and _READERS in line:
+            raise DevsegError(f"pymeshlab cannot read files: {loading_advice(line)}")
     return module
 
 

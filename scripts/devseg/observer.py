@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import os
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 from devseg import host
 from devseg.errors import DevsegError
-from devseg.plugins import PLUGIN_FILES
+from devseg.plugins import plugin_paths
 
 # Called with the share of the work that is done, from 0 to 1, and the name of what runs; the work
 # is cancelled where it returns False. Hosts are asked up to fifty times a second.
@@ -66,8 +66,12 @@ def observed(observation: Observation) -> Iterator[None]:
 
 
 def _plugin() -> ctypes.CDLL:
-    """The filter plugin that this process has loaded, from wherever."""
-    for line in Path("/proc/self/maps").read_text(errors="replace").splitlines():
-        if line.endswith(f"/{PLUGIN_FILES[0]}"):
-            return ctypes.CDLL(line[line.index("/") :])
-    raise DevsegError("expected the plugins to be loaded, found that they are not")
+    """The filter plugin that this process has loaded."""
+    path = plugin_paths()[0]
+    try:
+        return ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_NOW)
+    except OSError as error:
+        raise DevsegError(
+            f"expected the plugin {path} in pymeshlab, found that another one was loaded before; "
+            "load it by devseg.load_plugins()"
+        ) from error

@@ -3,7 +3,7 @@
     python check_tag.py WHEEL PYMESHLAB
 
 Its symbols may be those of the platform in its name. Libraries beside the system's may only be
-those that the wheel of pymeshlab in the folder PYMESHLAB brings: they are loaded before the plugins.
+those that the wheel of pymeshlab in the folder PYMESHLAB brings, loaded before the plugins.
 """
 
 from __future__ import annotations
