@@ -84,7 +84,7 @@ def run_on_dask(tasks: Sequence[Task], jobs: int, address: str) -> Iterator[Reco
             for task in tasks
         ]
         try:
-            for future in distributed.as_completed(futures):
+            for future in distributed.as_completed(futures, loop=client.loop):
                 yield future.result()
         finally:
             client.cancel(futures)

@@ -3,7 +3,7 @@
     .venv/bin/python tests/bench/real_meshes.py DIR [-o OUT] [--plugins DIR] [--jobs N]
         [--half even|odd] [--every K] [--seconds S] [--memory-gb G] [--keep] [-- OPTION...]
 
-Options after -- go to `devseg run`. OUT gets the report of the batch, and a copy of the plugins, with
+Options after -- go to `devseg run`. OUT gets the report of the batch, and a copy of the plugins, by
 which a run that was stopped goes on. The last line of the output sums up. Fails where a mesh killed
 its process or went over a limit.
 """
