@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -362,7 +363,7 @@ def _list_objects(args: argparse.Namespace) -> None:
         tell(READING)
         return list_objects(path)
 
-    found = {str(p): run_apart(str(p), lambda tell, p=p: read(p, tell)) for p in args.input}
+    found = {str(path): run_apart(str(path), partial(read, path)) for path in args.input}
     if args.json:
         sys.stdout.write(to_json(found))
         return
