@@ -89,6 +89,7 @@ build_wheel() {
     wheel=$(echo "$tree"/dist/*.whl) sdist=$(echo "$tree"/dist/*.tar.gz)
     check_wheel_file "$wheel"
     mkdir -p "$root/dist"
+    rm -f "$root"/dist/devseg-*
     mv "$wheel" "$sdist" "$root/dist"
     printf 'dist/%s\n' "$(basename "$sdist")" "$(basename "$wheel")"
 }

@@ -14,10 +14,10 @@ trial='
 import importlib.util, pathlib, subprocess, sys
 folder = pathlib.Path(sys.argv[1])
 package = pathlib.Path(importlib.util.find_spec("pymeshlab").origin).parent
-bunny = package / "tests/sample_meshes/bunny.obj"
+bunny = package / "tests/sample_meshes/bunny10k_textured.obj"
 devseg = pathlib.Path(sys.executable).parent / "devseg"
 subprocess.run([devseg, "run", bunny, "-o", folder / "out", "--height-mm", "200"], check=True)
-assert (folder / "out/bunny.svg").stat().st_size > 10000
+assert (folder / "out/bunny10k_textured.svg").stat().st_size > 10000
 info = subprocess.run([devseg, "info"], check=True, capture_output=True, text=True).stdout
 assert "the plugins fit (pymeshlab-2025.07)" in info, info
 cube = package / "tests/sample_meshes/cube.obj"

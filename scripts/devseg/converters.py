@@ -53,7 +53,8 @@ def to_trimesh(charts: Charts | Atlas) -> Any:
         cut.vertices,
         cut.faces,
         face_attributes=attributes,
-        vertex_attributes={"origin": cut.origin},
+        # Wider integers cannot be written as GLB.
+        vertex_attributes={"origin": cut.origin.astype("uint32")},
         visual=trimesh.visual.TextureVisuals(uv=cut.uv),
         process=False,
     )
