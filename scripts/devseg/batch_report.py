@@ -143,4 +143,4 @@ def _row(store: Store, record: Record) -> str:
 def _shown_number(value: Any) -> str:
     if value is None:
         return ""
-    return f"{value:,}" if isinstance(value, int) else f"{value:.4g}"
+    return f"{value:,}" if isinstance(value, int) else f"{value:.5g}"

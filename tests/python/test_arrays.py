@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import threading
@@ -207,11 +208,13 @@ def test_progress_rises_and_is_printed(capfd: pytest.CaptureFixture[str]) -> Non
     def progress(share: float, what: str) -> None:
         seen.append(share)
         print(f"{what}!")
+        os.write(1, b"by hand!")
 
     devseg.unwrap(*BALL, progress=progress)
     assert len(seen) > 5 and seen == sorted(seen) and seen[0] >= 0 and 0.9 < seen[-1] <= 1
     printed = capfd.readouterr().out
     assert "packing charts!" in printed and "LOG" not in printed
+    assert printed.count("by hand!") == len(seen)
 
 
 def test_false_cancels_and_the_next_call_is_as_ever() -> None:
