@@ -46,7 +46,7 @@ class DevsegAccessor:
 
     def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
         mesh = self._mesh.triangulate()
-        if mesh.n_cells == 0:
+        if mesh.n_faces == 0:
             raise DevsegError("expected a mesh with faces, found none")
         return mesh.points, mesh.regular_faces
 

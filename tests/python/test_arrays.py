@@ -288,7 +288,7 @@ def test_pyvista_finds_the_accessor() -> None:
     assert made.cell_data["chart_id"].max() >= 0 and made.n_cells == tube.triangulate().n_cells
     assert tube.devseg.segment().cell_data["chart_id"].shape == (made.n_cells,)
     with pytest.raises(devseg.DevsegError, match="a mesh with faces"):
-        pyvista.PolyData([[0.0, 0, 0]], verts=[]).devseg.segment()
+        pyvista.PolyData([[0.0, 0, 0]]).devseg.segment()
 
 
 def test_importing_does_no_work_and_names_are_functions(pymeshlab: ModuleType) -> None:
