@@ -116,7 +116,7 @@ def _options(
     return BatchOptions(
         run_options(args, parser),
         Limits(args.timeout, memory),
-        args.jobs or os.cpu_count() or 1,
+        args.jobs or len(os.sched_getaffinity(0)),
         rank,
         world_size,
         args.executor,

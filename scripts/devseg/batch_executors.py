@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Any
 
 from devseg.batch_store import Record
-from devseg.batch_task import Task
+from devseg.batch_task import Task, lost
 from devseg.batch_worker import Worker
 from devseg.errors import DevsegError
 
@@ -79,15 +79,18 @@ def run_on_dask(tasks: Sequence[Task], jobs: int, address: str) -> Iterator[Reco
                 f"--executor dask: no scheduler answers at {address} ({error}); start one with "
                 "dask scheduler, or leave the address out"
             ) from error
-        futures = [
-            client.submit(_run_there, task, key=f"{task.name}-{task.key}", pure=False)
+        futures = {
+            client.submit(_run_there, task, key=f"{task.name}-{task.key}", pure=False): task
             for task in tasks
-        ]
+        }
         try:
             for future in distributed.as_completed(futures, loop=client.loop):
-                yield future.result()
+                try:
+                    yield future.result()
+                except distributed.KilledWorker:
+                    yield lost(futures[future])
         finally:
-            client.cancel(futures)
+            client.cancel(list(futures))
 
 
 _of_thread = threading.local()
