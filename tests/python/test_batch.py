@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import csv
 import json
 import os
@@ -13,13 +14,13 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
 import meshes
 from conftest import ROOT
-from devseg import batch, batch_task
+from devseg import batch, batch_cli, batch_task
 from devseg.apart import Crashed, Limits, OverMemory, OverTime, run_watched
 from devseg.batch import BatchOptions, Step, find_inputs, run_batch, slurm_rank
 from devseg.batch_executors import run_here, run_on_dask
@@ -31,6 +32,7 @@ from devseg.cli import main
 from devseg.errors import DevsegError
 from devseg.methods import METHODS
 from devseg.pipeline import RunOptions
+from devseg.progress import CLEAR_LINE
 
 REPORT = ("report.csv", "index.html")
 
@@ -402,3 +404,60 @@ def test_modules_of_the_batch_need_no_host(pymeshlab: ModuleType) -> None:
         check=True,
     )
     assert done.stdout.strip() == "False" and batch.EXTENSIONS
+
+
+def test_a_mesh_that_ends_its_workers_is_told(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class KilledWorker(Exception):
+        """As Dask has it."""
+
+    class Client:
+        """Answers every task but the first."""
+
+        loop = None
+
+        def __init__(self, address: str, **_: object) -> None:
+            assert address == "tcp://there:8786"
+
+        def __enter__(self) -> Client:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            """Nothing to close."""
+
+        def submit(self, function: Callable, one: Task, **_: object) -> concurrent.futures.Future:
+            future: concurrent.futures.Future = concurrent.futures.Future()
+            if one is tasks[0]:
+                future.set_exception(KilledWorker())
+            else:
+                future.set_result(batch_task.run_task(one))
+            return future
+
+        def cancel(self, futures: list) -> None:
+            assert len(futures) == 2
+
+    stub = SimpleNamespace(
+        Client=Client, KilledWorker=KilledWorker, as_completed=lambda futures, loop: list(futures)
+    )
+    monkeypatch.setitem(sys.modules, "distributed", stub)
+    tasks = [task(folder / "part 0" / f"{k}.obj", tmp_path / "out") for k in (0, 2)]
+    records = list(run_on_dask(tasks, 1, "tcp://there:8786"))
+    assert [r["ending"] for r in records] == [CRASHED, PATTERN]
+    assert "ended by the system" in Store(tmp_path / "out").record("0.obj")["reason"]
+
+
+def test_on_a_terminal_one_line_is_written_again(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    show = batch_cli._Progress()
+    show(Step({"mesh": "a", "ending": PATTERN, "charts": 3, "reason": ""}, 1, 9, 0.5, 16))
+    show(Step({"mesh": "b", "ending": REFUSED, "reason": "no faces"}, 2, 9, 0.001, 7000))
+    show.end()
+    lines = capsys.readouterr().err.replace(CLEAR_LINE, "|").split("|")
+    assert lines == [
+        "",
+        "1/9, 0.5 a second, 16 s left",
+        "b: refused, no faces\n2/9, 0.001 a second, 1.9 h left, 1 without a pattern\n",
+    ]
