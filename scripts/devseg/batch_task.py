@@ -78,7 +78,8 @@ def option_values(options: RunOptions) -> dict[str, Any]:
     """The options as plain data, without the folder."""
     values = dataclasses.asdict(options)
     del values["out"]
-    return values
+    plain: dict[str, Any] = json.loads(json.dumps(values, default=str))
+    return plain
 
 
 def batch_key(options: RunOptions, programs: str) -> str:
