@@ -138,7 +138,8 @@ class _Progress:
         record = step.record
         good = record["ending"] == PATTERN
         self._failed += not good
-        about = f"{record['charts']} charts" if good else record["reason"]
+        charts = record.get("charts")
+        about = f"{charts} chart{'s' * (charts != 1)}" if good else record["reason"]
         line = f"{record['mesh']}: {record['ending']}, {about}"
         work = f"{step.done}/{step.all}, {step.rate:.2g} a second, {_span(step.seconds_left)} left"
         if not self._terminal:
