@@ -60,11 +60,12 @@ extract_tree() {
     logged tar -xf "$1" -C "$2" --strip-components=1 "${only[@]}"
 }
 
-# fetch_debian VERSION DIR [all]: takes the upstream tarball of Debian's source package. The
-# lists live in a directory of their own: the machine's apt stays as it is.
-fetch_debian() {
-    local version=$1 target=$2 parts=${3:-} mirror=${DEVSEG_DEBIAN_MIRROR:-}
-    local suite work keyring options package
+# debian_tarball PACKAGE VERSION WORK SUITE...: the upstream tarball of a Debian source package, into
+# WORK. The lists live in a directory of their own: the machine's apt stays as it is.
+debian_tarball() {
+    local package=$1 version=$2 work=$3 mirror=${DEVSEG_DEBIAN_MIRROR:-}
+    local suite keyring options found
+    shift 3
     command -v apt-get >/dev/null || return 1
     if [[ -z $mirror ]]; then
         mirror=$(
@@ -75,8 +76,7 @@ fetch_debian() {
     [[ -n $mirror ]] || return 1
     keyring=/usr/share/keyrings/debian-archive-keyring.gpg
     [[ -f $keyring ]] && keyring="[signed-by=$keyring]" || keyring=
-    work=$target.apt
-    for suite in $(suites_of "$version"); do
+    for suite in "$@"; do
         rm -rf "$work"
         mkdir -p "$work/lists/partial" "$work/cache/archives/partial"
         printf 'deb-src %s %s %s main\n' "$keyring" "$mirror" "$suite" >"$work/sources.list"
@@ -84,21 +84,30 @@ fetch_debian() {
             -o "Dir::State::lists=$work/lists" -o "Dir::Cache=$work/cache"
             -o APT::Sandbox::User= -o Acquire::Retries=2)
         logged apt-get "${options[@]}" update || logged apt-get "${options[@]}" update || continue
-        package=$(apt-cache "${options[@]}" showsrc meshlab 2>/dev/null |
+        found=$(apt-cache "${options[@]}" showsrc "$package" 2>/dev/null |
             awk -v v="$version" '$1 == "Version:" && index($2, v) == 1 { print $2; exit }')
-        [[ -n $package ]] || continue
-        (cd "$work" && { fetch_source || fetch_source; }) || continue
-        mkdir -p "$target"
-        extract_tree "$work"/meshlab_*.orig.tar.* "$target" "$parts" && break
-        rm -rf "$target"
+        [[ -n $found ]] || continue
+        (cd "$work" && { fetch_source || fetch_source; }) && return
     done
-    rm -rf "$work"
-    [[ -d $target ]]
+    return 1
 }
 
 # The packaging files of a superseded revision vanish from mirrors, the tarball stays: tar only.
 fetch_source() {
-    logged apt-get "${options[@]}" source --tar-only --download-only "meshlab=$package"
+    logged apt-get "${options[@]}" source --tar-only --download-only "$package=$found"
+}
+
+# fetch_debian VERSION DIR [all]: takes the upstream tarball of Debian's source package.
+fetch_debian() {
+    local version=$1 target=$2 work=$2.apt
+    local -a suites
+    mapfile -t suites < <(suites_of "$version" | tr ' ' '\n')
+    if debian_tarball meshlab "$version" "$work" "${suites[@]}"; then
+        mkdir -p "$target"
+        extract_tree "$work"/meshlab_*.orig.tar.* "$target" "${3:-}" || rm -rf "$target"
+    fi
+    rm -rf "$work"
+    [[ -d $target ]]
 }
 
 # fetch_git VERSION DIR: the tagged upstream sources.

@@ -90,9 +90,9 @@ update_lists() {
 
 # Prints the first Python that has a wheel of the given pymeshlab.
 find_python() {
-    local newest=13 candidate
+    local newest=14 candidate
     [[ $1 == 2022.* ]] && newest=11
-    for candidate in ${DEVSEG_PYTHON:+"$DEVSEG_PYTHON"} python3 python3.{13,12,11,10} \
+    for candidate in ${DEVSEG_PYTHON:+"$DEVSEG_PYTHON"} python3 python3.{14,13,12,11,10} \
         /usr/bin/python3; do
         if "$candidate" -c "import sys, ensurepip
 sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, $newest))" >/dev/null 2>&1; then

@@ -44,8 +44,14 @@ check() {
 check ctest ctest --preset release
 check walls .venv/bin/python scripts/check_walls.py
 check reference .venv/bin/python scripts/reference.py --check
-check "ruff check" .venv/bin/ruff check scripts tests
-check "ruff format" .venv/bin/ruff format --check scripts tests
+check "ruff check" .venv/bin/ruff check scripts tests docs/examples
+check "ruff format" .venv/bin/ruff format --check scripts tests docs/examples
+check mypy .venv/bin/mypy
+# What newer systems compile does not run with the C library that the wheel promises.
+if [[ ${DEVSEG_HOST_TESTS:-} == required ]]; then
+    check "wheel, built" scripts/build_wheel.sh
+    check "wheel, installed" scripts/check_wheel.sh
+fi
 if ((${#failed[@]})); then
     printf 'devseg: failed so far: %s\n' "${failed[*]}"
 fi

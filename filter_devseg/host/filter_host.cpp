@@ -5,6 +5,7 @@
 
 #include "host/host_errors.h"
 #include "host/layout_uv.h"
+#include "host/observer.h"
 #include "host/rich_parameters.h"
 #include "host/split_faces.h"
 
@@ -73,9 +74,7 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
     MeshModel* model = document.mm();
     if (model == nullptr)
         throw HostError("expected a mesh, found none; load one first");
-    Progress progress([callback](double fraction, const char* phase) {
-        return callback == nullptr || callback(static_cast<int>(100.0 * fraction), phase);
-    });
+    Progress progress(progress_callback(callback));
     return with_host_errors(*model, [&] {
         declare::HostMesh host = read_host_mesh(*model);
         if (filter.needs_uv)

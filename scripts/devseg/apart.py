@@ -10,13 +10,19 @@ import contextlib
 import ctypes
 import os
 import pickle
+import re
 import resource
 import signal
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterator
-from typing import IO, Any, TypeVar
+from dataclasses import dataclass
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Generic, TypeVar, cast
 
 from devseg.errors import DevsegError, one_line
 from devseg.progress import CLEAR_LINE
@@ -34,7 +40,61 @@ Tell = Callable[[str], None]
 # The stage in which the host reads the file.
 READING = "load"
 
+# On a busy machine a process waits: it is over its limit of time when it has also worked so long,
+# or has waited for so many times as long.
+BUSY = 5
+# Between two looks at what a process uses: a fifth of a GB of memory can be filled in it.
+_LOOK_SECONDS = 0.05
+
 _PR_SET_PDEATHSIG = 1
+
+
+class Crashed(DevsegError):
+    """The process ended without an answer."""
+
+
+class OverTime(DevsegError):
+    """The process took longer than its limit and was ended."""
+
+
+class OverMemory(DevsegError):
+    """The process took more memory than its limit and was ended."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a piece of work may take.
+
+    Attributes:
+        seconds: of processor time and of the clock, whichever is less; None: no limit. A process
+            that waits for others may take BUSY times as many by the clock.
+        memory: bytes of physical memory; None: no limit.
+    """
+
+    seconds: float | None = None
+    memory: int | None = None
+
+
+NO_LIMITS = Limits()
+
+
+@dataclass(frozen=True)
+class Ended(Generic[T]):
+    """How a piece of work ended.
+
+    Attributes:
+        result: what it returned; None after an error.
+        error: what it raised, or how its process ended; None after success.
+        seconds: by the clock.
+        cpu_seconds: of processor time.
+        memory: the most bytes of physical memory.
+    """
+
+    result: T | None
+    error: BaseException | None
+    seconds: float
+    cpu_seconds: float
+    memory: int
 
 
 def run_apart(what: str, work: Callable[[Tell], T]) -> T:
@@ -45,31 +105,107 @@ def run_apart(what: str, work: Callable[[Tell], T]) -> T:
         work: takes a function that tells at which stage it is.
 
     Raises:
-        DevsegError: where the child ended without an answer; the reason names the stage.
+        Crashed: where the child ended without an answer; the reason names the stage.
     """
+    ended = run_watched(what, work)
+    if ended.error is not None:
+        raise ended.error
+    return cast("T", ended.result)
+
+
+def run_watched(what: str, work: Callable[[Tell], T], limits: Limits = NO_LIMITS) -> Ended[T]:
+    """Does `work` in a child process, which is ended where it goes over a limit."""
     sys.stdout.flush()
     sys.stderr.flush()
-    answers, hers = os.pipe()
+    answers, hers = Pipe(duplex=False)
     parent = os.getpid()
+    start = time.monotonic()
     child = os.fork()
     if child == 0:
-        os.close(answers)
+        answers.close()
         _be_the_child(parent, hers, work)
-    os.close(hers)
-    stage = "start"
+    hers.close()
+    watch = _Watch(what, child, limits, start)
     try:
-        with _ended_by_signals(), os.fdopen(answers, "rb") as pipe:
-            for kind, value in _messages(pipe):
-                if kind == "stage":
-                    stage = value
-                elif kind == "result":
-                    return value
-                else:
-                    raise value
+        with ended_by_signals(), answers:
+            result, error = watch.answer(answers)
     finally:
-        status = _wait(child)
-    _clear_line()
-    raise DevsegError(f"{what}: {_how_it_ended(status, stage)}")
+        status, usage = _wait(child, kill=watch.over is not None or sys.exc_info()[0] is not None)
+    if watch.over is not None:
+        error = watch.over
+    elif watch.silent:
+        _clear_line()
+        error = Crashed(f"{what}: {_how_it_ended(status, watch.stage)}")
+    return Ended(
+        result,
+        error,
+        time.monotonic() - start,
+        max(watch.cpu_seconds, usage.ru_utime + usage.ru_stime),
+        max(watch.memory, usage.ru_maxrss * 1024),
+    )
+
+
+class _Watch:
+    """Waits for the answer of a child, and looks at what it uses meanwhile."""
+
+    def __init__(self, what: str, child: int, limits: Limits, start: float) -> None:
+        self.stage = "start"
+        self.over: DevsegError | None = None
+        self.silent = False  # it ended without an answer
+        self.cpu_seconds = 0.0
+        self.memory = 0
+        self._what = what
+        self._child = child
+        self._limits = limits
+        self._start = start
+
+    def answer(self, pipe: Connection) -> tuple[Any, BaseException | None]:
+        """What the work returned, or what it raised."""
+        limited = self._limits != NO_LIMITS
+        # A process that was ended may have sent half of a message.
+        with contextlib.suppress(EOFError, OSError, pickle.UnpicklingError):
+            while True:
+                while limited and not pipe.poll(_LOOK_SECONDS):
+                    self.over = self._look()
+                    if self.over is not None:
+                        return None, self.over
+                kind, value = pipe.recv()
+                if kind == "stage":
+                    self.stage = value
+                elif kind == "result":
+                    return value, None
+                else:
+                    return None, value
+        self.silent = True
+        return None, None
+
+    def _look(self) -> DevsegError | None:
+        with contextlib.suppress(OSError):  # it has just ended
+            self.cpu_seconds, memory = _used(self._child)
+            self.memory = max(self.memory, memory)
+        limits, waited = self._limits, time.monotonic() - self._start
+        if limits.memory is not None and self.memory > limits.memory:
+            return OverMemory(
+                f"{self._what}: took more than {limits.memory / 2**30:g} GB in stage {self.stage}; "
+                "simplify the mesh (--target-faces N), or allow more"
+            )
+        if limits.seconds is not None and (
+            min(self.cpu_seconds, waited) > limits.seconds or waited > BUSY * limits.seconds
+        ):
+            return OverTime(
+                f"{self._what}: took more than {limits.seconds:g} s, in stage {self.stage}; "
+                "simplify the mesh (--target-faces N), or allow more"
+            )
+        return None
+
+
+def _used(pid: int) -> tuple[float, int]:
+    """Processor seconds of a process, and the most bytes of memory that it has had."""
+    folder = Path(f"/proc/{pid}")
+    fields = (folder / "stat").read_text().rsplit(")", 1)[1].split()
+    peak = re.search(r"^VmHWM:\s*(\d+)", (folder / "status").read_text(), re.MULTILINE)
+    seconds = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return seconds, 1024 * int(peak[1]) if peak else 0
 
 
 @contextlib.contextmanager
@@ -92,7 +228,7 @@ def limited_reading(size: int) -> Iterator[None]:
 _is_child = False
 
 
-def _be_the_child(parent: int, out: int, work: Callable[[Tell], Any]) -> None:
+def _be_the_child(parent: int, out: Connection, work: Callable[[Tell], Any]) -> None:
     """Works, sends the answer and ends without the clean-up of what the parent still uses."""
     global _is_child
     _is_child = True
@@ -101,24 +237,25 @@ def _be_the_child(parent: int, out: int, work: Callable[[Tell], Any]) -> None:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:
-        os._exit(1)
-    with os.fdopen(out, "wb") as pipe:
-
-        def send(kind: str, value: Any) -> None:
-            pickle.dump((kind, value), pipe)
-            pipe.flush()
-
+    end_with_parent(parent)
+    with out:
         try:
-            send("result", work(lambda stage: send("stage", stage)))
+            result = work(lambda stage: out.send(("stage", stage)))
+            out.send(("result", result))
         except BaseException as error:
             if os.environ.get("DEVSEG_DEBUG"):
                 traceback.print_exc()
-            send("error", _portable(error))
+            out.send(("error", _portable(error)))
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(0)
+
+
+def end_with_parent(parent: int) -> None:
+    """From now on this process ends with the one that started it."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 def _portable(error: BaseException) -> BaseException:
@@ -132,15 +269,8 @@ def _portable(error: BaseException) -> BaseException:
     return RuntimeError(f"{type(error).__name__}: {error}")
 
 
-def _messages(pipe: IO[bytes]) -> Iterator[tuple[str, Any]]:
-    # A process that was ended may have sent half of a message.
-    with contextlib.suppress(EOFError, pickle.UnpicklingError):
-        while True:
-            yield pickle.load(pipe)
-
-
 @contextlib.contextmanager
-def _ended_by_signals() -> Iterator[None]:
+def ended_by_signals() -> Iterator[None]:
     """What ends a program is as Ctrl+C while the block runs: what was begun is cleared away."""
 
     def interrupt(*_: object) -> None:
@@ -154,13 +284,14 @@ def _ended_by_signals() -> Iterator[None]:
         yield
 
 
-def _wait(child: int) -> int:
-    """Ends a child whose answer is complete or not wanted any more; what it ended with."""
-    if sys.exc_info()[0] is not None:
+def _wait(child: int, kill: bool) -> tuple[int, resource.struct_rusage]:
+    """What a child ended with and what it used; ends it where its answer is not wanted any more."""
+    if kill:
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, signal.SIGKILL)
         _clear_line()
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    _, status, usage = os.wait4(child, 0)
+    return os.waitstatus_to_exitcode(status), usage
 
 
 def _clear_line() -> None:

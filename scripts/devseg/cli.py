@@ -6,18 +6,25 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from devseg.batch_cli import add_batch_options, batch_command
+from devseg.completion import SHELLS, completion
 from devseg.errors import DevsegError, one_line
+from devseg.help_text import add_examples
 from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
-from devseg.pattern import (
+from devseg.pattern_options import (
     PATTERN_FORMATS,
     PRESETS,
     add_pattern_options,
     pattern_parameters,
 )
+
+if TYPE_CHECKING:
+    from devseg.pipeline import RunOptions
 
 FORMATS = (*PATTERN_FORMATS, "ply", "obj")
 
@@ -68,6 +75,13 @@ def _parser() -> argparse.ArgumentParser:
     add_run_options(run)
     run.set_defaults(command=run_command, subparser=run)
 
+    batch = commands.add_parser("batch", help="devseg run for thousands of meshes, with a report")
+    add_batch_options(batch)
+    add_run_options(batch)
+    batch.set_defaults(
+        command=lambda args, parser: batch_command(args, parser, run_options), subparser=batch
+    )
+
     compare = commands.add_parser("compare", help="methods side by side: measures and a picture")
     compare.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
     compare.add_argument(
@@ -96,7 +110,13 @@ def _parser() -> argparse.ArgumentParser:
     measure.set_defaults(command=_measure_command, subparser=measure)
 
     info = commands.add_parser("info", help="versions, plugins, filters and hosts")
+    info.add_argument("--json", action="store_true", help="print them as JSON")
     info.set_defaults(command=_info_command, subparser=info)
+
+    shell = commands.add_parser("completion", help="a script that completes words in a shell")
+    shell.add_argument("shell", choices=SHELLS, help="of which shell")
+    shell.set_defaults(command=_completion_command, subparser=shell)
+    add_examples(commands)
     return parser
 
 
@@ -270,13 +290,31 @@ def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """`devseg run`; parser reports wrong usage."""
     from devseg.outputs import to_json
-    from devseg.pipeline import RunOptions, run
+    from devseg.pipeline import run
 
     if args.list_objects:
         _list_objects(args)
         return
     if args.out is None:
         parser.error("the following arguments are required: -o/--out")
+    options = run_options(args, parser)
+    _check_names(args, parser)
+    results = []
+    for path in args.input:
+        result = run(path, options)
+        for warning in result["warnings"]:
+            print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
+        results.append(result)
+        if not args.json:
+            print(_summary(result, args.out))
+    if args.json:
+        sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
+
+
+def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> RunOptions:
+    """What the options of add_run_options ask for; parser reports those that do not fit."""
+    from devseg.pipeline import RunOptions
+
     if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
         parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
     method = METHODS[args.method]
@@ -294,12 +332,11 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         segmentation["charts_number"] = 0
     elif args.charts == 0 and "max_l2_stretch" not in method.options:
         parser.error(f"--charts auto does not apply to --method {method.name}")
-    _check_names(args, parser)
     pattern = pattern_parameters(args)
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
     flattening = args.flatten or method.flatten
-    options = RunOptions(
+    return RunOptions(
         args.out,
         method,
         segmentation,
@@ -315,16 +352,6 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         _smooth_seams(args, pattern, parser),
         args.weld,
     )
-    results = []
-    for path in args.input:
-        result = run(path, options)
-        for warning in result["warnings"]:
-            print(f"devseg: warning: {path}: {warning}", file=sys.stderr)
-        results.append(result)
-        if not args.json:
-            print(_summary(result, args.out))
-    if args.json:
-        sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
 
 
 def _list_objects(args: argparse.Namespace) -> None:
@@ -336,7 +363,7 @@ def _list_objects(args: argparse.Namespace) -> None:
         tell(READING)
         return list_objects(path)
 
-    found = {str(p): run_apart(str(p), lambda tell, p=p: read(p, tell)) for p in args.input}
+    found = {str(path): run_apart(str(path), partial(read, path)) for path in args.input}
     if args.json:
         sys.stdout.write(to_json(found))
         return
@@ -473,7 +500,13 @@ def _print_table(prefix: str, measures: dict[str, Any], first: int | None = None
         print("  " + " ".join(f"{number:>16.6g}" for number in numbers))
 
 
-def _info_command(_: argparse.Namespace, __: argparse.ArgumentParser) -> None:
-    from devseg.info import info
+def _info_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    from devseg.info import info, info_text
+    from devseg.outputs import to_json
 
-    print(info())
+    found = info()
+    sys.stdout.write(to_json(found) if args.json else f"{info_text(found)}\n")
+
+
+def _completion_command(args: argparse.Namespace, _: argparse.ArgumentParser) -> None:
+    print(completion(_parser(), args.shell))

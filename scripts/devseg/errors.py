@@ -9,6 +9,10 @@ class DevsegError(Exception):
     """A failure that is told in one line: what was expected, what was found, what to do."""
 
 
+class Cancelled(DevsegError):
+    """The caller's progress function returned False; nothing has changed."""
+
+
 def one_line(text: str) -> str:
     """Text without line breaks and repeated blanks."""
     return re.sub(r"\s+", " ", text).strip()

@@ -124,7 +124,7 @@ def objects(path: Path) -> list[Object]:
     """The objects of a file, as the host goes through them. The file must be in order."""
     scene, _ = read(path.read_bytes())
     names = _material_names(scene)
-    found = []
+    found: list[Object] = []
     stack = list(reversed(scene["scenes"][scene.get("scene", 0)].get("nodes", [])))
     while stack:
         node = scene["nodes"][stack.pop()]
@@ -146,7 +146,8 @@ def material_colors(path: Path) -> dict[str, tuple[float, float, float]]:
     colors = {}
     for name, material in zip(_material_names(scene), scene.get("materials", []), strict=True):
         factor = material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1.0, 1.0, 1.0])
-        colors[name] = tuple(float(part) for part in factor[:3])
+        red, green, blue = map(float, factor[:3])
+        colors[name] = (red, green, blue)
     return colors
 
 

@@ -9,9 +9,10 @@ import os
 import sys
 import tempfile
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
-from devseg.errors import DevsegError, one_line
+from devseg.errors import DevsegError
+from devseg.requirements import loading_advice, version_advice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +27,20 @@ class Chatter:
     text = ""
 
 
+@dataclass(frozen=True)
+class _Terminal:
+    """Where output went before a `captured` block."""
+
+    descriptors: tuple[int, int]
+    streams: tuple[TextIO, TextIO]
+
+
+_terminals: list[_Terminal] = []
+
+# The host's plugin of the usual formats; it goes on without plugins that it cannot load.
+_READERS = "libio_base.so"
+
+
 @contextlib.contextmanager
 def captured() -> Iterator[Chatter]:
     """Keeps what the host prints off the terminal and out of a JSON on stdout.
@@ -38,6 +53,7 @@ def captured() -> Iterator[Chatter]:
     _flush()
     with tempfile.TemporaryFile() as sink:
         saved = os.dup(1), os.dup(2)
+        _terminals.append(_Terminal(saved, (sys.stdout, sys.stderr)))
         try:
             os.dup2(sink.fileno(), 1)
             os.dup2(sink.fileno(), 2)
@@ -46,6 +62,7 @@ def captured() -> Iterator[Chatter]:
         finally:
             # What is still in the C library's buffers belongs to this block.
             _flush()
+            _terminals.pop()
             os.dup2(saved[0], 1)
             os.dup2(saved[1], 2)
             os.close(saved[0])
@@ -54,6 +71,28 @@ def captured() -> Iterator[Chatter]:
             chatter.text = printed.getvalue() + sink.read().decode(errors="replace")
             if os.environ.get("DEVSEG_DEBUG") and chatter.text:
                 sys.stderr.write(chatter.text)
+
+
+@contextlib.contextmanager
+def uncaptured() -> Iterator[None]:
+    """Lets a callback print that the host calls inside of a `captured` block."""
+    if not _terminals:
+        yield
+        return
+    terminal = _terminals[-1]
+    _flush()
+    sinks = os.dup(1), os.dup(2)
+    try:
+        for number, descriptor in enumerate(terminal.descriptors, start=1):
+            os.dup2(descriptor, number)
+        out, err = terminal.streams
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            yield
+            _flush()
+    finally:
+        for number, sink in enumerate(sinks, start=1):
+            os.dup2(sink, number)
+            os.close(sink)
 
 
 def _flush() -> None:
@@ -66,14 +105,18 @@ def pymeshlab() -> ModuleType:
     """The pymeshlab module; an error that says what to do where it is not installed."""
     if "pymeshlab" in sys.modules:
         return sys.modules["pymeshlab"]
+    # A plugin for another version may be refused, or crash.
+    if (advice := version_advice()) is not None:
+        raise DevsegError(advice)
     try:
         # It loads some sixty plugins and prints a warning about each that it cannot load.
-        with captured():
+        with captured() as chatter:
             import pymeshlab as module
     except ImportError as error:
-        raise DevsegError(
-            f"pymeshlab cannot be imported ({one_line(str(error))}); run scripts/quickstart.sh"
-        ) from error
+        raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
+    for line in chatter.text.splitlines():
+        if "Cannot load library" in line and _READERS in line:
+            raise DevsegError(f"pymeshlab cannot read files: {loading_advice(line)}")
     return module
 
 

@@ -3,26 +3,50 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from devseg.errors import DevsegError
 from devseg.installations import Installation, find_installations, plugin_flavour
 from devseg.pipeline import versions
 from devseg.plugins import PLUGIN_FILES, load_plugins, plugin_paths
+from devseg.requirements import repair
 
 INSTALL = "scripts/install_plugins.sh"
 
 
-def info() -> str:
-    """A report of several lines; a part that is missing is named, not an error."""
-    rows = [(name, version) for name, version in versions().items()]
+def info() -> dict[str, Any]:
+    """What is installed; a part that is missing is named, not an error."""
+    found: dict[str, Any] = {"versions": versions(), "plugins": [], "filters": [], "error": None}
     try:
-        rows += [("plugin", f"{path} ({plugin_flavour(path)})") for path in plugin_paths()]
-        rows += [("filter", name) for name in load_plugins()]
+        found["plugins"] = [
+            {"file": str(path), "flavour": plugin_flavour(path)} for path in plugin_paths()
+        ]
+        found["filters"] = load_plugins()
     except DevsegError as error:
-        rows.append(("plugins", f"not usable: {error}"))
-    hosts = find_installations()
-    rows += [("host", line) for host in hosts for line in host_lines(host)]
-    if all(host.plugins is None for host in hosts):
+        found["error"] = str(error)
+    found["hosts"] = [
+        {
+            "kind": "pymeshlab" if host.plugins is None else "MeshLab",
+            "version": host.version,
+            "flavour": host.flavour,
+            "library": str(host.library),
+            "programs": [str(path) for path in host.programs],
+            "about": host_lines(host),
+        }
+        for host in find_installations()
+    ]
+    return found
+
+
+def info_text(found: dict[str, Any]) -> str:
+    """The same in several lines."""
+    rows = list(found["versions"].items())
+    rows += [("plugin", f"{one['file']} ({one['flavour']})") for one in found["plugins"]]
+    rows += [("filter", name) for name in found["filters"]]
+    if found["error"] is not None:
+        rows.append(("plugins", f"not usable: {found['error']}"))
+    rows += [("host", line) for host in found["hosts"] for line in host["about"]]
+    if all(host["kind"] == "pymeshlab" for host in found["hosts"]):
         rows.append(("host", "no MeshLab with a window or meshlabserver found"))
     width = max(len(label) for label, _ in rows)
     return "\n".join(f"{label:<{width}}  {value}" for label, value in rows)
@@ -52,7 +76,7 @@ def _fit(host: Installation, plugins: list[Path]) -> str:
     flavours = {plugin_flavour(plugin) for plugin in plugins} or {None}
     if flavours == {host.flavour}:
         return f"the plugins fit ({host.flavour})"
-    advice = "run scripts/quickstart.sh" if host.plugins is None else f"run {INSTALL}"
+    advice = repair() if host.plugins is None else f"run {INSTALL}"
     if flavours == {None}:
         return f"the plugins are not installed; {advice}"
     found = " and ".join(sorted(flavour or "none" for flavour in flavours))

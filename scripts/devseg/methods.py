@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, cast
 
 from devseg.methods_table import TABLE
 
@@ -53,7 +54,7 @@ METHODS = {
         row["preset"],
         row["flatten"],
     )
-    for name, row in TABLE.items()
+    for name, row in cast("dict[str, dict[str, Any]]", TABLE).items()
 }
 
 # Methods whose seams may leave the mesh's edges; the others' charts are made of whole faces.

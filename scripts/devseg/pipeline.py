@@ -21,8 +21,8 @@ from devseg.methods import FLATTENINGS, OPTION_OF, Method
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
-from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
-from devseg.pattern import OPTION_OF as PATTERN_OPTION_OF
+from devseg.pattern_options import EXPORT_FILTER, PATTERN_FORMATS
+from devseg.pattern_options import OPTION_OF as PATTERN_OPTION_OF
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -148,9 +148,13 @@ class Session:
             self._chatter = chatter.text
             return result
         except errors as error:
-            raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
+            raise self.failure(host_message(error)) from error
         finally:
             self.meshes.set_verbosity(False)
+
+    def failure(self, message: str) -> DevsegError:
+        """A filter's message in the words of the command line."""
+        return DevsegError(f"{self.path}: {as_option(message)}")
 
 
 def as_option(message: str) -> str:
@@ -174,10 +178,11 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
         DevsegError: with nothing written.
     """
     with staged(options.out) as folder:
-        return run_apart(str(path), lambda tell: _process(path, options, folder, tell))
+        return run_apart(str(path), lambda tell: process(path, options, folder, tell))
 
 
-def _process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:
+    """Runs the whole pipeline on one file, in this process, and writes into `folder`."""
     name = path.stem
     progress = Progress(name, tell=tell)
     with progress.stage("start"):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from devseg import host
 from devseg.errors import DevsegError, host_message
+from devseg.requirements import loading_advice, repair
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,7 +41,7 @@ def plugin_paths() -> list[Path]:
     looked = ", ".join(str(directory) for directory in directories)
     raise DevsegError(
         f"expected the plugins {' and '.join(PLUGIN_FILES)} in one of: {looked}; "
-        "found none; run scripts/quickstart.sh, which builds them"
+        f"found none; {repair()}"
     )
 
 
@@ -63,7 +64,8 @@ def load_plugins() -> list[str]:
         except pymeshlab.PyMeshLabException as error:
             # The caller may have loaded it with pymeshlab.load_plugin: just as good.
             if "already loaded" not in str(error):
-                raise DevsegError(f"pymeshlab refuses {path}: {host_message(error)}") from error
+                advice = loading_advice(host_message(error))
+                raise DevsegError(f"pymeshlab refuses {path}: {advice}") from error
     # pymeshlab has bound the filters of its own plugins and no others.
     new = [name for name in pymeshlab.filter_list() if not hasattr(pymeshlab.MeshSet, name)]
     for name in new:

@@ -134,7 +134,7 @@ def finish(path: Path, comments: Sequence[str], texcoords: np.ndarray | None = N
     import numpy as np
 
     header, rows, offset = _find_faces(path)
-    if rows is None:
+    if header is None or rows is None:
         raise DevsegError(f"{path}: expected a binary file with triangles, found another one")
     data = path.read_bytes()
     lines = data[: header.size].decode("utf-8", "replace").splitlines()
@@ -143,16 +143,16 @@ def finish(path: Path, comments: Sequence[str], texcoords: np.ndarray | None = N
         for line in lines
         if not line.startswith("comment TextureFile") and not line.endswith(" texnumber")
     ]
-    fields = [(n, rows.dtype[n]) for n in rows.dtype.names if n != "texnumber"]
+    kept = [name for name in rows.dtype.names or () if name != "texnumber"]
+    fields: list[tuple[Any, ...]] = [(name, rows.dtype[name]) for name in kept]
     if texcoords is not None:
         fields += [("texcoord_before length", "u1"), ("texcoord_before", header.order + "f4", (6,))]
         # Properties of faces, the last element of what the host writes, end with the header.
         lines.insert(len(lines) - 1, "property list uchar float texcoord_before")
     lines[2:2] = [f"comment {one_line(comment)}" for comment in comments]
     new = np.empty(len(rows), dtype=fields)
-    for name in rows.dtype.names:
-        if name != "texnumber":
-            new[name] = rows[name]
+    for name in kept:
+        new[name] = rows[name]
     if texcoords is not None:
         new["texcoord_before length"] = 6
         new["texcoord_before"] = texcoords

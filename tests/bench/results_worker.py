@@ -19,7 +19,7 @@ import numpy as np
 from devseg import DevsegError, host, load_plugins
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, METHODS
-from devseg.pattern import EXPORT_FILTER
+from devseg.pattern_options import EXPORT_FILTER
 from devseg.pipeline import (
     DEFORM_FILTER,
     FLATTEN_FILTER,
