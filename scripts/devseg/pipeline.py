@@ -417,7 +417,7 @@ def old_texcoords(session: Session, options: RunOptions) -> Any:
     if not coordinates.any():
         return None
     # The host takes the last one for images that it cannot read.
-    textures = ", ".join(name for name in mesh.textures() if name != "dummy.png")
+    textures = ", ".join(Path(name).name for name in mesh.textures() if name != "dummy.png")
     lost = f"; its textures ({textures}) do not fit the new ones" if textures else ""
     kept = options.keep_texcoords
     advice = "PLY has them as texcoord_before" if kept else "--keep-texcoords keeps them in PLY"
