@@ -12,6 +12,7 @@
 #include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/outlines.h"
+#include "devseg/pattern/same_pieces.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
 #include "devseg/pattern/split.h"
@@ -362,7 +363,7 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
                        options.fold_angle * degrees, mm, piece);
         progress.update(0.5 + 0.5 * static_cast<double>(i) / count);
     }
-    find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
+    find_same_pieces(pattern.pieces, options.pair_tolerance_mm, progress);
 }
 
 } // namespace
