@@ -18,6 +18,8 @@ namespace {
 // point of the other outline.
 constexpr std::size_t places = 96;
 constexpr int motion_rounds = 12;
+// Sooner when the squared distance falls no more below this share of it.
+constexpr double settled = 0.98;
 
 // Two pieces of one shape differ by less than this share of their size, whatever the tolerance.
 constexpr double size_share = 0.01;
@@ -141,12 +143,16 @@ bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vec
 // Brings the points to the nearest ones of the other outline, again and again.
 bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
                const std::vector<Vec2>& even, Motion motion, double tolerance) {
+    double last = infinite;
     for (int round = 0; round < motion_rounds; ++round) {
         std::vector<Vec2> nearest;
         for (const Vec2& p : even)
             nearest.push_back(nearest_on(b.front(), motion(p)));
         double error = 0.0;
         motion = fit_motion(even, nearest, 0, error);
+        if (!(error < settled * last))
+            break;
+        last = error;
     }
     const Motion back{std::conj(motion.turn), -std::conj(motion.turn) * motion.shift};
     return lies_on(a, b, motion, tolerance) && lies_on(b, a, back, tolerance);
