@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import gltf, gltf_triangles, host, obj, ply, scene
+from devseg import collada, gltf, gltf_triangles, host, obj, ply, scene, stl
 from devseg.apart import limited_reading
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame, read_frame
@@ -122,11 +122,16 @@ def _read(path: Path) -> tuple[Any, str, list[str]]:
 @contextlib.contextmanager
 def _for_the_host(path: Path) -> Iterator[tuple[Path, list[str]]]:
     """The file, or one that says the same so that the host can read it; what it leaves out."""
-    if path.suffix.lower() not in gltf.EXTENSIONS:
-        yield path, []
-        return
+    extension = path.suffix.lower()
     with tempfile.TemporaryDirectory(prefix="devseg-") as folder:
-        yield gltf_triangles.rewritten(path, Path(folder))
+        if extension in gltf.EXTENSIONS:
+            yield gltf_triangles.rewritten(path, Path(folder))
+        elif extension == ".dae":
+            yield collada.rewritten(path, Path(folder))
+        elif extension == ".stl":
+            yield stl.rewritten(path, Path(folder)), []
+        else:
+            yield path, []
 
 
 def _turn_outside(meshes: Any) -> list[str]:
