@@ -50,6 +50,7 @@ _LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
 _PROGRESS = re.compile(r"\[ +\d+% \]$")
 # What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
 _HINT = re.compile(r" \('[A-Z][^()]*\)$")
+_TURNED = re.compile(r"(; patterns are|: read) turned over$")
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
 
 
@@ -132,8 +133,10 @@ class Session:
         values = tuple(f"{result}: " for result in results)
         for logged in _LOGGED.findall(self._chatter):
             note = _HINT.sub("", logged.rstrip())
-            # Every filter that reads the mesh tells of its faults again.
-            if not (_PROGRESS.search(note) or note.startswith(values) or note in self.warnings):
+            # Every filter that reads the mesh tells of its faults again, also where it has been
+            # split since then and has more of them.
+            told = {_shape(warning) for warning in self.warnings}
+            if not (_PROGRESS.search(note) or note.startswith(values) or _shape(note) in told):
                 self.warnings.append(note)
         return results
 
@@ -151,6 +154,11 @@ class Session:
             raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
         finally:
             self.meshes.set_verbosity(False)
+
+
+def _shape(note: str) -> str:
+    """A note without its numbers, and without what one filter does and another says."""
+    return re.sub(r"\d+", "#", _TURNED.sub("", note))
 
 
 def as_option(message: str) -> str:

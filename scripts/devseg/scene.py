@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from devseg import collada, gltf, obj_parts, stl, threemf
+from devseg import collada, gltf, obj_parts, ply, stl, threemf
 from devseg.errors import DevsegError
 from devseg.frame import UPRIGHT
 from devseg.obj_parts import Part
@@ -17,6 +18,8 @@ PART_ATTRIBUTE = "part_id"
 # The same before the objects are joined.
 _LAYER_ATTRIBUTE = "part_of_layer"
 _SHOWN = 12  # names in an error
+# A name in what `comments` writes.
+_NAMED = re.compile(r"(object|group|material) (.*?)(?=, (?:group|material) |$)")
 
 
 @dataclass(frozen=True)
@@ -189,11 +192,21 @@ def _label(path: Path, meshes: Any, found: list[Layer]) -> tuple[list[Part], lis
                 own, ids = named.parts, followed
             else:
                 is_lost = True
+        elif path.suffix.lower() == ".ply" and (written := ply.part_ids(path, layer.faces)):
+            own, ids = [_part_in(text) for text in written[0]], written[1]
         if layer.faces:
             mesh.add_face_custom_scalar_attribute(ids + float(len(parts)), _LAYER_ATTRIBUTE)
         parts += own
     lost = "names of objects, groups and materials are lost: the faces are not as in the file"
     return parts, [lost] if is_lost else []
+
+
+def _part_in(text: str) -> Part:
+    """The part that a line of `comments` tells of."""
+    names = {"object": "", "group": "", "material": ""}
+    for kind, name in _NAMED.findall(text):
+        names[kind] = name
+    return Part(**names)
 
 
 def _numbered(layer: Layer) -> tuple[list[Part], Any]:

@@ -40,7 +40,7 @@ class Run:
 
     Attributes:
         material: its name; empty without one.
-        triangles: their number, those left out that repeat a vertex.
+        triangles: their number.
     """
 
     material: str
@@ -107,8 +107,6 @@ def _runs(
         if _kind(part) != "triangle":
             continue
         get = part.get
-        if len({get("v1"), get("v2"), get("v3")}) < 3:
-            continue
         group = get("pid", own[0])
         index = get("p1", own[1] if group == own[0] else "0")
         name = materials.get((group, int(index)), "") if index.isdecimal() else ""
