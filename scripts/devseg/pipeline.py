@@ -18,6 +18,7 @@ from devseg.frame import Frame
 from devseg.lengths import shown
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, OPTION_OF, Method
+from devseg.notes import new_notes
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
@@ -45,12 +46,6 @@ TALL = 1.1
 PNG_COMPRESSION = 1
 
 
-# What a verbose host prints for each line of a filter's log, and for its progress.
-_LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
-_PROGRESS = re.compile(r"\[ +\d+% \]$")
-# What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
-_HINT = re.compile(r" \('[A-Z][^()]*\)$")
-_TURNED = re.compile(r"(; patterns are|: read) turned over$")
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
 
 
@@ -128,16 +123,9 @@ class Session:
         self._guard(self.meshes.save_current_mesh, str(file), **parameters)
 
     def _noted(self, name: str, **parameters: Any) -> dict[str, Any]:
-        # The host drops texts from results, but logs them, with the results.
+        # The host drops texts from results, but logs them.
         results = self._guard(self.meshes.apply_filter, name, **parameters) or {}
-        values = tuple(f"{result}: " for result in results)
-        for logged in _LOGGED.findall(self._chatter):
-            note = _HINT.sub("", logged.rstrip())
-            # Every filter that reads the mesh tells of its faults again, also where it has been
-            # split since then and has more of them.
-            told = {_shape(warning) for warning in self.warnings}
-            if not (_PROGRESS.search(note) or note.startswith(values) or _shape(note) in told):
-                self.warnings.append(note)
+        self.warnings += new_notes(self._chatter, results, self.warnings)
         return results
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
@@ -154,11 +142,6 @@ class Session:
             raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
         finally:
             self.meshes.set_verbosity(False)
-
-
-def _shape(note: str) -> str:
-    """A note without its numbers, and without what one filter does and another says."""
-    return re.sub(r"\d+", "#", _TURNED.sub("", note))
 
 
 def as_option(message: str) -> str:

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -24,6 +20,7 @@ from devseg.cli import main
 from devseg.frame import Frame, read_frame
 from devseg.load import list_objects, load_mesh
 from devseg.obj_parts import Part
+from scene_files import run_json, write_3mf
 
 pytestmark = pytest.mark.usefixtures("pymeshlab")
 
@@ -142,22 +139,6 @@ def textured_obj(folder: Path) -> Path:
     return path
 
 
-def run_json(*arguments: str | float | Path) -> dict[str, Any]:
-    """What `devseg run --json` prints, in a process whose host has not seen other meshes."""
-    command = [sys.executable, "-m", "devseg", "run", *map(str, arguments)]
-    done = subprocess.run(
-        [*command, "--json", "--no-picture"],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    result = json.loads(done.stdout)
-    told = [line.split(": ", 3)[3] for line in done.stderr.splitlines()]
-    assert told == result["warnings"]
-    return result
-
-
 def test_obj_keeps_names_and_no_stale_texture(tmp_path: Path) -> None:
     path, out = textured_obj(tmp_path), tmp_path / "out"
     result = run_json(path, "-o", out, "--formats", "obj,ply")
@@ -230,126 +211,6 @@ def test_ply_files_of_ours_keep_their_parts(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def text_stl(name: str, mesh: meshes.Mesh) -> str:
-    """A solid as text."""
-    lines = [f"solid {name}"]
-    for corners in mesh[0][mesh[1]]:
-        rows = ["vertex {:g} {:g} {:g}".format(*corner) for corner in corners]
-        lines += ["facet normal 0 0 0", "outer loop", *rows, "endloop", "endfacet"]
-    return "\n".join([*lines, f"endsolid {name}"]) + "\n"
-
-
-def test_all_solids_of_a_text_are_read_with_their_names(tmp_path: Path) -> None:
-    vertices, faces = meshes.cube()
-    path = tmp_path / "a.stl"
-    cube, tube = (90 * vertices, faces), meshes.cylinder(20, 100)
-    double = cube[0], np.vstack([faces, [[0, 0, 1]]])  # one triangle repeats a vertex
-    path.write_text(text_stl("Lid one", double) + text_stl("", tube).upper())
-    loaded = load_mesh(path)
-    assert list_objects(path) == {"Lid one": 12, "object 1": len(tube[1])}
-    corners = loaded.meshes.current_mesh().vertex_matrix()[
-        loaded.meshes.current_mesh().face_matrix()
-    ]
-    expected = np.concatenate([cube[0][faces], tube[0][tube[1]]])
-    assert corners == pytest.approx(expected, abs=1e-3)
-    assert [part.object for part in load_mesh(path, ["Lid one"]).parts] == ["Lid one"]
-
-
-def test_binary_stl_may_begin_with_the_word_solid(tmp_path: Path) -> None:
-    row = np.zeros(1, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("", "<u2")])
-    row["corners"] = np.eye(3)
-    path = tmp_path / "a.stl"
-    path.write_bytes(b"solid ball".ljust(80) + (1).to_bytes(4, "little") + row.tobytes())
-    assert load_mesh(path).meshes.current_mesh().face_number() == 1
-
-
-def geometry(name: str, mesh: meshes.Mesh, elements: str) -> str:
-    """A geometry of Collada with its positions."""
-    row = " ".join(f"{x:g}" for x in mesh[0].ravel())
-    axes = "".join(f'<param name="{axis}" type="float"/>' for axis in "XYZ")
-    return (
-        f'<geometry id="{name}"><mesh><source id="{name}-p">'
-        f'<float_array id="{name}-a" count="{mesh[0].size}">{row}</float_array>'
-        f'<technique_common><accessor source="#{name}-a" count="{len(mesh[0])}" stride="3">{axes}'
-        f'</accessor></technique_common></source><vertices id="{name}-v">'
-        f'<input semantic="POSITION" source="#{name}-p"/></vertices>{elements}</mesh></geometry>'
-    )
-
-
-def primitives(kind: str, name: str, rows: np.ndarray, symbol: str) -> str:
-    """Triangles, strips, fans or polygons of a geometry, one row each."""
-    all_rows = [rows.ravel()] if kind == "triangles" else rows
-    ps = "".join(f"<p>{' '.join(map(str, row))}</p>" for row in all_rows)
-    vertices = f'<input semantic="VERTEX" source="#{name}-v" offset="0"/>'
-    return f'<{kind} count="{len(rows)}" material="{symbol}">{vertices}{ps}</{kind}>'
-
-
-def write_dae(path: Path, geometries: str, nodes: str) -> Path:
-    color = "<diffuse><color>1 0 0.5 1</color></diffuse>"
-    path.write_text(
-        '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" '
-        'version="1.4.1"><asset><unit meter="0.001"/></asset><library_effects><effect id="e">'
-        f'<profile_COMMON><technique sid="c"><lambert>{color}</lambert></technique>'
-        "</profile_COMMON></effect></library_effects><library_materials>"
-        '<material id="m" name="Red felt"><instance_effect url="#e"/></material>'
-        f"</library_materials><library_geometries>{geometries}</library_geometries>"
-        f'<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene>'
-        '</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>'
-    )
-    return path
-
-
-def test_names_and_materials_of_collada(tmp_path: Path) -> None:
-    (vertices, faces), tube = meshes.cube(), meshes.cylinder()
-    cube = 90 * vertices, faces
-    geometries = geometry(
-        "A", cube, primitives("triangles", "A", faces[:8], "x")
-        + primitives("triangles", "A", faces[8:], "y"),
-    ) + geometry("B", tube, primitives("triangles", "B", tube[1], "z"))  # fmt: skip
-    bound = (
-        "<bind_material><technique_common>"
-        '<instance_material symbol="y" target="#m"/></technique_common></bind_material>'
-    )
-    nodes = (
-        '<node name="Lid"><node name="Tube"><translate>200 0 0</translate>'
-        '<instance_geometry url="#B"/></node>'
-        f'<instance_geometry url="#A">{bound}</instance_geometry></node>'
-    )
-    path = write_dae(tmp_path / "a.dae", geometries, nodes)
-    result = run_json(path, "-o", tmp_path / "out", "--formats", "obj")
-    assert [tuple(part.values()) for part in result["parts"]] == [
-        ("Lid", "", "x", 8),
-        ("Lid", "", "Red felt", 4),
-        ("Tube", "", "z", len(tube[1])),
-    ]
-    assert "newmtl Red felt\nKd 1 0 0.5\n" in (tmp_path / "out" / "a.obj.mtl").read_text()
-    corners = load_mesh(path, ["Tube"]).meshes.current_mesh().vertex_matrix()
-    assert corners[:, 0].min() == pytest.approx(199)
-
-
-@pytest.mark.parametrize(("kind", "faces"), [
-    ("tristrips", [[0, 1, 2], [1, 3, 2], [2, 3, 4]]),
-    ("trifans", [[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
-    ("polygons", [[0, 1, 2], [0, 2, 3], [0, 3, 4]]),
-])  # fmt: skip
-def test_strips_fans_and_polygons_of_collada_are_read(
-    kind: str, faces: list[list[int]], tmp_path: Path
-) -> None:
-    points = np.random.default_rng(1).random((5, 3))
-    row = primitives(kind, "A", np.array([[0, 1, 2, 3, 4]]), "x")
-    lines = primitives("lines", "A", np.array([[0, 1]]), "x")
-    path = write_dae(
-        tmp_path / "a.dae",
-        geometry("A", (points, None), row + lines),
-        '<node name="Sheet"><instance_geometry url="#A"/></node>',
-    )
-    loaded = load_mesh(path)
-    mesh = loaded.meshes.current_mesh()
-    assert mesh.vertex_matrix()[mesh.face_matrix()] == pytest.approx(points[faces], abs=1e-5)
-    assert loaded.parts == [Part("Sheet", "", "x")]
-    assert loaded.warnings == ["lines of the file were left out"]
-
-
 def test_vertex_colors_reach_obj_and_ply(tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     lines = ["v {} {} {} 1 {} 0".format(*(90 * v), v[0]) for v in vertices]
@@ -374,76 +235,6 @@ def test_parts_survive_simplification(tmp_path: Path) -> None:
     result = run_json(path, "-o", tmp_path / "out", "--target-faces", 600, "--seams", "edges")
     assert [part["object"] for part in result["parts"]] == ["left", "right"]
     assert [part["faces"] for part in result["parts"]] == pytest.approx([300, 300], abs=30)
-
-
-TYPES = """<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
-<Default Extension="rels"
- ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
-<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
-</Types>"""
-RELATIONS = """<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
-<Relationship Target="/3D/3dmodel.model" Id="a"
- Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"""
-CORE_3MF = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-
-
-def write_3mf(path: Path, unit: str, content: str = "") -> Path:
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("[Content_Types].xml", TYPES)
-        archive.writestr("_rels/.rels", RELATIONS)
-        archive.writestr(
-            "3D/3dmodel.model",
-            f'<?xml version="1.0" encoding="UTF-8"?>\n'
-            f'<model{unit} xml:lang="en-US" xmlns="{CORE_3MF}">{content}</model>',
-        )
-    return path
-
-
-def test_objects_of_3mf(tmp_path: Path) -> None:
-    vertices, faces = meshes.cube()
-    rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*v) for v in vertices)
-    cells = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in faces)
-    mesh = f"<mesh><vertices>{rows}</vertices><triangles>{cells}</triangles></mesh>"
-    content = (
-        f'<resources><object id="1" name="Lid" type="model">{mesh}</object>'
-        f'<object id="2" type="model">{mesh}</object><object id="3" name="Set" type="model">'
-        '<components><component objectid="1" transform="1 0 0 0 1 0 0 0 1 0 5 0"/>'
-        '<component objectid="2" transform="1 0 0 0 1 0 0 0 1 0 0 9"/></components></object>'
-        '</resources><build><item objectid="2" transform="2 0 0 0 2 0 0 0 3 10 0 0"/>'
-        '<item objectid="3"/></build>'
-    )
-    path = write_3mf(tmp_path / "a.3mf", ' unit="inch"', content)
-    assert list_objects(path) == {"object 0": 12, "Set": 24}
-    result = run_json(path, "-o", tmp_path / "out", "--object", "object 0")
-    assert result["size_mm"] == pytest.approx([50.8, 50.8, 76.2])
-    points = load_mesh(path, ["Set"]).meshes.current_mesh().vertex_matrix()
-    assert points.max(axis=0).tolist() == [1, 6, 10]
-
-
-def test_materials_of_3mf(tmp_path: Path) -> None:
-    vertices, faces = meshes.cube()
-    rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*(90 * v)) for v in vertices)
-    cells = [
-        '<triangle v1="{}" v2="{}" v3="{}"{}/>'.format(*f, ' pid="9" p1="0"' if i < 4 else "")
-        for i, f in enumerate(faces)
-    ]
-    mesh = f"<mesh><vertices>{rows}</vertices><triangles>{''.join(cells)}</triangles></mesh>"
-    content = (
-        '<resources><basematerials id="9"><base name="Red felt" displaycolor="#FF0000FF"/>'
-        '<base name="Blue" displaycolor="#000080"/></basematerials>'
-        f'<object id="1" name="Lid" type="model" pid="9" pindex="1">{mesh}</object></resources>'
-        '<build><item objectid="1"/></build>'
-    )
-    path = write_3mf(tmp_path / "a.3mf", "", content)
-    result = run_json(path, "-o", tmp_path / "out", "--formats", "obj")
-    assert [tuple(part.values()) for part in result["parts"]] == [
-        ("Lid", "", "Red felt", 4),
-        ("Lid", "", "Blue", 8),
-    ]
-    library = (tmp_path / "out" / "a.obj.mtl").read_text()
-    assert library.startswith("newmtl Red felt\nKd 1 0 0\n") and "Kd 0 0 0.501961" in library
 
 
 def test_frames_of_formats(tmp_path: Path) -> None:
