@@ -17,13 +17,12 @@ from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
 from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, OPTION_OF, Method
-from devseg.notes import new_notes
+from devseg.methods import FLATTENINGS, Method
+from devseg.notes import as_option, new_notes
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
 from devseg.pattern import EXPORT_FILTER, PATTERN_FORMATS
-from devseg.pattern import OPTION_OF as PATTERN_OPTION_OF
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -142,13 +141,6 @@ class Session:
             raise DevsegError(f"{self.path}: {as_option(host_message(error))}") from error
         finally:
             self.meshes.set_verbosity(False)
-
-
-def as_option(message: str) -> str:
-    """A filter's message about a parameter, with the option of the command line that sets it."""
-    name, colon, rest = message.partition(": ")
-    option = {**PATTERN_OPTION_OF, **OPTION_OF}.get(name)
-    return f"{option}: {rest}" if colon and option else message
 
 
 def versions() -> dict[str, str]:

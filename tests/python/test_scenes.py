@@ -15,10 +15,12 @@ from PIL import Image
 
 import gltf_files
 import meshes
+from conftest import ROOT
 from devseg import scene
 from devseg.cli import main
 from devseg.frame import Frame, read_frame
 from devseg.load import list_objects, load_mesh
+from devseg.notes import ADVICE, as_option
 from devseg.obj_parts import Part
 from scene_files import run_json, write_3mf
 
@@ -330,6 +332,14 @@ def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[...,
     assert ": --fold-angle: expected" in error
     error = fails("run", path, "-o", tmp_path / "out", "--page", "a4", "--page-margin-mm", "100")
     assert ": --page-margin-mm: expected margins" in error
+
+
+def test_errors_advise_what_the_command_line_has() -> None:
+    sources = [*(ROOT / "filter_devseg").rglob("*.cpp"), *(ROOT / "io_pattern").rglob("*.cpp")]
+    text = re.sub(r'"\s*\n\s*"', "", "".join(source.read_text() for source in sources))
+    for advice, ours in ADVICE:
+        assert advice in text  # what filters say still
+        assert as_option(f"expected a, found b; {advice}") == f"expected a, found b; {ours}"
 
 
 def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path) -> None:
