@@ -40,6 +40,8 @@ constexpr double fold_tolerance = 1e-3;
 // A layout whose pieces have come to lie on each other is drawn out by these shares, one after the
 // other: nested pieces part by a few gaps of the packing (0.2 %), or not at all.
 constexpr double drawn_out[] = {0.003, 0.004, 0.007, 0.01, 0.02};
+// And once more, for a gap between them.
+constexpr double drawn_gap = 0.01;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -285,15 +287,15 @@ std::vector<Index> overlapping_charts(std::vector<PatternPiece>& pieces) {
 // Draws the layout out as little as it takes to part pieces that have come to lie on each other.
 // Returns those that still do.
 std::vector<std::size_t> draw_out(std::vector<PatternPiece>& pieces) {
-    std::vector<std::size_t> others = overlapping_pieces(pieces);
-    for (const double step : drawn_out) {
-        if (others.empty())
-            break;
+    const auto draw = [&](double share) {
         for (PatternPiece& piece : pieces)
-            move_piece(piece, step * piece.box.center());
-        others = overlapping_pieces(pieces);
-    }
-    return others;
+            move_piece(piece, share * piece.box.center());
+        return overlapping_pieces(pieces);
+    };
+    std::vector<std::size_t> others = overlapping_pieces(pieces);
+    for (std::size_t i = 0; i < std::size(drawn_out) && !others.empty(); ++i)
+        others = draw(drawn_out[i]);
+    return others.empty() ? draw(drawn_gap) : others;
 }
 
 // Pieces that overlap, and the parts of split ones, get places of their own. `drawn`: the pieces as
