@@ -91,10 +91,13 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
                 return true;
             grid.add_ring(ring, static_cast<Index>(i));
         }
-    for (const SheetPiece& outer : pieces)
-        for (const SheetPiece& inner : pieces)
-            if (&outer != &inner && outer.box().contains(inner.box()) &&
-                plane::is_inside(outer.cut, inner.cut.front().front()))
+    std::vector<Eigen::AlignedBox2d> boxes;
+    for (const SheetPiece& piece : pieces)
+        boxes.push_back(piece.box());
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (std::size_t j = 0; j < pieces.size(); ++j)
+            if (i != j && boxes[i].contains(boxes[j]) &&
+                plane::is_inside(pieces[i].cut, pieces[j].cut.front().front()))
                 return true;
     return false;
 }

@@ -60,6 +60,8 @@ constexpr double name_pitch = 1.3;   // of the font size
 
 // A name may lie anywhere in its piece: so many places are tried along x and y.
 constexpr int name_places = 14;
+// The largest disk of a piece may be so much larger than the one that was found.
+constexpr double label_slack = 2.0;
 
 // Places of a number along its side, as shares of the length, the middle first.
 constexpr double number_places[] = {0.5,  0.4,  0.6,  0.3,  0.7,  0.2,  0.8,  0.12, 0.88, 0.45,
@@ -169,9 +171,12 @@ std::vector<Vec2> places_for_name(const Vec2& middle, const Eigen::AlignedBox2d&
     return places;
 }
 
-bool write_name(const std::vector<Vec2>& places, const Room& room, bool over_lines,
+bool write_name(const std::vector<Vec2>& places, double widest, const Room& room, bool over_lines,
                 SheetPiece& result) {
-    for (const double size : name_sizes)
+    for (const double size : name_sizes) {
+        // A text is no higher than twice the radius of the largest disk inside the piece.
+        if ((0.5 * writers::capital_height + clearance) * size > widest)
+            continue;
         for (const Vec2& place : places) {
             const writers::DrawingText text{place, size, result.name};
             if (!room.is_free(text, over_lines))
@@ -179,6 +184,7 @@ bool write_name(const std::vector<Vec2>& places, const Room& room, bool over_lin
             result.names.push_back(text);
             return true;
         }
+    }
     return false;
 }
 
@@ -187,7 +193,9 @@ bool add_name(const pattern::PatternPiece& piece, const pattern::Pattern& patter
               SheetPiece& result, Room& room) {
     const std::vector<Vec2> places =
         places_for_name(result.frame(piece.label_position), result.box());
-    if (!write_name(places, room, false, result) && !write_name(places, room, true, result))
+    const double widest = label_slack * piece.label_radius;
+    if (!write_name(places, widest, room, false, result) &&
+        !write_name(places, widest, room, true, result))
         return false;
     const writers::DrawingText name = result.names.back();
     room.take(name);

@@ -49,10 +49,9 @@ void SegmentGrid::add_ring(const std::vector<Vec2>& ring, Index owner) {
 bool SegmentGrid::touches(const Vec2& a, const Vec2& b, Index owner) const {
     bool found = false;
     visit_cells(a, b, [&](std::size_t cell) {
-        for (const Index number : cells_[cell]) {
-            const Segment& other = segments_[number];
-            found =
-                found || (other.owner != owner && plane::segments_touch(a, b, other.a, other.b));
+        for (std::size_t i = 0; i < cells_[cell].size() && !found; ++i) {
+            const Segment& other = segments_[cells_[cell][i]];
+            found = other.owner != owner && plane::segments_touch(a, b, other.a, other.b);
         }
     });
     return found;

@@ -6,47 +6,27 @@ beyond buffers and follows nodes for ever. Of what is wrong with a file it tells
 
 from __future__ import annotations
 
-import base64
-import binascii
-import json
-import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
 
 from devseg.errors import DevsegError
+from devseg.gltf_document import (
+    COMPONENTS,
+    MODES,
+    PARTS,
+    TRIANGLES,
+    Document,
+    Fault,
+    has_triangles,
+    read,
+    sparse_parts,
+)
 
 EXTENSIONS = (".gltf", ".glb")
 
-_MODES = {
-    0: "points",
-    1: "lines",
-    2: "a line loop",
-    3: "a line strip",
-    5: "a triangle strip",
-    6: "a triangle fan",
-}
-_TRIANGLES = 4
-# Bytes and numpy type of the component types.
-_COMPONENTS = {
-    5120: (1, "i1"),
-    5121: (1, "u1"),
-    5122: (2, "<i2"),
-    5123: (2, "<u2"),
-    5125: (4, "<u4"),
-    5126: (4, "<f4"),
-}
-_PARTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 # Extensions without which the mesh itself cannot be read.
 _COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
-
-_GLB = b"glTF"
-_JSON_CHUNK, _BIN_CHUNK = 0x4E4F534A, 0x004E4942
-
-
-class _Fault(Exception):
-    """What is wrong with a file, in words that follow its name."""
 
 
 def check(path: Path) -> None:
@@ -56,9 +36,8 @@ def check(path: Path) -> None:
         DevsegError: with the first fault that was found.
     """
     try:
-        scene, binary = read(path.read_bytes())
-        _Checker(path, scene, binary).check()
-    except _Fault as fault:
+        _Checker.of(path).check()
+    except Fault as fault:
         raise DevsegError(f"{path}: {fault}; export it again") from fault
     except (TypeError, AttributeError, KeyError, ValueError, IndexError, OverflowError) as error:
         # JSON of another structure than glTF has.
@@ -66,45 +45,6 @@ def check(path: Path) -> None:
             f"{path}: expected JSON as glTF 2.0 defines it, a part of it is of another kind "
             f"({error}); export it again"
         ) from error
-
-
-def read(data: bytes) -> tuple[dict[str, Any], bytes | None]:
-    """The JSON of a .gltf or .glb file, and the binary part of a .glb file."""
-    if data[:4] != _GLB:
-        return _json(data), None
-    if len(data) < 12:
-        raise _Fault(f"the header of a GLB file has 12 bytes, found {len(data)}")
-    _, version, size = struct.unpack("<4sII", data[:12])
-    if version != 2:
-        raise _Fault(f"expected GLB version 2, found {version}")
-    if size > len(data):
-        raise _Fault(f"expected {size} bytes, found {len(data)}: the file is cut off")
-    scene, binary, at = None, None, 12
-    while at + 8 <= size:
-        length, kind = struct.unpack("<II", data[at : at + 8])
-        chunk = data[at + 8 : at + 8 + length]
-        if len(chunk) < length:
-            raise _Fault(f"a part of {length} bytes has only {len(chunk)}: the file is cut off")
-        if kind == _JSON_CHUNK and scene is None:
-            scene = _json(chunk)
-        elif kind == _BIN_CHUNK and binary is None:
-            binary = chunk
-        at += 8 + length
-    if scene is None:
-        raise _Fault("expected a JSON part in the GLB file, found none")
-    return scene, binary
-
-
-def _json(text: bytes) -> dict[str, Any]:
-    try:
-        scene = json.loads(text.decode("utf-8-sig"))
-    except ValueError as error:
-        raise _Fault(f"expected JSON, found an error in it ({error})") from error
-    except RecursionError as error:
-        raise _Fault("the JSON is nested without end") from error
-    if not isinstance(scene, dict):
-        raise _Fault("expected a JSON object")
-    return scene
 
 
 @dataclass(frozen=True)
@@ -122,21 +62,20 @@ class Object:
 
 def objects(path: Path) -> list[Object]:
     """The objects of a file, as the host goes through them. The file must be in order."""
-    scene, _ = read(path.read_bytes())
-    names = _material_names(scene)
+    document = Document.of(path)
+    names = _material_names(document.scene)
     found: list[Object] = []
-    stack = list(reversed(scene["scenes"][scene.get("scene", 0)].get("nodes", [])))
-    while stack:
-        node = scene["nodes"][stack.pop()]
-        if "mesh" in node:
-            mesh = scene["meshes"][node["mesh"]]
-            materials = [
-                (names[p["material"]] if "material" in p else "", _triangles(scene, p))
-                for p in mesh["primitives"]
-            ]
-            name = node.get("name") or mesh.get("name") or f"object {len(found)}"
-            found.append(Object(name, materials))
-        stack += reversed(node.get("children", []))
+    for node in document.nodes():
+        if not any(map(has_triangles, document.primitives(node))):
+            continue
+        mesh = document.scene["meshes"][node["mesh"]]
+        materials = [
+            (names[p["material"]] if "material" in p else "", len(document.triangles(p)))
+            for p in document.primitives(node)
+            if has_triangles(p)
+        ]
+        name = node.get("name") or mesh.get("name") or f"object {len(found)}"
+        found.append(Object(name, materials))
     return found
 
 
@@ -156,46 +95,46 @@ def _material_names(scene: dict[str, Any]) -> list[str]:
     return [str(m.get("name") or f"material {i}") for i, m in enumerate(materials)]
 
 
-def _triangles(scene: dict[str, Any], primitive: dict[str, Any]) -> int:
-    index = primitive.get("indices", primitive["attributes"]["POSITION"])
-    return scene["accessors"][index]["count"] // 3
-
-
-class _Checker:
+class _Checker(Document):
     """Follows the references of one file as the host does."""
-
-    def __init__(self, path: Path, scene: dict[str, Any], binary: bytes | None) -> None:
-        self.folder = path.parent
-        self.scene = scene
-        self.binary = binary
-        self.buffers: dict[int, bytes] = {}
 
     def check(self) -> None:
         version = str(self.scene.get("asset", {}).get("version", "no version"))
         if version.split(".")[0] != "2":
-            raise _Fault(f"expected glTF version 2, found {version}")
+            raise Fault(f"expected glTF version 2, found {version}")
         for name in self.scene.get("extensionsRequired", []):
             if name in _COMPRESSIONS:
-                raise _Fault(f"it is compressed with {name}, which the host cannot read")
+                raise Fault(f"it is compressed with {name}, which the host cannot read")
         if not self.scene.get("meshes"):
-            raise _Fault("expected meshes, found none")
+            raise Fault("expected meshes, found none")
+        others: set[str] = set()
+        found = False
         for number in sorted(self._meshes_in_scene()):
             mesh = self.scene["meshes"][number]
             name = f"mesh {mesh.get('name', number)!r}"
             for primitive in mesh["primitives"]:
-                self._check_primitive(name, primitive)
+                if has_triangles(primitive):
+                    self._check_primitive(name, primitive)
+                    found = True
+                elif (mode := primitive["mode"]) in MODES:
+                    others.add(MODES[mode])
+                else:
+                    raise Fault(f"{name} is of mode {mode}, which glTF does not know")
+        if not found:
+            what = " and ".join(sorted(others)) or "nothing"
+            raise Fault(f"expected triangles, found {what}")
 
     def _item(self, kind: str, index: Any, owner: str) -> Any:
         items = self.scene.get(kind, [])
         if type(index) is not int or not 0 <= index < len(items):
-            raise _Fault(f"{owner} names {kind}[{index}], the file has {len(items)}")
+            raise Fault(f"{owner} names {kind}[{index}], the file has {len(items)}")
         return items[index]
 
     def _meshes_in_scene(self) -> set[int]:
         """The meshes that the nodes of the scene name, once each."""
         scenes = self.scene.get("scenes", [])
         if not scenes:
-            raise _Fault("expected a scene, found none")
+            raise Fault("expected a scene, found none")
         chosen = self.scene.get("scene", 0)
         roots = self._item("scenes", chosen, "the file").get("nodes", [])
         # Depth first, without recursion: (node, whether its children are done).
@@ -211,7 +150,7 @@ class _Checker:
             node = self._item("nodes", index, owner)
             if index in seen:
                 how = "is its own descendant" if index in above else "has two parents"
-                raise _Fault(f"node {index} {how}")
+                raise Fault(f"node {index} {how}")
             seen.add(index)
             above.add(index)
             if "mesh" in node:
@@ -219,110 +158,74 @@ class _Checker:
                 meshes.add(node["mesh"])
             for key, length in (("matrix", 16), ("translation", 3), ("rotation", 4), ("scale", 3)):
                 if key in node and not _are_numbers(node[key], length):
-                    raise _Fault(f"{key} of node {index}: expected {length} numbers")
+                    raise Fault(f"{key} of node {index}: expected {length} numbers")
             stack.append((index, True, owner))
             children = node.get("children", [])
             stack += [(child, False, f"node {index}") for child in reversed(children)]
         if not meshes:
-            raise _Fault("expected a mesh in the scene, found none")
+            raise Fault("expected a mesh in the scene, found none")
         return meshes
 
     def _check_primitive(self, name: str, primitive: dict[str, Any]) -> None:
-        mode = primitive.get("mode", _TRIANGLES)
-        if mode != _TRIANGLES:
-            raise _Fault(
-                f"{name} is {_MODES.get(mode, 'unknown')} (mode {mode}), not triangles (4)"
-            )
         if any(extension in _COMPRESSIONS for extension in primitive.get("extensions", {})):
-            raise _Fault(f"{name} is compressed, which the host cannot read")
+            raise Fault(f"{name} is compressed, which the host cannot read")
         if "material" in primitive:
             self._item("materials", primitive["material"], name)
         attributes = primitive.get("attributes", {})
         if "POSITION" not in attributes:
-            raise _Fault(f"{name} has no positions")
+            raise Fault(f"{name} has no positions")
         vertices = 0
         for attribute, accessor in attributes.items():
             count = self._check_accessor(accessor, f"{attribute} of {name}")
             if attribute == "POSITION":
                 vertices = count
                 kind = self._item("accessors", accessor, name)
-                if (kind["type"], kind["componentType"]) != ("VEC3", 5126):
-                    raise _Fault(f"positions of {name}: expected three 32 bit numbers each")
+                if kind["type"] != "VEC3":
+                    raise Fault(f"positions of {name}: expected three numbers each")
             elif count < vertices:
-                raise _Fault(f"{attribute} of {name}: expected {vertices} values, found {count}")
+                raise Fault(f"{attribute} of {name}: expected {vertices} values, found {count}")
+        corners = vertices
         if "indices" in primitive:
-            self._check_indices(primitive["indices"], name, vertices)
+            corners = self._check_indices(primitive["indices"], name, vertices)
+        if primitive.get("mode", TRIANGLES) == TRIANGLES and corners % 3:
+            raise Fault(f"{name}: expected three corners for each triangle, found {corners}")
 
-    def _check_indices(self, index: Any, name: str, vertices: int) -> None:
-        import numpy as np
-
+    def _check_indices(self, index: Any, name: str, vertices: int) -> int:
         count = self._check_accessor(index, f"indices of {name}")
         accessor = self._item("accessors", index, name)
         if accessor["componentType"] not in (5121, 5123, 5125) or accessor["type"] != "SCALAR":
-            raise _Fault(f"indices of {name}: expected whole numbers")
-        if count % 3:
-            raise _Fault(f"indices of {name}: expected three for each triangle, found {count}")
-        start, step = self._place(accessor)
-        size, kind = _COMPONENTS[accessor["componentType"]]
-        data = self._buffer(self.scene["bufferViews"][accessor["bufferView"]]["buffer"])
-        if step != size:
-            raise _Fault(f"indices of {name} are not packed")
-        largest = int(np.frombuffer(data, kind, count, start).max(initial=0))
+            raise Fault(f"indices of {name}: expected whole numbers")
+        largest = int(self.indices(index).max(initial=0))
         if largest >= vertices:
-            raise _Fault(f"a triangle of {name} names vertex {largest}, there are {vertices}")
+            raise Fault(f"a triangle of {name} names vertex {largest}, there are {vertices}")
+        return count
 
     def _check_accessor(self, index: Any, owner: str) -> int:
         """Looks whether all values lie in the buffer; returns their number."""
         accessor = self._item("accessors", index, owner)
-        if "sparse" in accessor or "bufferView" not in accessor:
-            raise _Fault(f"{owner} are sparse, which the host cannot read")
+        if "bufferView" in accessor:
+            self._check_place(accessor, owner)
+        if "sparse" in accessor:
+            rows, values = sparse_parts(accessor)
+            self._check_place(rows, owner)
+            self._check_place(values, owner)
+            if int(self.rows(rows).max(initial=0)) >= accessor["count"]:
+                raise Fault(f"{owner}: sparse values beyond the {accessor['count']} that there are")
+        return accessor["count"]
+
+    def _check_place(self, accessor: dict[str, Any], owner: str) -> None:
         kind, component, count = accessor["type"], accessor["componentType"], accessor["count"]
-        if kind not in _PARTS or component not in _COMPONENTS or type(count) is not int:
-            raise _Fault(f"{owner}: unknown type {kind} of {component}")
+        if kind not in PARTS or component not in COMPONENTS or type(count) is not int:
+            raise Fault(f"{owner}: unknown type {kind} of {component}")
         view = self._item("bufferViews", accessor["bufferView"], owner)
         self._item("buffers", view["buffer"], owner)
-        start, step = self._place(accessor)
-        size = _PARTS[kind] * _COMPONENTS[component][0]
+        start, step = self.place(accessor)
+        size = PARTS[kind] * COMPONENTS[component][0]
         end = start + step * (count - 1) + size if count > 0 else start
         in_view = view.get("byteOffset", 0) + view["byteLength"]
-        length = len(self._buffer(view["buffer"]))
+        length = len(self.buffer(view["buffer"]))
         if start < 0 or count < 0 or not size <= step <= 252 or end > min(in_view, length):
-            raise _Fault(f"{owner}: {count} values end at byte {end} of {min(in_view, length)}")
-        return count
-
-    def _place(self, accessor: dict[str, Any]) -> tuple[int, int]:
-        """Where the first value starts in its buffer, and how far the next one is."""
-        view = self.scene["bufferViews"][accessor["bufferView"]]
-        size = _PARTS[accessor["type"]] * _COMPONENTS[accessor["componentType"]][0]
-        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        return start, view.get("byteStride") or size
-
-    def _buffer(self, index: int) -> bytes:
-        if index not in self.buffers:
-            buffer = self.scene["buffers"][index]
-            data = self._load(index, buffer)
-            if len(data) < buffer["byteLength"]:
-                raise _Fault(
-                    f"buffer {index}: expected {buffer['byteLength']} bytes, found {len(data)}"
-                )
-            self.buffers[index] = data
-        return self.buffers[index]
-
-    def _load(self, index: int, buffer: dict[str, Any]) -> bytes:
-        uri = buffer.get("uri")
-        if uri is None:
-            if self.binary is None:
-                raise _Fault(f"buffer {index} names no file, and the file has no binary part")
-            return self.binary
-        if uri.startswith("data:"):
-            try:
-                return base64.b64decode(uri.partition(",")[2])
-            except binascii.Error as error:
-                raise _Fault(f"buffer {index} is no base64 text ({error})") from error
-        file = self.folder / unquote(uri)
-        if not file.is_file():
-            raise _Fault(f"its buffer {unquote(uri)} is missing; keep both files in one folder")
-        return file.read_bytes()
+            raise Fault(f"{owner}: {count} values end at byte {end} of {min(in_view, length)}")
 
 
 def _are_numbers(values: Any, count: int) -> bool:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import tempfile
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import gltf, host, obj, ply, scene
+from devseg import collada, gltf, gltf_triangles, host, obj, ply, scene, stl
 from devseg.apart import limited_reading
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame, read_frame
@@ -60,14 +62,14 @@ def load_mesh(path: Path, objects: Sequence[str] = ()) -> Loaded:
         DevsegError: for a file that is missing, cannot be read, holds no faces, not the objects
             that are asked for, or coordinates that are no finite numbers.
     """
-    meshes, log = _read(path)
+    meshes, log, notes = _read(path)
     try:
         with host.captured():
             parts, warnings = scene.join(path, meshes, objects)
     except host.pymeshlab().PyMeshLabException as error:
         raise DevsegError(f"{path}: objects cannot be joined ({host_message(error)})") from error
     warnings += _check(path, meshes, log) + _turn_outside(meshes)
-    return Loaded(meshes, warnings, read_frame(path), parts)
+    return Loaded(meshes, notes + warnings, read_frame(path), parts)
 
 
 def list_objects(path: Path) -> dict[str, int]:
@@ -85,8 +87,8 @@ def list_objects(path: Path) -> dict[str, int]:
     return found
 
 
-def _read(path: Path) -> tuple[Any, str]:
-    """A MeshSet with the layers of a file, and what the host said."""
+def _read(path: Path) -> tuple[Any, str, list[str]]:
+    """A MeshSet with the layers of a file, what the host said, and what of it was left out."""
     if not path.is_file():
         found = "a folder" if path.is_dir() else "nothing"
         raise DevsegError(f"{path}: expected a mesh file, found {found}; check the name")
@@ -103,18 +105,33 @@ def _read(path: Path) -> tuple[Any, str]:
     pymeshlab = host.pymeshlab()
     try:
         # Verbose, as only its log tells that vertices were dropped.
-        with host.captured() as chatter:
+        with host.captured() as chatter, _for_the_host(path) as (readable, notes):
             meshes = pymeshlab.MeshSet(True)
             _loggers.append(meshes)
             try:
                 with limited_reading(path.stat().st_size):
-                    meshes.load_new_mesh(str(path))
+                    meshes.load_new_mesh(str(readable))
             finally:
                 # All plugins would go on logging to this MeshSet after its end.
                 meshes.set_verbosity(False)
     except (pymeshlab.PyMeshLabException, MemoryError) as error:
         raise DevsegError(f"{path}: {_load_message(path, error)}") from error
-    return meshes, chatter.text
+    return meshes, chatter.text, notes
+
+
+@contextlib.contextmanager
+def _for_the_host(path: Path) -> Iterator[tuple[Path, list[str]]]:
+    """The file, or one that says the same so that the host can read it; what it leaves out."""
+    extension = path.suffix.lower()
+    with tempfile.TemporaryDirectory(prefix="devseg-") as folder:
+        if extension in gltf.EXTENSIONS:
+            yield gltf_triangles.rewritten(path, Path(folder))
+        elif extension == ".dae":
+            yield collada.rewritten(path, Path(folder))
+        elif extension == ".stl":
+            yield stl.rewritten(path, Path(folder)), []
+        else:
+            yield path, []
 
 
 def _turn_outside(meshes: Any) -> list[str]:

@@ -6,11 +6,17 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from devseg import gltf
+from devseg import collada, gltf, threemf
 
 # Statements of a material that name an image.
 _IMAGES = re.compile(r"\s*(map_\w+|bump|disp|decal|refl|norm)\s", re.IGNORECASE)
 _LIBRARY = re.compile(rb"^[ \t]*mtllib[ \t]+(.+?)\s*$", re.MULTILINE)
+# Formats whose materials are known by their colours.
+_COLORS = {
+    **dict.fromkeys(gltf.EXTENSIONS, gltf.material_colors),
+    ".dae": collada.material_colors,
+    ".3mf": threemf.material_colors,
+}
 # A material that nothing describes.
 _PLAIN = ["Kd 0.8 0.8 0.8", "illum 1"]
 
@@ -21,10 +27,10 @@ def library(source: Path, names: Sequence[str]) -> str:
     described: dict[str, list[str]] = {}
     if extension == ".obj":
         described = _of_obj(source)
-    elif extension in gltf.EXTENSIONS:
+    elif extension in _COLORS:
         described = {
             name: [f"Kd {r:.6g} {g:.6g} {b:.6g}", "illum 1"]
-            for name, (r, g, b) in gltf.material_colors(source).items()
+            for name, (r, g, b) in _COLORS[extension](source).items()
         }
     return "\n".join(
         "".join(f"{row}\n" for row in [f"newmtl {name}", *(described.get(name) or _PLAIN)])

@@ -17,12 +17,12 @@ from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
 from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, OPTION_OF, Method
+from devseg.methods import FLATTENINGS, Method
+from devseg.notes import as_option, new_notes
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
 from devseg.pattern_options import EXPORT_FILTER, PATTERN_FORMATS
-from devseg.pattern_options import OPTION_OF as PATTERN_OPTION_OF
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 
@@ -45,11 +45,6 @@ TALL = 1.1
 PNG_COMPRESSION = 1
 
 
-# What a verbose host prints for each line of a filter's log, and for its progress.
-_LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
-_PROGRESS = re.compile(r"\[ +\d+% \]$")
-# What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
-_HINT = re.compile(r" \('[A-Z][^()]*\)$")
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
 
 
@@ -127,14 +122,9 @@ class Session:
         self._guard(self.meshes.save_current_mesh, str(file), **parameters)
 
     def _noted(self, name: str, **parameters: Any) -> dict[str, Any]:
-        # The host drops texts from results, but logs them, with the results.
+        # The host drops texts from results, but logs them.
         results = self._guard(self.meshes.apply_filter, name, **parameters) or {}
-        values = tuple(f"{result}: " for result in results)
-        for logged in _LOGGED.findall(self._chatter):
-            note = _HINT.sub("", logged.rstrip())
-            # Every filter that reads the mesh tells of its faults again.
-            if not (_PROGRESS.search(note) or note.startswith(values) or note in self.warnings):
-                self.warnings.append(note)
+        self.warnings += new_notes(self._chatter, results, self.warnings)
         return results
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
@@ -155,13 +145,6 @@ class Session:
     def failure(self, message: str) -> DevsegError:
         """A filter's message in the words of the command line."""
         return DevsegError(f"{self.path}: {as_option(message)}")
-
-
-def as_option(message: str) -> str:
-    """A filter's message about a parameter, with the option of the command line that sets it."""
-    name, colon, rest = message.partition(": ")
-    option = {**PATTERN_OPTION_OF, **OPTION_OF}.get(name)
-    return f"{option}: {rest}" if colon and option else message
 
 
 def versions() -> dict[str, str]:
@@ -422,7 +405,7 @@ def old_texcoords(session: Session, options: RunOptions) -> Any:
     if not coordinates.any():
         return None
     # The host takes the last one for images that it cannot read.
-    textures = ", ".join(name for name in mesh.textures() if name != "dummy.png")
+    textures = ", ".join(Path(name).name for name in mesh.textures() if name != "dummy.png")
     lost = f"; its textures ({textures}) do not fit the new ones" if textures else ""
     kept = options.keep_texcoords
     advice = "PLY has them as texcoord_before" if kept else "--keep-texcoords keeps them in PLY"

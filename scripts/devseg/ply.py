@@ -6,6 +6,7 @@ face attributes, but does not read them back. It goes on naming textures of othe
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ _TYPES = {
     "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
 }  # fmt: skip
 _LONGEST_HEADER = 1 << 16
+_PART = re.compile(r"comment part_id \d+: (.*)")
 
 
 @dataclass(frozen=True)
@@ -119,6 +121,30 @@ def restore_attributes(mesh: Any, path: str | Path) -> list[str]:
     for name in names:
         mesh.add_face_custom_scalar_attribute(rows[name].astype("f8"), name)
     return names
+
+
+def part_ids(path: Path, faces: int) -> tuple[list[str], np.ndarray] | None:
+    """What `finish` has written of the parts of a file.
+
+    Args:
+        path: the file.
+        faces: the number of faces that the host has made of it.
+
+    Returns:
+        The names of the parts as they stand in the comments, and the part of each face; None where
+        the file has none.
+    """
+    import numpy as np
+
+    header, rows, _ = _find_faces(path)
+    if header is None or rows is None or len(rows) != faces:
+        return None
+    lines = path.read_bytes()[: header.size].decode("utf-8", "replace").splitlines()
+    found = [match[1] for line in lines if (match := _PART.fullmatch(line))]
+    if not found or "part_id" not in (rows.dtype.names or ()):
+        return None
+    ids = rows["part_id"].astype(np.int64)
+    return (found, ids) if ids.min() >= 0 and ids.max() < len(found) else None
 
 
 def finish(path: Path, comments: Sequence[str], texcoords: np.ndarray | None = None) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from devseg import gltf, obj_parts, threemf
+from devseg import collada, gltf, obj_parts, ply, stl, threemf
 from devseg.errors import DevsegError
 from devseg.frame import UPRIGHT
 from devseg.obj_parts import Part
@@ -17,6 +18,8 @@ PART_ATTRIBUTE = "part_id"
 # The same before the objects are joined.
 _LAYER_ATTRIBUTE = "part_of_layer"
 _SHOWN = 12  # names in an error
+# A name in what `comments` writes.
+_NAMED = re.compile(r"(object|group|material) (.*?)(?=, (?:group|material) |$)")
 
 
 @dataclass(frozen=True)
@@ -25,35 +28,72 @@ class Layer:
 
     Attributes:
         id: of the host.
-        name: of the object.
         faces: their number.
-        materials: the names of its materials and their numbers of faces, in order, if known.
+        parts: its parts and their numbers of faces, in order.
+        is_lost: whether the file has more names, for other faces than the host has made of it.
     """
 
     id: int
-    name: str
     faces: int
-    materials: list[tuple[str, int]]
+    parts: list[tuple[Part, int]]
+    is_lost: bool = False
+
+    @property
+    def name(self) -> str:
+        """That of its object."""
+        return self.parts[0][0].object
 
 
 def layers(path: Path, meshes: Any) -> list[Layer]:
-    """The layers of a file with the names of their objects, as far as the file has names."""
-    found = [Layer(mesh.id(), mesh.label(), mesh.face_number(), []) for mesh in meshes]
-    if path.suffix.lower() in gltf.EXTENSIONS:
+    """The layers of a file with the names of their parts, as far as the file has names."""
+    found = []
+    for mesh in meshes:
+        # The host calls a layer as the file where it knows no better.
+        name = "" if mesh.label() == path.name else mesh.label()
+        faces = mesh.face_number()
+        found.append(Layer(mesh.id(), faces, [(Part(name, "", ""), faces)]))
+    named = _named(path)
+    if len(named) != len(found):
+        return found
+    return [_with_names(layer, parts) for layer, parts in zip(found, named, strict=True)]
+
+
+def _with_names(layer: Layer, parts: list[tuple[Part, int]]) -> Layer:
+    if not parts:
+        return layer
+    if sum(count for _, count in parts) == layer.faces:
+        return replace(layer, parts=parts)
+    objects = {part.object for part, _ in parts}
+    name = objects.pop() if len(objects) == 1 else layer.name
+    return replace(layer, parts=[(Part(name, "", ""), layer.faces)], is_lost=len(parts) > 1)
+
+
+def _named(path: Path) -> list[list[tuple[Part, int]]]:
+    """The parts of each layer and their faces, of formats that are looked into."""
+    extension = path.suffix.lower()
+    if extension in gltf.EXTENSIONS:
         # The host makes a layer of each node that has a mesh, and calls it as the mesh.
-        objects = gltf.objects(path)
-        if len(objects) == len(found):
-            return [
-                replace(layer, name=one.name, materials=one.materials)
-                for layer, one in zip(found, objects, strict=True)
+        return [
+            [(Part(one.name, "", material), count) for material, count in one.materials]
+            for one in gltf.objects(path)
+        ]
+    if extension == ".3mf":
+        return [
+            [(Part(one.name, "", run.material), run.triangles) for run in one.runs]
+            for one in threemf.built(path)
+        ]
+    if extension == ".dae":
+        return [[(Part(one.object, "", one.material), one.triangles) for one in collada.runs(path)]]
+    if extension == ".stl":
+        solids = stl.solids(path)
+        names = [one.name or (f"object {i}" if i else "") for i, one in enumerate(solids)]
+        return [
+            [
+                (Part(name, "", ""), len(one.triangles))
+                for name, one in zip(names, solids, strict=True)
             ]
-    if path.suffix.lower() == ".3mf":
-        names = threemf.object_names(path)
-        if len(names) == len(found):
-            return [replace(layer, name=n) for layer, n in zip(found, names, strict=True)]
-    if len(found) == 1 and found[0].name == path.name:
-        found = [replace(found[0], name="")]  # the host has called it as the file
-    return found
+        ]
+    return []
 
 
 def join(path: Path, meshes: Any, chosen: Sequence[str]) -> tuple[list[Part], list[str]]:
@@ -141,36 +181,41 @@ def _count(meshes: Any) -> int:
 def _label(path: Path, meshes: Any, found: list[Layer]) -> tuple[list[Part], list[str]]:
     """Gives the faces of all layers the numbers of their parts."""
     parts: list[Part] = []
-    warnings = []
+    is_lost = any(layer.is_lost for layer in found)
     for layer in found:
         mesh = meshes.mesh(layer.id)
-        own, ids = _by_material(layer)
+        own, ids = _numbered(layer)
         if path.suffix.lower() == ".obj":
             named = obj_parts.read(path)
             followed = obj_parts.parts_of_faces(named, mesh.face_matrix())
             if followed is not None:
                 own, ids = named.parts, followed
             else:
-                warnings.append(
-                    "names of objects, groups and materials are lost: the faces are not as in "
-                    "the file"
-                )
+                is_lost = True
+        elif path.suffix.lower() == ".ply" and (written := ply.part_ids(path, layer.faces)):
+            own, ids = [_part_in(text) for text in written[0]], written[1]
         if layer.faces:
             mesh.add_face_custom_scalar_attribute(ids + float(len(parts)), _LAYER_ATTRIBUTE)
         parts += own
-    return parts, warnings
+    lost = "names of objects, groups and materials are lost: the faces are not as in the file"
+    return parts, [lost] if is_lost else []
 
 
-def _by_material(layer: Layer) -> tuple[list[Part], Any]:
+def _part_in(text: str) -> Part:
+    """The part that a line of `comments` tells of."""
+    names = {"object": "", "group": "", "material": ""}
+    for kind, name in _NAMED.findall(text):
+        names[kind] = name
+    return Part(**names)
+
+
+def _numbered(layer: Layer) -> tuple[list[Part], Any]:
     """The parts of a layer, and for each face the index of its part."""
     import numpy as np
 
-    names = list(dict.fromkeys(name for name, _ in layer.materials))
-    counts = [count for _, count in layer.materials]
-    if not names or sum(counts) != layer.faces:
-        return [Part(layer.name, "", "")], np.zeros(layer.faces)
-    ids = np.repeat([float(names.index(name)) for name, _ in layer.materials], counts)
-    return [Part(layer.name, "", name) for name in names], ids
+    parts = list(dict.fromkeys(part for part, _ in layer.parts))
+    numbers = [float(parts.index(part)) for part, _ in layer.parts]
+    return parts, np.repeat(numbers, [count for _, count in layer.parts])
 
 
 def _leave_out(path: Path, meshes: Any, parts: list[Part], chosen: Sequence[str]) -> None:

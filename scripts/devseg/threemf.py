@@ -1,10 +1,15 @@
-"""What a 3MF file says beside its triangles: the unit, and the names of its objects."""
+"""What a 3MF file says beside its triangles: the unit, and names of objects and materials."""
 
 from __future__ import annotations
 
 import re
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+_DEEPEST = 16  # components within each other; a file may name itself
 
 _MODEL = "3D/3dmodel.model"
 # Millimetres of the units.
@@ -16,7 +21,7 @@ _UNITS = {
     "foot": 304.8,
     "meter": 1000.0,
 }
-_TAG = re.compile(rb"<(?:\w+:)?(model|object|item)\b([^>]*)>")
+_TAG = re.compile(rb"<(?:\w+:)?(model)\b([^>]*)>")
 
 
 def read_unit(path: Path) -> float | None:
@@ -25,20 +30,107 @@ def read_unit(path: Path) -> float | None:
     if model is None:
         return None
     head = _TAG.search(model)
-    unit = _attribute(head[2], b"unit") if head and head[1] == b"model" else ""
+    unit = _attribute(head[2], b"unit") if head else ""
     return _UNITS.get(unit or "millimeter")
 
 
-def object_names(path: Path) -> list[str]:
-    """The names of the objects that are built, each time they are: the host's layers."""
-    names: dict[str, str] = {}
-    built: list[str] = []
-    for tag, attributes in _TAG.findall(_model(path) or b""):
-        if tag == b"object":
-            names[_attribute(attributes, b"id")] = _attribute(attributes, b"name")
-        elif tag == b"item":
-            built.append(_attribute(attributes, b"objectid"))
-    return [names.get(one) or f"object {i}" for i, one in enumerate(built)]
+@dataclass(frozen=True)
+class Run:
+    """Triangles of one material that follow each other.
+
+    Attributes:
+        material: its name; empty without one.
+        triangles: their number.
+    """
+
+    material: str
+    triangles: int
+
+
+@dataclass(frozen=True)
+class Built:
+    """An object that is built.
+
+    Attributes:
+        name: of the object.
+        runs: its triangles.
+    """
+
+    name: str
+    runs: list[Run]
+
+
+def built(path: Path) -> list[Built]:
+    """The objects that are built, each time they are: the host's layers."""
+    model = _tree(path)
+    if model is None:
+        return []
+    materials = _material_names(model)
+    objects = {_text(o, "id"): o for o in model.iter() if _kind(o) == "object"}
+    found = []
+    for item in model.iter():
+        one = objects.get(_text(item, "objectid")) if _kind(item) == "item" else None
+        if one is not None:
+            name = _text(one, "name") or f"object {len(found)}"
+            found.append(Built(name, _runs(one, objects, materials, 0)))
+    return found
+
+
+def material_colors(path: Path) -> dict[str, tuple[float, float, float]]:
+    """Red, green and blue of each material by its name."""
+    colors = {}
+    model = _tree(path)
+    for base in model.iter() if model is not None else ():
+        color = _text(base, "displaycolor").lstrip("#")
+        if _kind(base) == "base" and re.fullmatch(r"[0-9a-fA-F]{6,8}", color):
+            red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (0, 2, 4))
+            colors[_text(base, "name")] = (red, green, blue)
+    return colors
+
+
+def _material_names(model: Element) -> dict[tuple[str, int], str]:
+    """Names by the group and the place in it."""
+    groups = [group for group in model.iter() if _kind(group) == "basematerials"]
+    return {(_text(g, "id"), k): _text(base, "name") for g in groups for k, base in enumerate(g)}
+
+
+def _runs(
+    one: Element, objects: dict[str, Element], materials: dict[tuple[str, int], str], depth: int
+) -> list[Run]:
+    if depth > _DEEPEST:
+        return []
+    runs: list[Run] = []
+    own = _text(one, "pid"), _text(one, "pindex") or "0"
+    for part in one.iter():
+        if _kind(part) == "component" and (other := objects.get(_text(part, "objectid"))):
+            runs += _runs(other, objects, materials, depth + 1)
+        if _kind(part) != "triangle":
+            continue
+        get = part.get
+        group = get("pid", own[0])
+        index = get("p1", own[1] if group == own[0] else "0")
+        name = materials.get((group, int(index)), "") if index.isdecimal() else ""
+        if runs and runs[-1].material == name:
+            runs[-1] = Run(name, runs[-1].triangles + 1)
+        else:
+            runs.append(Run(name, 1))
+    return runs
+
+
+def _tree(path: Path) -> Element | None:
+    model = _model(path)
+    try:
+        return ElementTree.fromstring(model) if model else None
+    except ElementTree.ParseError:
+        return None  # the host says what is wrong
+
+
+def _kind(element: Element) -> str:
+    return element.tag.rpartition("}")[2]
+
+
+def _text(element: Element, name: str) -> str:
+    return element.get(name, "")
 
 
 def _model(path: Path) -> bytes | None:

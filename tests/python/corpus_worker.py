@@ -1,6 +1,6 @@
 """Runs filters and command lines over many meshes in one process, and says of each how it ended.
 
-As a program: reads {"files", "filters", "methods", "formats", "folder", "answer"} as one JSON
+As a program: reads {"files", "filters", "commands", "folder", "answer"} as one JSON
 object from standard input and writes one JSON object a line to the file "answer": before each step
 {"begin": ...}, after it {"end": ...}, so that whoever started it knows what crashed or hung.
 """
@@ -112,8 +112,9 @@ class Corpus:
         if loaded:
             for name in self.order["filters"]:
                 self.step(file, name, lambda name=name: self.apply(name))
-        for method in self.order["methods"].get(file, []):
-            self.step(file, f"devseg run --method {method}", lambda m=method: self.command(path, m))
+        for options in self.order["commands"].get(file, []):
+            what = " ".join(["devseg run", *options])
+            self.step(file, what, lambda o=options: self.command(path, o))
         release()
 
     def apply(self, name: str) -> dict[str, Any]:
@@ -151,13 +152,13 @@ class Corpus:
             left.unlink()
         return {"problems": problems}
 
-    def command(self, path: Path, method: str) -> dict[str, Any]:
+    def command(self, path: Path, options: list[str]) -> dict[str, Any]:
         """The command line, in this process: what it says, and what it leaves."""
         from devseg.cli import main
 
         out = Path(self.order["folder"]) / "out"
-        formats = self.order["formats"]
-        arguments = ["run", str(path), "-o", str(out), "--method", method, "--formats", formats]
+        formats = options[options.index("--formats") + 1]
+        arguments = ["run", str(path), "-o", str(out), *options]
         said, complained = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complained):
             status = main(arguments)

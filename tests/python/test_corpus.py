@@ -32,6 +32,19 @@ MOST_FACES = 14000  # of a file that takes part where time is short
 # that there is nothing to repair and nothing to tell.
 APART = {"real_elephant_holes.off", "real_wallhole.obj"}
 
+# What people ask for, beside the defaults. One of them is run on each file where time is short.
+REQUESTS = [
+    ["--charts", "4", "--formats", "svg"],
+    ["--preset", "sewing", "--height-mm", "200", "--seam-allowance-mm", "10", "--formats", "pdf"],
+    ["--longest-mm", "300", "--max-piece-mm", "90", "--formats", "dxf,obj"],
+    ["--preset", "papercraft", "--longest", "8in", "--page", "letter", "--formats", "pdf,svg"],
+    ["--weld", "off", "--seams", "edges", "--up", "z", "--formats", "svg,ply"],
+    ["--method", "vsa", "--charts", "3", "--target-faces", "200", "--formats", "svg"],
+    ["--charts", "auto", "--flatten", "abf", "--mirror", "--edge-numbers", "--formats", "svg"],
+]
+# That with which a file once ended the program.
+ENDED = {"real_chair_doubled.obj": REQUESTS[0]}
+
 # What a deformation or a simulation looks for, and does not find on every mesh.
 UNREACHED = ("angle sums of 2 pi", "a surface that does not run through", "a cloth that comes to")
 
@@ -127,13 +140,19 @@ class Worker:
         return [record for record in map(json.loads, lines) if not kind or kind in record]
 
 
+def commands(file: Path, number: int, formats: str) -> list[list[str]]:
+    """The options of the command lines that a file goes through."""
+    by_method = [["--method", method, "--formats", formats] for method in METHODS]
+    if FULL:
+        return by_method + REQUESTS
+    request = ENDED.get(file.name, REQUESTS[number % len(REQUESTS)])
+    return [by_method[number % len(by_method)], request]
+
+
 def run_corpus(files: list[Path], tmp_path: Path, formats: str) -> tuple[list[dict], list[str]]:
     """All files on two processes; the records of all steps, and what crashed or hung."""
-    methods = list(METHODS)
-    chosen = {
-        file.name: methods if FULL else [methods[i % len(methods)]] for i, file in enumerate(files)
-    }
-    order = {"filters": filter_names(), "methods": chosen, "formats": formats}
+    chosen = {file.name: commands(file, i, formats) for i, file in enumerate(files)}
+    order = {"filters": filter_names(), "commands": chosen}
     # The large ones first, and an even share for both.
     by_size = sorted(files, key=lambda file: (-file.stat().st_size, file.name))
     workers = [Worker(tmp_path / f"worker{i}", order) for i in range(2)]

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -19,11 +15,14 @@ from PIL import Image
 
 import gltf_files
 import meshes
+from conftest import ROOT
 from devseg import scene
 from devseg.cli import main
 from devseg.frame import Frame, read_frame
 from devseg.load import list_objects, load_mesh
+from devseg.notes import ADVICE, as_option
 from devseg.obj_parts import Part
+from scene_files import run_json, write_3mf
 
 pytestmark = pytest.mark.usefixtures("pymeshlab")
 
@@ -142,22 +141,6 @@ def textured_obj(folder: Path) -> Path:
     return path
 
 
-def run_json(*arguments: str | float | Path) -> dict[str, Any]:
-    """What `devseg run --json` prints, in a process whose host has not seen other meshes."""
-    command = [sys.executable, "-m", "devseg", "run", *map(str, arguments)]
-    done = subprocess.run(
-        [*command, "--json", "--no-picture"],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    result = json.loads(done.stdout)
-    told = [line.split(": ", 3)[3] for line in done.stderr.splitlines()]
-    assert told == result["warnings"]
-    return result
-
-
 def test_obj_keeps_names_and_no_stale_texture(tmp_path: Path) -> None:
     path, out = textured_obj(tmp_path), tmp_path / "out"
     result = run_json(path, "-o", out, "--formats", "obj,ply")
@@ -220,6 +203,16 @@ def test_ply_keeps_the_old_coordinates_if_asked(tmp_path: Path, pymeshlab: Modul
     assert meshset.current_mesh().face_number() == 12
 
 
+def test_ply_files_of_ours_keep_their_parts(tmp_path: Path) -> None:
+    result = run_json(textured_obj(tmp_path), "-o", tmp_path / "one", "--seams", "edges")
+    again = run_json(tmp_path / "one" / "a.ply", "-o", tmp_path / "two", "--formats", "obj")
+    assert again["parts"] == result["parts"]
+    text = (tmp_path / "two" / "a.obj").read_text(encoding="utf-8")
+    assert re.findall(r"^(?:o|usemtl) .*$", text, re.MULTILINE) == [
+        "o Lid", "usemtl wood", "usemtl Grün Filz", "o Box",
+    ]  # fmt: skip
+
+
 def test_vertex_colors_reach_obj_and_ply(tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     lines = ["v {} {} {} 1 {} 0".format(*(90 * v), v[0]) for v in vertices]
@@ -244,52 +237,6 @@ def test_parts_survive_simplification(tmp_path: Path) -> None:
     result = run_json(path, "-o", tmp_path / "out", "--target-faces", 600, "--seams", "edges")
     assert [part["object"] for part in result["parts"]] == ["left", "right"]
     assert [part["faces"] for part in result["parts"]] == pytest.approx([300, 300], abs=30)
-
-
-TYPES = """<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
-<Default Extension="rels"
- ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
-<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
-</Types>"""
-RELATIONS = """<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
-<Relationship Target="/3D/3dmodel.model" Id="a"
- Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"""
-CORE_3MF = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-
-
-def write_3mf(path: Path, unit: str, content: str = "") -> Path:
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("[Content_Types].xml", TYPES)
-        archive.writestr("_rels/.rels", RELATIONS)
-        archive.writestr(
-            "3D/3dmodel.model",
-            f'<?xml version="1.0" encoding="UTF-8"?>\n'
-            f'<model{unit} xml:lang="en-US" xmlns="{CORE_3MF}">{content}</model>',
-        )
-    return path
-
-
-def test_objects_of_3mf(tmp_path: Path) -> None:
-    vertices, faces = meshes.cube()
-    rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*v) for v in vertices)
-    cells = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f) for f in faces)
-    mesh = f"<mesh><vertices>{rows}</vertices><triangles>{cells}</triangles></mesh>"
-    content = (
-        f'<resources><object id="1" name="Lid" type="model">{mesh}</object>'
-        f'<object id="2" type="model">{mesh}</object><object id="3" name="Set" type="model">'
-        '<components><component objectid="1" transform="1 0 0 0 1 0 0 0 1 0 5 0"/>'
-        '<component objectid="2" transform="1 0 0 0 1 0 0 0 1 0 0 9"/></components></object>'
-        '</resources><build><item objectid="2" transform="2 0 0 0 2 0 0 0 3 10 0 0"/>'
-        '<item objectid="3"/></build>'
-    )
-    path = write_3mf(tmp_path / "a.3mf", ' unit="inch"', content)
-    assert list_objects(path) == {"object 0": 12, "Set": 24}
-    result = run_json(path, "-o", tmp_path / "out", "--object", "object 0")
-    assert result["size_mm"] == pytest.approx([50.8, 50.8, 76.2])
-    points = load_mesh(path, ["Set"]).meshes.current_mesh().vertex_matrix()
-    assert points.max(axis=0).tolist() == [1, 6, 10]
 
 
 def test_frames_of_formats(tmp_path: Path) -> None:
@@ -385,6 +332,14 @@ def test_errors_name_options(obj: Callable, tmp_path: Path, fails: Callable[...,
     assert ": --fold-angle: expected" in error
     error = fails("run", path, "-o", tmp_path / "out", "--page", "a4", "--page-margin-mm", "100")
     assert ": --page-margin-mm: expected margins" in error
+
+
+def test_errors_advise_what_the_command_line_has() -> None:
+    sources = [*(ROOT / "filter_devseg").rglob("*.cpp"), *(ROOT / "io_pattern").rglob("*.cpp")]
+    text = re.sub(r'"\s*\n\s*"', "", "".join(source.read_text() for source in sources))
+    for advice, ours in ADVICE:
+        assert advice in text  # what filters say still
+        assert as_option(f"expected a, found b; {advice}") == f"expected a, found b; {ours}"
 
 
 def test_advice_for_windows_is_left_out(obj: Callable, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@
 #include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/outlines.h"
+#include "devseg/pattern/same_pieces.h"
 #include "devseg/pattern/seams.h"
 #include "devseg/pattern/shapes.h"
 #include "devseg/pattern/split.h"
@@ -35,6 +36,12 @@ constexpr double left_out_share = 1e-3;
 
 // A piece may lose this share of its area to folds before that is reported.
 constexpr double fold_tolerance = 1e-3;
+
+// A layout whose pieces have come to lie on each other is drawn out by these shares, one after the
+// other: nested pieces part by a few gaps of the packing (0.2 %), or not at all.
+constexpr double drawn_out[] = {0.003, 0.004, 0.007, 0.01, 0.02};
+// And once more, for a gap between them.
+constexpr double drawn_gap = 0.01;
 
 std::string number(double value) {
     std::ostringstream text;
@@ -265,21 +272,57 @@ std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint
     return chains;
 }
 
-// Pieces that overlap, and the parts of split ones, get places of their own.
-void separate(const std::vector<std::uint8_t>& is_part, Pattern& pattern) {
+// The chart of each piece that lies on another one before it.
+std::vector<Index> overlapping_charts(std::vector<PatternPiece>& pieces) {
+    for (PatternPiece& piece : pieces) {
+        measure_outlines(piece);
+        place_label(piece);
+    }
+    std::vector<Index> charts;
+    for (const std::size_t i : overlapping_pieces(pieces))
+        charts.push_back(pieces[i].chart);
+    return charts;
+}
+
+// Draws the layout out as little as it takes to part pieces that have come to lie on each other.
+// Returns those that still do.
+std::vector<std::size_t> draw_out(std::vector<PatternPiece>& pieces) {
+    const auto draw = [&](double share) {
+        for (PatternPiece& piece : pieces)
+            move_piece(piece, share * piece.box.center());
+        return overlapping_pieces(pieces);
+    };
+    std::vector<std::size_t> others = overlapping_pieces(pieces);
+    for (std::size_t i = 0; i < std::size(drawn_out) && !others.empty(); ++i)
+        others = draw(drawn_out[i]);
+    return others.empty() ? draw(drawn_gap) : others;
+}
+
+// Pieces that overlap, and the parts of split ones, get places of their own. `drawn`: the pieces as
+// the texture coordinates have them. Sides that were made equally long may have pushed outlines
+// into each other, which needs no word.
+void separate(const std::vector<std::uint8_t>& is_part, std::vector<PatternPiece> drawn,
+              Pattern& pattern) {
     std::vector<std::size_t> moved;
     std::vector<PatternPiece>& pieces = pattern.pieces;
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (is_part[pieces[i].chart] != 0)
             moved.push_back(i);
     move_above(pieces, moved);
-    const std::vector<std::size_t> others = overlapping_pieces(pieces);
+    std::vector<std::size_t> others = overlapping_pieces(pieces);
+    if (others.empty())
+        return;
+    const std::vector<Index> stacked = overlapping_charts(drawn);
+    if (stacked.empty())
+        others = draw_out(pieces);
     move_above(pieces, others);
-    if (!others.empty())
-        pattern.notes.push_back(std::to_string(others.size()) + " of " +
-                                std::to_string(pieces.size()) +
-                                " pieces lay on others in the texture coordinates and were moved "
-                                "above the layout");
+    const auto count = std::count_if(others.begin(), others.end(), [&](std::size_t i) {
+        return std::binary_search(stacked.begin(), stacked.end(), pieces[i].chart);
+    });
+    if (count > 0)
+        pattern.notes.push_back(std::to_string(count) + " of " + std::to_string(pieces.size()) +
+                                (count == 1 ? " pieces lies" : " pieces lie") +
+                                " on others in the texture coordinates: moved above the layout");
 }
 
 // 1 for every chart that was cut off another one, or has another scale than it was given.
@@ -322,7 +365,7 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
                        options.fold_angle * degrees, mm, piece);
         progress.update(0.5 + 0.5 * static_cast<double>(i) / count);
     }
-    find_same_pieces(pattern.pieces, options.pair_tolerance_mm);
+    find_same_pieces(pattern.pieces, options.pair_tolerance_mm, progress);
 }
 
 } // namespace
@@ -356,6 +399,7 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces = trace_pieces(mesh, split.uv, split.charts, layout.areas.worth_cutting(),
                                   layout.areas.scale * mm, tracing);
+    std::vector<PatternPiece> drawn = pattern.pieces;
     auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, refining);
@@ -366,7 +410,7 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
         place_label(piece);
         placing.check();
     }
-    separate(find_parts(layout), pattern);
+    separate(find_parts(layout), std::move(drawn), pattern);
     place_on_sheet(pattern, options.height_mm > 0.0 ? "height_mm" : "mm_per_unit");
 
     auto describing = progress.part("describing pieces", 0.6);

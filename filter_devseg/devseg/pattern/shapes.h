@@ -1,5 +1,4 @@
-// What the shape of a piece says: its name's place, its size, its grain, and which pieces are
-// alike.
+// What the shape of a piece says: its name's place, its size and its grain.
 #pragma once
 
 #include <vector>
@@ -20,11 +19,6 @@ PieceBox least_box(const std::vector<Vec2>& points);
 /// Sets both sides' lengths and the grain line: along the long direction or upwards, through the
 /// label's place, and clear of the outlines.
 void set_sizes(PatternPiece& piece, GrainDirection grain);
-
-/// Finds pieces of the same shape, straight or mirrored: rigid motions are fitted to points spaced
-/// evenly along the outlines, and hold where no outline is farther than `tolerance_mm` (and a
-/// hundredth of the piece's size) from the other. Sets model, mirrored and the quantities.
-void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm);
 
 struct LabelPoint {
     Vec2 position = Vec2::Zero();

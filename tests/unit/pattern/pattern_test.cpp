@@ -347,9 +347,8 @@ TEST(Shapes, FacesAreCutWhereTheyAreLongerThanPieces) {
             pattern.mesh.face_normals[f].dot(cloth.mesh().face_normals[pattern.source_face[f]]),
             1.0, 1e-9);
     options.max_piece_mm = 0.5;
-    EXPECT_TRUE(
-        checks::contains(checks::error_of<InvalidParameter>([&] { cloth.pattern(options); }),
-                         "at most 1000 cuts"));
+    EXPECT_TRUE(checks::contains(
+        checks::error_of<InvalidParameter>([&] { cloth.pattern(options); }), "at most 1000 cuts"));
 }
 
 TEST(Shapes, NoLimitMakesMorePiecesThatAreNoShorter) {
@@ -377,7 +376,24 @@ TEST(Shapes, StackedPiecesGetPlacesOfTheirOwn) {
         EXPECT_LE(piece.box.max().y(), pattern.height + 1e-9);
     }
     ASSERT_FALSE(pattern.notes.empty());
-    EXPECT_TRUE(checks::contains(pattern.notes.front(), "2 of 3 pieces lay on others"));
+    EXPECT_TRUE(checks::contains(pattern.notes.front(), "2 of 3 pieces lie on others"));
+}
+
+// The right half is too low in the texture: where its side of the seam gets its length, it comes to
+// lie on the patch above it.
+TEST(Shapes, PiecesThatSidesOfEqualLengthPushOnOthersArePartedWithoutAWord) {
+    Cloth cloth;
+    cloth.add(shapes::grid(8, 8, 80.0, 80.0), [](const Vec3& p, const Vec3& middle) {
+        return middle.x() > 40.0 ? Vec2(60.0 + p.x() / 0.98, 0.98 * p.y()) : flat(p);
+    });
+    cloth.add(shapes::grid(2, 2, 10.0, 10.0), moved(Vec2(110.0, 78.5)));
+    const Pattern pattern = cloth.pattern();
+    ASSERT_EQ(pattern.pieces.size(), 3U);
+    EXPECT_TRUE(overlapping_pieces(pattern.pieces).empty());
+    // The layout has been drawn out; the patch has not gone above all others.
+    EXPECT_GT(pattern.height, 88.6);
+    EXPECT_LT(pattern.height, 92.0);
+    EXPECT_TRUE(pattern.notes.empty()) << pattern.notes.front();
 }
 
 // A square whose outline was moved by a linear map: mean value coordinates repeat it inside.

@@ -1,6 +1,7 @@
 // Names and numbers in the pieces.
 #include "sheet/marks.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -67,6 +68,7 @@ pattern::Pattern pattern_of(double width, double height) {
     piece.name = "P01";
     piece.outer.points = strip(width, height).cut[0];
     piece.label_position = Vec2(0.5 * width, 0.5 * height);
+    piece.label_radius = 0.5 * std::min(width, height);
     return pattern;
 }
 
