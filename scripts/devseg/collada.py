@@ -69,9 +69,11 @@ def runs(path: Path) -> list[Run]:
 def material_colors(path: Path) -> dict[str, tuple[float, float, float]]:
     """Red, green and blue of each material by its name, where it has one colour."""
     root = _root(path)
-    scene = _Scene(root) if root is not None else None
+    if root is None:
+        return {}
+    scene = _Scene(root)
     colors = {}
-    for material in scene.all("material") if scene else ():
+    for material in scene.all("material"):
         effect = scene.named.get(_reference(_first(material, "instance_effect")))
         color = _first(_first(effect, "diffuse"), "color")
         if color is not None and color.text:
@@ -103,10 +105,10 @@ class _Scene:
             if _kind(child) == "instance_geometry":
                 yield from self._of_geometry(parent, child)
         for child in parent:
-            if _kind(child) == "instance_node":
-                child = self.named.get(_reference(child))
-            if child is not None and _kind(child) == "node":
-                yield from self._below(child, depth + 1)
+            instance = _kind(child) == "instance_node"
+            node = self.named.get(_reference(child)) if instance else child
+            if node is not None and _kind(node) == "node":
+                yield from self._below(node, depth + 1)
 
     def _of_geometry(self, node: Element, instance: Element) -> Iterator[Run]:
         geometry = self.named.get(_reference(instance))
@@ -126,7 +128,8 @@ class _Scene:
 def _count(element: Element) -> int:
     """Triangles of an element, those left out that repeat a vertex."""
     if _kind(element) == "polylist":
-        sizes = (_first(element, "vcount").text or "").split()
+        counts = _first(element, "vcount")
+        sizes = (counts.text or "").split() if counts is not None else []
         return sum(max(int(size) - 2, 0) for size in sizes)
     a, b, c = _triangles(element)[:, :, _strides(element)[1]].T
     return int(((a != b) & (b != c) & (c != a)).sum())
@@ -184,7 +187,7 @@ def _kind(element: Element) -> str:
 
 
 def _name(element: Element) -> str:
-    return element.get("name") or element.get("id", "")
+    return element.get("name") or element.get("id") or ""
 
 
 def _reference(element: Element | None) -> str:

@@ -91,6 +91,9 @@ def sparse_parts(accessor: dict[str, Any]) -> tuple[dict[str, Any], dict[str, An
     return rows, {**sparse["values"], **kept, "count": sparse["count"]}
 
 
+_D = TypeVar("_D", bound="Document")
+
+
 class Document:
     """The JSON of a file, and its buffers as they are asked for."""
 
@@ -101,7 +104,7 @@ class Document:
         self.buffers: dict[int, bytes] = {}
 
     @classmethod
-    def of(cls, path: Path) -> Document:
+    def of(cls: type[_D], path: Path) -> _D:
         """The document in a file."""
         return cls(path.parent, *read(path.read_bytes()))
 

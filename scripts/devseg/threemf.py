@@ -67,7 +67,7 @@ def built(path: Path) -> list[Built]:
         return []
     materials = _material_names(model)
     objects = {_text(o, "id"): o for o in model.iter() if _kind(o) == "object"}
-    found = []
+    found: list[Built] = []
     for item in model.iter():
         one = objects.get(_text(item, "objectid")) if _kind(item) == "item" else None
         if one is not None:
