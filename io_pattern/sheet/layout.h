@@ -15,6 +15,9 @@ namespace devseg::sheet {
 constexpr double sheet_margin = 10.0; // mm, around pieces where no page says otherwise
 constexpr double sheet_gap = 2.0 * sheet_margin;
 
+// Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
+constexpr double piece_gap = 3.0; // mm
+
 struct NestingOptions {
     double width = 0.0;      // mm
     double height = 0.0;     // mm; 0 = one sheet that is as high as it needs to be

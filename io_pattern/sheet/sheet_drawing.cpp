@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "devseg/plane/plane.h"
-#include "sheet/segment_grid.h"
+#include "sheet/page_nesting.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -173,9 +173,8 @@ writers::DrawingPolyline segment(const Vec2& a, const Vec2& b) {
     return {{a, b}, false};
 }
 
-bool touches_window(const std::vector<Vec2>& ring, const writers::PageWindow& window) {
-    const Eigen::AlignedBox2d box(window.low, window.low + window.size);
-    const std::vector<Vec2> corners = rectangle(window.low, window.size).points;
+bool touches(const std::vector<Vec2>& ring, const Eigen::AlignedBox2d& box) {
+    const std::vector<Vec2> corners = rectangle(box.min(), box.sizes()).points;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Vec2& a = ring[i];
         const Vec2& b = ring[(i + 1) % ring.size()];
@@ -302,9 +301,11 @@ std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
                 const Vec2 low = Vec2::Constant(format.margin) +
                                  Vec2(column, sheet.rows - 1 - row).cwiseProduct(format.step());
                 page.window = {low, format.printable(), Vec2::Constant(format.margin), 1.0};
+                const Eigen::AlignedBox2d own =
+                    own_part(format, column, sheet.rows - 1 - row);
                 for (std::size_t p = 0; p < layout.pieces.size(); ++p)
                     if (layout.pieces[p].sheet == page.sheet &&
-                        touches_window(layout.pieces[p].cut.front(), page.window))
+                        touches(layout.pieces[p].cut.front(), own))
                         page.pieces.push_back(static_cast<Index>(p));
                 page.window.low += drawing.sheets[s].low;
                 if (!page.pieces.empty())
