@@ -103,6 +103,18 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
+declare::Declare<O> with_files(declare::Declare<O> filter) {
+    return filter
+        .choice(
+            &O::group, "group", "Groups of an SVG", {"Layer", "Piece"},
+            "Layer: a layer for each operation. Piece: a group for each piece, with its outline, "
+            "folds, marks and texts on layers inside it, so that they move together.")
+        .boolean(&O::frame, "frame", "Frame",
+                 "SVG and DXF for cutters: a frame around the drawing, or around each page.")
+        .boolean(&O::scale_check, "scale_check", "Scale check",
+                 "SVG and DXF for cutters: squares to check the scale with, one on each page.");
+}
+
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
     PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
@@ -125,12 +137,12 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
 
 const declare::FilterDeclaration& export_filter() {
     static const declare::FilterDeclaration filter =
-        with_paper(with_seams(with_scale(
+        with_files(with_paper(with_seams(with_scale(
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
                                  "File to write; its extension says the format: .svg, .pdf or "
-                                 ".dxf."))))
+                                 ".dxf.")))))
             .needs_uv()
             .shows_outside()
             .result("pieces_number", "pieces in the file")

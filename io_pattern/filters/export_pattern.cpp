@@ -68,7 +68,10 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
                                 const sheet::ExportOptions& options, const Progress& progress) {
     writers::Document document;
     document.title = title_of(options.output_file);
-    document.drawing = sheet::draw_sheets(layout, options);
+    // Pages of a PDF have marks of their own.
+    sheet::ExportOptions drawn = options;
+    drawn.frame = drawn.scale_check = !layout.page;
+    document.drawing = sheet::draw_sheets(layout, drawn);
     const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)

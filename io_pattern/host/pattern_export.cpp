@@ -15,9 +15,9 @@ namespace {
 
 // Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
 // and does not scroll, and a screen has no room for all.
-constexpr std::array<const char*, 8> left_to_the_filter = {
-    "max_piece_mm", "curve_mm",     "simplify_mm", "corner_style",
-    "match_seams",  "tab_depth_mm", "dxf_kind",    "weld",
+constexpr std::array<const char*, 11> left_to_the_filter = {
+    "max_piece_mm", "curve_mm", "simplify_mm", "corner_style", "match_seams", "tab_depth_mm",
+    "dxf_kind",     "weld",     "group",       "frame",        "scale_check",
 };
 
 // The file's name is asked for by the host itself.

@@ -13,6 +13,8 @@ namespace devseg::sheet {
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
+/// What makes a group in an SVG: all of one operation, or all of one piece.
+enum class Grouping { layer, piece };
 
 struct ExportOptions : pattern::PatternOptions {
     ExportOptions() { notch_spacing_mm = 0.0; }
@@ -33,6 +35,9 @@ struct ExportOptions : pattern::PatternOptions {
     bool tiling = true; // pieces larger than a page go on several
     bool cover = true;  // PDF: picture of the model, list of the pieces, overview
     DxfKind dxf_kind = DxfKind::automatic;
+    Grouping group = Grouping::layer;
+    bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
+    bool scale_check = true; // the same: squares to check the scale with
 
     AllowanceWidths allowance() const {
         return {seam_allowance_mm, hem_allowance_mm < 0.0 ? seam_allowance_mm : hem_allowance_mm};

@@ -121,6 +121,27 @@ void mirror_sheets(PatternLayout& layout) {
         piece.mirror(0.5 * layout.sheets[piece.sheet].size.x());
 }
 
+// For each sheet, where its pages end within it: paper is cut and glued there.
+std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& layout) {
+    std::vector<std::vector<std::array<Vec2, 2>>> borders(layout.sheets.size());
+    for (std::size_t s = 0; s < borders.size(); ++s) {
+        const PatternSheet& sheet = layout.sheets[s];
+        const auto add = [&](Index pages, int axis) {
+            for (Index k = 1; k < pages; ++k)
+                for (const double strip : {0.0, tile_overlap}) {
+                    Vec2 from = Vec2::Zero();
+                    from[axis] = layout.page->margin + k * layout.page->step()[axis] + strip;
+                    Vec2 to = from;
+                    to[1 - axis] = sheet.size[1 - axis];
+                    borders[s].push_back({from, to});
+                }
+        };
+        add(sheet.columns, 0);
+        add(sheet.rows, 1);
+    }
+    return borders;
+}
+
 // All pieces in their places, without texts.
 PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions& options,
                            Progress& progress) {
@@ -140,8 +161,8 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     }
     auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
-        const PageNesting nesting = nest_on_pages(layout.pieces, *layout.page, options.grain_line,
-                                                  options.tiling, laying);
+        const PageNesting nesting =
+            nest_on_pages(layout.pieces, *layout.page, options.grain_line, options.tiling, laying);
         layout.sheets = nesting.sheets;
         for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
             layout.pieces[i].move(nesting.placements[i]);
@@ -209,7 +230,7 @@ PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptio
     PatternLayout layout = place_pieces(pattern, options, progress);
     if (options.mirror)
         mirror_sheets(layout);
-    layout.left_out = add_texts(pattern, options, layout.pieces);
+    layout.left_out = add_texts(pattern, options, layout.pieces, page_borders(layout));
     return layout;
 }
 

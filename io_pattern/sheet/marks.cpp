@@ -344,13 +344,17 @@ void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
 }
 
 LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
-                  std::vector<SheetPiece>& pieces) {
+                  std::vector<SheetPiece>& pieces,
+                  const std::vector<std::vector<std::array<Vec2, 2>>>& borders) {
     LeftOut left_out;
     std::vector<std::vector<WrittenNumber>> written(pattern.seams.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
         const pattern::PatternPiece& source = pattern.pieces[piece.piece];
         Room room(piece);
+        if (!borders.empty())
+            for (const auto& [from, to] : borders[at(piece.sheet)])
+                room.take({from, to});
         if (options.labels && !add_name(source, pattern, piece, room))
             left_out.pieces.push_back(piece.piece);
         for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)

@@ -2,6 +2,7 @@
 // of its seams.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,9 @@ struct LeftOut {
 /// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
 /// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
 /// number on both sides or on none.
+/// `borders`: for each sheet, lines that no text may cross; or nothing.
 LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
-                  std::vector<SheetPiece>& pieces);
+                  std::vector<SheetPiece>& pieces,
+                  const std::vector<std::vector<std::array<Vec2, 2>>>& borders = {});
 
 } // namespace devseg::sheet

@@ -13,6 +13,7 @@ PATTERN_FORMATS = ("svg", "pdf", "dxf")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
+GROUPS = {"layer": "Layer", "piece": "Piece"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -67,6 +68,9 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--tab-depth-mm", type=millimetres(0.5), metavar="D", help="of glue tabs; default: 5"
     )
+    group.add_argument(
+        "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
+    )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     _add_switches(group)
 
@@ -85,6 +89,16 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--no-labels", action="store_false", dest="labels", default=None, help="no piece names"
+    )
+    group.add_argument(
+        "--no-frame", action="store_false", dest="frame", default=None, help="SVG, DXF: no frame"
+    )
+    group.add_argument(
+        "--no-scale-check",
+        action="store_false",
+        dest="scale_check",
+        default=None,
+        help="SVG, DXF: no squares to check the scale with",
     )
     group.add_argument(
         "--no-cover", action="store_false", dest="cover", default=None, help="PDF: patterns only"
@@ -110,19 +124,26 @@ _PARAMETERS = (
     "tiling",
     "cover",
     "labels",
+    "frame",
+    "scale_check",
 )
 
 # The option that sets a parameter of the export filter.
 OPTION_OF = {
-    **{name: f"--{name.replace('_', '-')}" for name in (*_PARAMETERS, "preset", "corner_style")},
+    **{
+        name: f"--{name.replace('_', '-')}"
+        for name in (*_PARAMETERS, "preset", "corner_style", "group")
+    },
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
     "labels": "--no-labels",
     "cover": "--no-cover",
+    "frame": "--no-frame",
+    "scale_check": "--no-scale-check",
     "dxf_kind": "--dxf",
 }
 
-_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS}
+_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS, "group": GROUPS}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
