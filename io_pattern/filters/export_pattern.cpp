@@ -75,7 +75,7 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
     const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)
-        document.pages = sheet::cover_pages(pattern, layout, printed, document.title);
+        document.pages = sheet::cover_pages(pattern, layout, printed, options, document.title);
     progress.check();
     if (options.cover && layout.page && printed.size() > 1)
         document.pages.push_back(
@@ -84,6 +84,13 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
          sheet::page_sheets(layout, document.drawing, printed, document.title))
         document.pages.push_back(std::move(page));
     return document;
+}
+
+// Pages with pieces on them.
+Index printed_count(const sheet::PatternLayout& layout) {
+    writers::Drawing places;
+    places.sheets.resize(layout.sheets.size());
+    return static_cast<Index>(sheet::printed_pages(layout, places).size());
 }
 
 } // namespace
@@ -119,6 +126,9 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
     file.untabbed_seams = layout.seams_without_tab;
     file.sheets = static_cast<Index>(layout.sheets.size());
+    file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
+    file.assembly = layout.assembly;
+    file.seam_list = pattern.seams;
     file.notes = pattern.notes;
     for (std::string& note : sheet::layout_notes(pattern, layout))
         file.notes.push_back(std::move(note));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "devseg/declare/segmentation_output.h"
+#include "sheet/needs.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -400,11 +401,36 @@ void add_table(const std::vector<Row>& rows, Book& book) {
     }
 }
 
+void add_paragraph(const std::string& text, double indent, Book& book) {
+    for (const std::string& line : wrapped(text, book.width() - indent)) {
+        book.advance(cover_pitch);
+        book.write(indent, cover_text, line);
+    }
+}
+
+// What is needed, and the steps.
+void add_guide(const pattern::Pattern& pattern, const PatternLayout& layout,
+               const std::vector<PrintedPage>& pages, const ExportOptions& options, Book& book) {
+    book.advance(0.5 * cover_pitch);
+    add_paragraph("What you need", 0.0, book);
+    const Needs needs = find_needs(pattern, layout, options, static_cast<Index>(pages.size()));
+    for (const auto& [name, value] : needs_texts(needs, options))
+        add_paragraph(name + ": " + value, 2.0 * cover_text, book);
+    book.advance(0.5 * cover_pitch);
+    add_paragraph("Steps", 0.0, book);
+    for (const std::string& text : opening_texts(pattern, layout))
+        add_paragraph(text, 2.0 * cover_text, book);
+    for (std::size_t k = 0; k < layout.assembly.steps.size(); ++k)
+        add_paragraph(std::to_string(k + 1) + ". " + step_text(pattern, layout, options, k),
+                      2.0 * cover_text, book);
+}
+
 } // namespace
 
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
+                                               const ExportOptions& options,
                                                const std::string& title) {
     Book book(layout.page ? layout.page->size : a4,
               layout.page ? std::max(layout.page->margin, 0.5 * sheet_margin) : sheet_margin);
@@ -418,12 +444,10 @@ std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                    " mm. Print at 100 %, without scaling.");
     add_pictures(pattern.mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
+    add_guide(pattern, layout, pages, options, book);
     for (const std::string& text : note_texts(pattern, layout)) {
         book.advance(0.5 * cover_pitch);
-        for (const std::string& line : wrapped(text, book.width())) {
-            book.advance(cover_pitch);
-            book.write(0.0, cover_text, line);
-        }
+        add_paragraph(text, 0.0, book);
     }
     return book.take();
 }

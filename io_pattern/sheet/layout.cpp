@@ -146,6 +146,7 @@ std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& 
 PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions& options,
                            Progress& progress) {
     PatternLayout layout;
+    layout.assembly = assembly::plan_assembly(pattern, options.craft(), progress);
     layout.page = page_format(options);
     GlueTabs tabs;
     tabs.tabs.resize(pattern.pieces.size());
@@ -158,6 +159,8 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
+        if (options.marks_openings())
+            add_openings(pattern, layout.assembly, layout.pieces.back());
     }
     auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
@@ -230,7 +233,8 @@ PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptio
     PatternLayout layout = place_pieces(pattern, options, progress);
     if (options.mirror)
         mirror_sheets(layout);
-    layout.left_out = add_texts(pattern, options, layout.pieces, page_borders(layout));
+    layout.left_out =
+        add_texts(pattern, layout.assembly, options, layout.pieces, page_borders(layout));
     return layout;
 }
 

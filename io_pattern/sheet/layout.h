@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "devseg/assembly/assembly.h"
 #include "devseg/base/progress.h"
 #include "devseg/pack/pack.h"
 #include "sheet/export_options.h"
@@ -47,7 +48,8 @@ struct PatternSheet {
 struct PatternLayout {
     std::vector<SheetPiece> pieces; // in the order of the pattern, on their sheets
     std::vector<PatternSheet> sheets;
-    LeftOut left_out; // texts for which there was no room
+    assembly::Assembly assembly; // the order in which the pieces are put together
+    LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
     Index seams_without_tab = 0; // for lack of room, where tabs were asked for
 };

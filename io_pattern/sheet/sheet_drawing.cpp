@@ -188,6 +188,7 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         add_lines(piece.valleys, false, piece, "-valley", valley);
         add_lines(piece.grain, false, piece, "-grain", grain);
         add_notches(piece, notch);
+        add_lines(piece.openings, false, piece, "-opening", notch);
         add_lines(piece.leaders, false, piece, "-leader", laser ? engrave : numbers);
         for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
                                            std::pair(&piece.numbers, laser ? &engrave : &numbers)})

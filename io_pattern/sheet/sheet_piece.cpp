@@ -217,7 +217,7 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
     for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
-                        &piece.grain, &piece.leaders})
+                        &piece.grain, &piece.leaders, &piece.openings})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);

@@ -40,7 +40,8 @@ struct SheetPiece {
     std::vector<std::vector<Vec2>> mountains; // open lines
     std::vector<std::vector<Vec2>> valleys;
     std::vector<SheetNotch> notches;
-    std::vector<std::vector<Vec2>> grain; // the arrow's lines
+    std::vector<std::vector<Vec2>> openings; // brackets along what stays open
+    std::vector<std::vector<Vec2>> grain;    // the arrow's lines
     std::vector<writers::DrawingText> names;
     std::vector<writers::DrawingText> numbers; // of seams
     std::vector<std::vector<Vec2>> leaders;    // lines from seams to numbers that lie apart

@@ -71,6 +71,12 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
     )
+    group.add_argument(
+        "--sewing-mm-per-minute", type=length(), metavar="R", help="sewing rate; default: 100"
+    )
+    group.add_argument(
+        "--stuffing-g-per-litre", type=length(), metavar="D", help="density; default: 30"
+    )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     _add_switches(group)
 
@@ -80,6 +86,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("glue-tabs", "flaps to glue the pieces with"),
         ("fold-lines", "mountain and valley folds"),
         ("edge-numbers", "the number of each seam on both sides"),
+        ("step-numbers", "the step of the assembly behind each seam number"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
     ):
@@ -125,6 +132,9 @@ _PARAMETERS = (
     "cover",
     "labels",
     "frame",
+    "step_numbers",
+    "sewing_mm_per_minute",
+    "stuffing_g_per_litre",
     "scale_check",
 )
 
