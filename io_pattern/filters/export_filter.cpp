@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* help =
     "Writes the pattern of any model with texture coordinates, true to scale: SVG and DXF for "
-    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673).<br>"
+    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673), and an HTML "
+    "page with the model, its pieces and the steps of the assembly.<br>"
     "A <b>preset</b> switches on what sewing, papercraft or a laser needs.";
 
 using O = sheet::ExportOptions;
@@ -184,8 +185,8 @@ const declare::FilterDeclaration& export_filter() {
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
-                                 "File to write; its extension says the format: .svg, .pdf or "
-                                 ".dxf."))))))
+                                 "File to write; its extension says the format: .svg, .pdf, "
+                                 ".dxf or .html."))))))
             .needs_uv()
             .shows_outside()
             .result("pieces_number", "pieces in the file")

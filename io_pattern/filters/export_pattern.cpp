@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "devseg/base/errors.h"
+#include "page/page.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
 #include "sheet/sheet_drawing.h"
@@ -16,7 +17,7 @@ namespace devseg::exporting {
 
 namespace {
 
-enum class Format { svg, pdf, dxf };
+enum class Format { svg, pdf, dxf, html };
 
 std::size_t name_start(const std::string& path) {
     const std::size_t slash = path.find_last_of("/\\");
@@ -37,7 +38,10 @@ Format format_of(const std::string& path) {
         return Format::pdf;
     if (extension == ".dxf")
         return Format::dxf;
-    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf or .dxf, found '" +
+    if (extension == ".html")
+        return Format::html;
+    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf, .dxf or .html, "
+                           "found '" +
                            path + "'");
 }
 
@@ -114,6 +118,9 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     } else if (format == Format::dxf && is_apparel(options)) {
         file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options,
                                               {title_of(options.output_file), today()});
+    } else if (format == Format::html) {
+        file.bytes =
+            page::page_bytes(pattern, layout, options, title_of(options.output_file), writing);
     } else {
         const writers::Drawing drawing = sheet::draw_sheets(layout, options);
         file.bytes =

@@ -110,14 +110,6 @@ DepthBuffer project(const Mesh& mesh, const Eigen::Matrix3d& rotation, int side)
     return buffer;
 }
 
-std::vector<declare::Color> piece_colors(const Mesh& mesh, const pattern::Pattern& pattern) {
-    atlas::ChartMap charts;
-    charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
-    for (const Index piece : pattern.face_piece)
-        charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
-    return declare::chart_colors(mesh, charts);
-}
-
 // For each piece the pixel that is farthest from others, in city blocks.
 std::vector<PieceLabel> find_labels(const std::vector<Index>& piece_of_pixel, int side,
                                     std::size_t pieces) {
@@ -157,7 +149,7 @@ ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double a
     const int side = pixels * picture_samples;
     const Eigen::Matrix3d rotation = view_rotation(azimuth);
     const DepthBuffer buffer = project(mesh, rotation, side);
-    const std::vector<declare::Color> colors = piece_colors(mesh, pattern);
+    const std::vector<declare::Color> colors = piece_colors(pattern);
     const auto piece_at = [&](int x, int y) {
         const Index f = buffer.face(x, y);
         return f < 0 ? Index{-2} : pattern.face_piece[f];
@@ -426,6 +418,14 @@ void add_guide(const pattern::Pattern& pattern, const PatternLayout& layout,
 }
 
 } // namespace
+
+std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern) {
+    atlas::ChartMap charts;
+    charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
+    for (const Index piece : pattern.face_piece)
+        charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
+    return declare::chart_colors(pattern.mesh, charts);
+}
 
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,

@@ -66,8 +66,12 @@ struct Drawing {
     std::vector<DrawingLayer> layers; // those without paths and texts are not written
     std::vector<DrawingSheet> sheets; // none: the whole drawing is one
     std::vector<DrawingSheet> pages;  // of the sheets; those of one sheet share strips
-    bool by_piece = false;            // what belongs to one piece makes one group, if a format
-                                      // knows groups
+    /// 0 where the whole drawing is one sheet.
+    Vec2 sheet_low(Index sheet) const {
+        return sheets.empty() ? Vec2(Vec2::Zero()) : sheets[at(sheet)].low;
+    }
+    bool by_piece = false; // what belongs to one piece makes one group, if a format
+                           // knows groups
 };
 
 /// Pixels from the upper left corner, row by row, red, green and blue each.

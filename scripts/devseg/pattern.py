@@ -9,7 +9,7 @@ from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
 # Formats that the export filter writes.
-PATTERN_FORMATS = ("svg", "pdf", "dxf")
+PATTERN_FORMATS = ("svg", "pdf", "dxf", "html")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
