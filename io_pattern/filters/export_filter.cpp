@@ -110,6 +110,8 @@ declare::Declare<O> with_files(declare::Declare<O> filter) {
             &O::group, "group", "Groups of an SVG", {"Layer", "Piece"},
             "Layer: a layer for each operation. Piece: a group for each piece, with its outline, "
             "folds, marks and texts on layers inside it, so that they move together.")
+        .choice(&O::text, "text", "Texts of an SVG", {"Text", "Paths"},
+                "Paths: the outlines of the letters, for programs that drop texts.")
         .boolean(&O::frame, "frame", "Frame",
                  "SVG and DXF for cutters: a frame around the drawing, or around each page.")
         .boolean(&O::scale_check, "scale_check", "Scale check",

@@ -10,6 +10,7 @@
 #include "sheet/cover.h"
 #include "sheet/sheet_drawing.h"
 #include "writers/dxf_writer.h"
+#include "writers/font.h"
 #include "writers/pdf_writer.h"
 #include "writers/svg_writer.h"
 
@@ -122,7 +123,9 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         file.bytes =
             page::page_bytes(pattern, layout, options, title_of(options.output_file), writing);
     } else {
-        const writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        if (format == Format::svg && options.text == sheet::TextKind::paths)
+            drawing = writers::with_outlined_texts(std::move(drawing));
         file.bytes =
             format == Format::svg ? writers::svg_bytes(drawing) : writers::dxf_bytes(drawing);
     }
@@ -137,6 +140,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.assembly = layout.assembly;
     file.seam_list = pattern.seams;
     file.notes = pattern.notes;
+    const int missing = writers::missing_glyphs(title_of(options.output_file));
+    if (missing > 0 && format == Format::pdf)
+        file.notes.push_back(std::to_string(missing) +
+                             " characters of the file's name are in no font that PDF files get: "
+                             "they are drawn as boxes");
     for (std::string& note : sheet::layout_notes(pattern, layout))
         file.notes.push_back(std::move(note));
     return file;

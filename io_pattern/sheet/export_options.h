@@ -16,6 +16,8 @@ enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
 /// What makes a group in an SVG: all of one operation, or all of one piece.
 enum class Grouping { layer, piece };
+/// Texts of an SVG: as text, or as outlines of its letters.
+enum class TextKind { text, paths };
 
 struct ExportOptions : pattern::PatternOptions {
     ExportOptions() { notch_spacing_mm = 0.0; }
@@ -38,6 +40,7 @@ struct ExportOptions : pattern::PatternOptions {
     bool cover = true;  // PDF: picture of the model, list of the pieces, overview
     DxfKind dxf_kind = DxfKind::automatic;
     Grouping group = Grouping::layer;
+    TextKind text = TextKind::text;
     bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
     bool scale_check = true; // the same: squares to check the scale with
 

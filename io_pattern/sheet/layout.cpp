@@ -126,11 +126,12 @@ std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& 
     std::vector<std::vector<std::array<Vec2, 2>>> borders(layout.sheets.size());
     for (std::size_t s = 0; s < borders.size(); ++s) {
         const PatternSheet& sheet = layout.sheets[s];
+        const double margin = layout.page ? layout.page->margin : 0.0;
         const auto add = [&](Index pages, int axis) {
             for (Index k = 1; k < pages; ++k)
-                for (const double strip : {0.0, tile_overlap}) {
+                for (const double strip : {-margin, 0.0, tile_overlap, tile_overlap + margin}) {
                     Vec2 from = Vec2::Zero();
-                    from[axis] = layout.page->margin + k * layout.page->step()[axis] + strip;
+                    from[axis] = margin + k * layout.page->step()[axis] + strip;
                     Vec2 to = from;
                     to[1 - axis] = sheet.size[1 - axis];
                     borders[s].push_back({from, to});

@@ -13,6 +13,7 @@ PATTERN_FORMATS = ("svg", "pdf", "dxf", "html")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
+TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
@@ -70,6 +71,9 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
+    )
+    group.add_argument(
+        "--text", choices=TEXTS, help="texts of an SVG, as outlines or not; default: text"
     )
     group.add_argument(
         "--sewing-mm-per-minute", type=length(), metavar="R", help="sewing rate; default: 100"
@@ -142,7 +146,7 @@ _PARAMETERS = (
 OPTION_OF = {
     **{
         name: f"--{name.replace('_', '-')}"
-        for name in (*_PARAMETERS, "preset", "corner_style", "group")
+        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text")
     },
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
@@ -153,7 +157,13 @@ OPTION_OF = {
     "dxf_kind": "--dxf",
 }
 
-_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS, "group": GROUPS}
+_CHOICES = {
+    "preset": PRESETS,
+    "dxf_kind": DXF_KINDS,
+    "corner_style": CORNERS,
+    "group": GROUPS,
+    "text": TEXTS,
+}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import time
@@ -125,7 +126,16 @@ def test_order_of_toys(name: str, pymeshlab: Any, data: Path, tmp_path: Path) ->
     order = guide.assembly(results)
     check_order(results, order, is_closed=True)
     assert len(order["openings"]) == 1
-    assert results["pages_number"] <= 6
+    printable = (210 - 2 * 10) * (297 - 2 * 10)
+    assert results["pages_number"] <= math.ceil(results["material_mm2"] / (0.55 * printable))
+
+
+def test_a_teddy_takes_six_pages(data: Path, tmp_path: Path) -> None:
+    teddy = str(data / "public" / "teddy_27648.ply")
+    options = ["--preset", "sewing", "--page", "a4", "--height-mm", "300", "--no-picture"]
+    assert main(["run", teddy, "-o", str(tmp_path), "--formats", "svg", *options]) == 0
+    result = json.loads((tmp_path / "teddy_27648.json").read_text(encoding="utf-8"))
+    assert 0 < result["needs"]["paper_sheets_number"] <= 6
 
 
 # ---------------------------------------------------------------- the page
@@ -273,7 +283,7 @@ def test_a_seam_shows_both_sides(opened: Any) -> None:
     button = opened.find_elements("css selector", "#seam-list button")[0]
     button.click()
     assert len(opened.find_elements("css selector", "#paper .side-lit")) == 2
-    assert opened.execute_script("return model.seams[0].every(line => line.visible)")
+    wait_for(lambda: opened.execute_script("return model.seams[0].every(line => line.visible)"))
     about = opened.find_element("id", "about").text
     assert "Seam 1" in about and "mm" in about and "allowance 7 mm" in about
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -221,3 +222,15 @@ def test_a_piece_is_one_group(export: Callable) -> None:
     for kind, elements in count.items():
         inside = [g for key, g in grouped.items() if key.endswith(f"-{kind}-layer")]
         assert sum(sum(1 for _ in group.iter()) - 1 for group in inside) == elements - 1
+
+
+def test_texts_can_be_outlines(export: Callable) -> None:
+    options = {"preset": "Sewing", "mm_per_unit": 30.0, "scale_check": False}
+    written = export(**options).read_text("utf-8")
+    drawn = export(**options, text="Paths")
+    assert "<text" in written and "<text" not in drawn.read_text("utf-8")
+    found = layers(drawn)
+    names = len(re.findall(r">P\d+<", written))
+    assert names > 1 and len(found["text"]) >= names
+    for path in found["text"]:
+        assert path.get("d").startswith("M ") and path.get("d").endswith("Z")
