@@ -9,7 +9,6 @@
 #include <QJsonObject>
 
 #include "devseg/pattern/inside.h"
-#include "sheet/cover.h"
 
 namespace devseg::page {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "devseg/declare/segmentation_output.h"
 #include "sheet/needs.h"
 #include "writers/text.h"
 
@@ -418,14 +417,6 @@ void add_guide(const pattern::Pattern& pattern, const PatternLayout& layout,
 }
 
 } // namespace
-
-std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern) {
-    atlas::ChartMap charts;
-    charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
-    for (const Index piece : pattern.face_piece)
-        charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
-    return declare::chart_colors(pattern.mesh, charts);
-}
 
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,

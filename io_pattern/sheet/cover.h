@@ -5,16 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "devseg/declare/filter.h"
 #include "devseg/mesh/mesh.h"
 #include "devseg/pattern/pattern.h"
 #include "sheet/sheet_drawing.h"
 #include "writers/drawing.h"
 
 namespace devseg::sheet {
-
-/// A colour for each piece, and a last one for faces in no piece.
-std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern);
 
 /// One page, and more where the list of pieces is long. Pages of the pattern's own size, or A4.
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,

@@ -297,13 +297,6 @@ private:
 
 const char* const opening_text = "leave open";
 
-// From here to there on one side, mm from the seam's start.
-std::pair<double, double> stretch_on(const pattern::Seam& seam, std::size_t side,
-                                     const assembly::Opening& opening) {
-    const double ratio = seam.sides[side].length / seam.sides[0].length;
-    return {ratio * opening.from, ratio * opening.to};
-}
-
 void write_openings(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
                     SheetPiece& piece, Room& room) {
     for (const assembly::Opening& opening : assembly.openings) {
@@ -314,7 +307,7 @@ void write_openings(const pattern::Pattern& pattern, const assembly::Assembly& a
                 continue;
             NumberWriter text(pattern.pieces[at(side.piece)].path(side.path), side, opening_text,
                               piece, room);
-            const auto [from, to] = stretch_on(seam, k, opening);
+            const auto [from, to] = opening_stretch(seam, k, opening);
             text.keep_to(from, to);
             if (!text.find())
                 continue; // the marks are there, and the cover says what they mean
@@ -388,33 +381,6 @@ void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
         {from, to},
         {barb(to, direction, arrow_angle), to, barb(to, direction, -arrow_angle)},
         {barb(from, -direction, arrow_angle), from, barb(from, -direction, -arrow_angle)}};
-}
-
-void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
-                  SheetPiece& result) {
-    constexpr int parts = 8; // of the line along a stretch
-    for (const assembly::Opening& opening : assembly.openings) {
-        const pattern::Seam& seam = pattern.seams[at(opening.seam)];
-        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
-            const pattern::SeamSide& side = seam.sides[k];
-            if (side.piece != result.piece)
-                continue;
-            const auto [from, to] = stretch_on(seam, k, opening);
-            const pattern::PiecePath& path = pattern.pieces[at(side.piece)].path(side.path);
-            std::vector<Vec2> bracket;
-            for (int i = 0; i <= parts; ++i) {
-                const OutlinePlace place = place_on(path, side, from + (to - from) * i / parts);
-                const Vec2 inward(-place.direction.y(), place.direction.x());
-                const Vec2 inside = place.position + 0.5 * mark_length * inward;
-                if (i == 0)
-                    bracket.push_back(place.position);
-                bracket.push_back(inside);
-                if (i == parts)
-                    bracket.push_back(place.position);
-            }
-            result.openings.push_back(std::move(bracket));
-        }
-    }
 }
 
 LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "devseg/assembly/assembly.h"
@@ -23,6 +24,10 @@ OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& s
 
 /// Adds the notches of the piece, where the pattern has it; the cut and sew lines must be there.
 void add_notches(const pattern::Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
+
+/// From where to where an opening is on one side of its seam, mm from the seam's start.
+std::pair<double, double> opening_stretch(const pattern::Seam& seam, std::size_t side,
+                                          const assembly::Opening& opening);
 
 /// Adds brackets along the stretches of the piece's seams that stay open until the last step.
 void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& assembly,

@@ -9,8 +9,8 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
-#include "devseg/pack/first_fit.h"
 #include "devseg/plane/plane.h"
+#include "sheet/page_sheet.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -19,7 +19,6 @@ namespace {
 
 struct Tuning {
     double cells = 200.0;             // along the shorter side of a page: about 1 mm of an A4 page
-    double clear = 0.5;               // mm between cut lines and the border of the printable area
     int turns = 8;                    // of a piece on one page, all around
     int large_turns = 24;             // of a piece on several pages, of which
     int large_tries = 4;              // so many are tried at a time
@@ -31,22 +30,6 @@ struct Tuning {
     double full = 0.9;  // share of the paper that no nesting covers
 };
 constexpr Tuning tuning;
-
-// All that is the same for every order of the pieces.
-struct Problem {
-    PageFormat page;
-    double cell = 1.0; // mm
-    Index columns = 0; // cells that a piece with its margin may take on one page
-    Index rows = 0;
-    std::vector<std::vector<pack::FitImage>> poses;
-    std::vector<std::uint8_t> is_large;
-    std::vector<double> area; // mm², of the cut line
-    Index longest_run = 1;
-
-    Index cells_down(double mm) const { return static_cast<Index>(std::floor(mm / cell + 1e-9)); }
-    Index cells_up(double mm) const { return static_cast<Index>(std::ceil(mm / cell - 1e-9)); }
-    double page_area() const { return page.printable().prod(); }
-};
 
 double outline_area(const SheetPiece& piece) {
     return std::abs(plane::signed_area(piece.cut.front()));
@@ -72,7 +55,7 @@ std::vector<double> angles_of(const SheetPiece& piece, const pack::Outline& outl
 }
 
 // The images of a piece on one page; of one that fits on none, all images.
-void draw_poses(const SheetPiece& piece, bool keep_grain, Problem& problem, std::size_t i) {
+void draw_poses(const SheetPiece& piece, bool keep_grain, PageProblem& problem, std::size_t i) {
     const pack::Outline outline = pack::outline_of(piece.cut);
     const Vec2 room = problem.page.printable() + Vec2::Constant(problem.cell);
     for (const bool large : {false, true}) {
@@ -114,12 +97,12 @@ void check_scale(const std::vector<SheetPiece>& pieces, const PageFormat& page) 
                                " m; give a smaller mm_per_unit or height_mm, or a larger page");
 }
 
-Problem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat& page, bool keep_grain,
-                     Progress& progress) {
-    Problem problem;
+PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat& page,
+                         bool keep_grain, Progress& progress) {
+    PageProblem problem;
     problem.page = page;
     problem.cell = page.printable().minCoeff() / tuning.cells;
-    const Vec2 room = page.printable() + Vec2::Constant(piece_gap - 2.0 * tuning.clear);
+    const Vec2 room = page.printable() + Vec2::Constant(piece_gap - 2.0 * border_clearance);
     problem.columns = problem.cells_down(room.x());
     problem.rows = problem.cells_down(room.y());
     problem.poses.resize(pieces.size());
@@ -143,236 +126,32 @@ struct Plan {
     std::vector<std::uint32_t> choice; // of each piece
 };
 
-// One sheet that is being filled: pages in columns, and in as many rows as pieces need.
-class Sheet {
-public:
-    Sheet(const Problem& problem, Index columns, std::int64_t& work)
-        : problem_(&problem), work_(&work), columns_(columns),
-          cells_(problem.columns + problem.cells_down((columns - 1) * problem.page.step().x()),
-                 problem.longest_run) {}
-
-    Index rows() const { return static_cast<Index>(covered_.size()) / columns_; }
-    Index page_count() const {
-        return static_cast<Index>(covered_.size()) -
-               static_cast<Index>(std::count(covered_.begin(), covered_.end(), 0));
-    }
-    double area() const { return area_; }
-    /// Cells that are covered on the page with the fewest, of those in use.
-    Index fewest_cells() const {
-        Index least = std::numeric_limits<Index>::max();
-        for (const Index cells : covered_)
-            least = cells > 0 ? std::min(least, cells) : least;
-        return least;
-    }
-
-    /// The best place for a piece in one of its poses on one page that is in use.
-    bool put_on_page(const std::vector<pack::FitImage>& poses, pack::Spot& spot) {
-        for (Index page = 0; page < static_cast<Index>(covered_.size()); ++page) {
-            if (!is_used(page))
-                continue;
-            pack::FitWindow window = inner_window(page % columns_, page / columns_);
-            bool found = false;
-            for (std::size_t pose = 0; pose < poses.size(); ++pose) {
-                pack::Spot here;
-                if (!find(poses[pose], window, here))
-                    continue;
-                found = true;
-                spot = {pose, here.x, here.y};
-                window.top = here.y + poses[pose].cells.height - 1;
-            }
-            if (found)
-                return true;
-        }
-        return false;
-    }
-
-    struct LargePlace {
-        pack::Spot spot;
-        Index new_pages = 0;
-        Index top = 0;
-        bool found = false;
-
-        bool is_better_than(const LargePlace& other) const {
-            return found && (!other.found ||
-                             std::pair(new_pages, top) < std::pair(other.new_pages, other.top));
-        }
-    };
-
-    /// The place of a piece in one of some poses, on one page or several, that takes the fewest new
-    /// pages. `random`: where in its pages the piece lies; none: at the lower left.
-    LargePlace place_of(const std::vector<pack::FitImage>& poses,
-                        const std::vector<std::size_t>& chosen, std::minstd_rand* random) {
-        LargePlace best;
-        for (const std::size_t pose : chosen) {
-            const pack::ChartCells& image = poses[pose].cells;
-            const Index across = pages_for(image.width, problem_->columns, step(0));
-            const Index up = pages_for(image.height, problem_->rows, step(1));
-            for (Index row = 0; row <= rows(); ++row)
-                for (Index column = 0; column + across <= columns_; ++column) {
-                    pack::FitWindow window = block(column, row, across, up);
-                    if (random != nullptr) {
-                        window.left += part((*random)(), window.right - window.left - image.width);
-                        window.from += part((*random)(), window.top - window.from - image.height);
-                    }
-                    look(poses, pose, window, best);
-                }
-            if (across <= columns_) // anywhere, across more pages than it is large
-                look(poses, pose, block(0, 0, columns_, rows() + up), best);
-        }
-        return best;
-    }
-
-    void take(const pack::FitImage& image, const pack::Spot& spot, double area) {
-        cells_.take(image, spot);
-        area_ += area;
-        for (const auto& [page, cells] : pages_under(image.cells, spot)) {
-            if (page >= static_cast<Index>(covered_.size()))
-                covered_.resize(at((page / columns_ + 1) * columns_), 0);
-            covered_[at(page)] += cells;
-        }
-    }
-
-    /// Pages that a piece of so many cells needs in one direction.
-    static Index pages_for(Index cells, Index first, double step_cells) {
-        return cells <= first
-                   ? 1
-                   : 1 + static_cast<Index>(std::ceil((cells - first) / step_cells - 1e-9));
-    }
-
-    PatternSheet result() const {
-        PatternSheet sheet;
-        const PageFormat& page = problem_->page;
-        sheet.columns = columns_;
-        sheet.rows = rows();
-        sheet.size = page.size + Vec2(sheet.columns - 1, sheet.rows - 1).cwiseProduct(page.step());
-        return sheet;
-    }
-
-private:
-    // A part of the room that there is: none, all or something between.
-    static Index part(std::uint_fast32_t random, Index room) {
-        constexpr Index parts = 4;
-        return room * static_cast<Index>(random % (parts + 1)) / parts;
-    }
-
-    bool find(const pack::FitImage& image, const pack::FitWindow& window, pack::Spot& spot) {
-        const bool found = cells_.find(image, window, spot);
-        const Index last = found ? spot.y : window.top - image.cells.height;
-        *work_ += std::int64_t{std::max(1, last - window.from + 1)} *
-                  static_cast<std::int64_t>(image.runs.size());
-        return found;
-    }
-
-    void look(const std::vector<pack::FitImage>& poses, std::size_t pose,
-              const pack::FitWindow& window, LargePlace& best) {
-        LargePlace place;
-        if (!find(poses[pose], window, place.spot))
-            return;
-        place.found = true;
-        place.spot.pose = pose;
-        place.top = place.spot.y + poses[pose].cells.height;
-        for (const auto& [page, cells] : pages_under(poses[pose].cells, place.spot))
-            place.new_pages += is_used(page) ? 0 : 1;
-        if (place.is_better_than(best))
-            best = place;
-    }
-
-    bool is_used(Index page) const {
-        return page < static_cast<Index>(covered_.size()) && covered_[at(page)] != 0;
-    }
-    double step(int axis) const { return problem_->page.step()[axis] / problem_->cell; }
-
-    // Pages that lie side by side, as one.
-    pack::FitWindow block(Index column, Index row, Index across, Index up) const {
-        const Vec2 low = Vec2(column, row).cwiseProduct(problem_->page.step());
-        const Vec2 high =
-            Vec2(column + across - 1, row + up - 1).cwiseProduct(problem_->page.step());
-        return {problem_->cells_up(low.x()), problem_->cells_down(high.x()) + problem_->columns,
-                problem_->cells_up(low.y()), problem_->cells_down(high.y()) + problem_->rows};
-    }
-
-    // One page without the strips that it shares.
-    pack::FitWindow inner_window(Index column, Index row) const {
-        pack::FitWindow window = block(column, row, 1, 1);
-        const Index strip = problem_->cells_up(tile_overlap);
-        window.left += column > 0 ? strip : 0;
-        window.right -= column + 1 < columns_ ? strip : 0;
-        window.from += row > 0 ? strip : 0;
-        window.top -= row + 1 < rows() ? strip : 0;
-        return window;
-    }
-
-    // The first page in one direction that shows all up to a cell; margins of images do not count.
-    Index page_at(double mm, double step) const {
-        return std::max(Index{0},
-                        static_cast<Index>(std::ceil((mm - tile_overlap) / step - 1e-9)) - 1);
-    }
-
-    // The pages that a piece needs, and how many of its cells lie on each.
-    std::vector<std::pair<Index, Index>> pages_under(const pack::ChartCells& image,
-                                                     const pack::Spot& spot) const {
-        std::vector<std::pair<Index, Index>> pages;
-        const double cell = problem_->cell;
-        const double inset = tuning.clear; // from the left end of an image to its piece
-        const Vec2 step = problem_->page.step();
-        for (const pack::CellRun& run : image.runs) {
-            const double height = cell * (run.row + 0.5); // in the image
-            if (height < 0.5 * piece_gap || height > cell * image.height - 0.5 * piece_gap)
-                continue;
-            const double y = cell * spot.y + height + inset - 0.5 * piece_gap;
-            const double left = cell * (spot.x + run.first) + inset;
-            const double right = std::max(left, cell * (spot.x + run.last) + inset - piece_gap);
-            const Index row = page_at(y, step.y());
-            const Index last = std::min(columns_ - 1, page_at(right, step.x()));
-            for (Index c = std::min(last, page_at(left, step.x())); c <= last; ++c) {
-                const double end = std::min(right, (c + 1) * step.x() + tile_overlap);
-                const double begin = std::max(left, c * step.x() + tile_overlap);
-                const auto cells = 1 + static_cast<Index>(std::max(0.0, end - begin) / cell);
-                const Index page = row * columns_ + c;
-                const auto known = std::find_if(pages.begin(), pages.end(),
-                                                [&](const auto& p) { return p.first == page; });
-                if (known == pages.end())
-                    pages.emplace_back(page, cells);
-                else
-                    known->second += cells;
-            }
-        }
-        return pages;
-    }
-
-    const Problem* problem_;
-    std::int64_t* work_;
-    Index columns_;
-    pack::FreeCells cells_;
-    std::vector<Index> covered_; // #pages, row by row from below: cells
-    double area_ = 0.0;
-};
-
 // Where each piece lies for one order of the pieces.
 struct Filling {
-    std::vector<Sheet> sheets;
+    std::vector<PageSheet> sheets;
     std::vector<Index> sheet; // of each piece
     std::vector<pack::Spot> spot;
 
     Index page_count() const {
         Index count = 0;
-        for (const Sheet& s : sheets)
+        for (const PageSheet& s : sheets)
             count += s.page_count();
         return count;
     }
     // The sheet with the page that has the least on it.
     Index emptiest() const {
-        const auto least =
-            std::min_element(sheets.begin(), sheets.end(), [](const Sheet& a, const Sheet& b) {
-                return a.fewest_cells() < b.fewest_cells();
-            });
+        const auto least = std::min_element(sheets.begin(), sheets.end(),
+                                            [](const PageSheet& a, const PageSheet& b) {
+                                                return a.fewest_cells() < b.fewest_cells();
+                                            });
         return static_cast<Index>(least - sheets.begin());
     }
     // Fewer pages, and less on the emptiest one: so that it may vanish.
     std::pair<Index, Index> score() const {
         return {page_count(), sheets[at(emptiest())].fewest_cells()};
     }
-    void put(const Problem& problem, std::size_t i, std::size_t chosen, const pack::Spot& place) {
+    void put(const PageProblem& problem, std::size_t i, std::size_t chosen,
+             const pack::Spot& place) {
         sheets[chosen].take(problem.poses[i][place.pose], place, problem.area[i]);
         sheet[i] = static_cast<Index>(chosen);
         spot[i] = place;
@@ -388,16 +167,16 @@ std::vector<std::size_t> chosen_poses(std::size_t count, std::minstd_rand* rando
     return some;
 }
 
-void put_large(const Problem& problem, std::size_t i, std::uint32_t choice, std::int64_t& work,
+void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, std::int64_t& work,
                Filling& filling) {
     std::minstd_rand numbers(choice);
     std::minstd_rand* const random = choice == 0 ? nullptr : &numbers;
     const std::vector<pack::FitImage>& poses = problem.poses[i];
     const std::vector<std::size_t> tried = chosen_poses(poses.size(), random);
-    Sheet::LargePlace best;
+    PageSheet::LargePlace best;
     std::size_t chosen = filling.sheets.size();
     for (std::size_t s = 0; s < filling.sheets.size(); ++s) {
-        const Sheet::LargePlace place = filling.sheets[s].place_of(poses, tried, random);
+        const PageSheet::LargePlace place = filling.sheets[s].place_of(poses, tried, random);
         if (place.is_better_than(best)) {
             best = place;
             chosen = s;
@@ -405,14 +184,14 @@ void put_large(const Problem& problem, std::size_t i, std::uint32_t choice, std:
     }
     Index most = 1;
     for (const std::size_t pose : tried)
-        most = std::max(most, Sheet::pages_for(poses[pose].cells.width, problem.columns,
-                                               problem.page.step().x() / problem.cell));
+        most = std::max(most, PageSheet::pages_for(poses[pose].cells.width, problem.columns,
+                                                   problem.page.step().x() / problem.cell));
     // Others may find room beside it on a wider sheet.
     most += random != nullptr && numbers() % 2 == 0 ? 1 : 0;
-    std::optional<Sheet> added;
+    std::optional<PageSheet> added;
     for (Index columns = 1; columns <= most; ++columns) {
-        Sheet fresh(problem, columns, work);
-        const Sheet::LargePlace place = fresh.place_of(poses, tried, random);
+        PageSheet fresh(problem, columns, work);
+        const PageSheet::LargePlace place = fresh.place_of(poses, tried, random);
         const bool instead = random != nullptr && numbers() % 2 == 0;
         if (place.found && (!best.found || place.new_pages < best.new_pages ||
                             (instead && place.new_pages == best.new_pages))) {
@@ -427,7 +206,7 @@ void put_large(const Problem& problem, std::size_t i, std::uint32_t choice, std:
     filling.put(problem, i, chosen, best.spot);
 }
 
-void put_small(const Problem& problem, std::size_t i, std::int64_t& work, Filling& filling) {
+void put_small(const PageProblem& problem, std::size_t i, std::int64_t& work, Filling& filling) {
     pack::Spot spot;
     for (std::size_t s = 0; s < filling.sheets.size(); ++s)
         if (filling.sheets[s].put_on_page(problem.poses[i], spot)) {
@@ -435,12 +214,12 @@ void put_small(const Problem& problem, std::size_t i, std::int64_t& work, Fillin
             return;
         }
     filling.sheets.emplace_back(problem, 1, work);
-    const Sheet::LargePlace place = filling.sheets.back().place_of(
+    const PageSheet::LargePlace place = filling.sheets.back().place_of(
         problem.poses[i], chosen_poses(problem.poses[i].size(), nullptr), nullptr);
     filling.put(problem, i, filling.sheets.size() - 1, place.spot);
 }
 
-Filling fill(const Problem& problem, const Plan& plan, std::int64_t& work,
+Filling fill(const PageProblem& problem, const Plan& plan, std::int64_t& work,
              const Progress& progress) {
     Filling filling;
     filling.sheet.assign(plan.order.size(), -1);
@@ -473,7 +252,7 @@ Plan changed(const Plan& plan, const Filling& filling, std::mt19937& random) {
     return result;
 }
 
-Plan first_plan(const Problem& problem) {
+Plan first_plan(const PageProblem& problem) {
     Plan plan;
     plan.order.resize(problem.area.size());
     plan.choice.assign(problem.area.size(), 0);
@@ -487,7 +266,7 @@ Plan first_plan(const Problem& problem) {
     return plan;
 }
 
-Filling best_filling(const Problem& problem, Progress& progress) {
+Filling best_filling(const PageProblem& problem, Progress& progress) {
     Plan plan = first_plan(problem);
     const double total = std::accumulate(problem.area.begin(), problem.area.end(), 0.0);
     const auto least = static_cast<Index>(std::ceil(total / (tuning.full * problem.page_area())));
@@ -511,8 +290,8 @@ std::vector<Index> ranks_of(const Filling& filling) {
     std::vector<Index> order(filling.sheets.size());
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        const Sheet& p = filling.sheets[at(a)];
-        const Sheet& q = filling.sheets[at(b)];
+        const PageSheet& p = filling.sheets[at(a)];
+        const PageSheet& q = filling.sheets[at(b)];
         const bool p_single = p.page_count() == 1;
         const bool q_single = q.page_count() == 1;
         return p_single != q_single ? q_single : p.area() > q.area();
@@ -529,7 +308,7 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
                           bool keep_grain, bool tiling, Progress& progress) {
     check_scale(pieces, page);
     auto drawing = progress.part(0.1);
-    const Problem problem = make_problem(pieces, page, keep_grain, drawing);
+    const PageProblem problem = make_problem(pieces, page, keep_grain, drawing);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (problem.is_large[i] != 0 && !tiling)
             refuse_size(pieces[i], page);
@@ -540,7 +319,7 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
     result.sheets.resize(best.sheets.size());
     for (std::size_t s = 0; s < ranks.size(); ++s)
         result.sheets[at(ranks[s])] = best.sheets[s].result();
-    const double origin = page.margin + tuning.clear - 0.5 * piece_gap;
+    const double origin = page.margin + border_clearance - 0.5 * piece_gap;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const pack::Spot& spot = best.spot[i];
         result.placements.push_back(

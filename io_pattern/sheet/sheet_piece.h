@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devseg/declare/filter.h"
 #include "devseg/pack/pack.h"
 #include "devseg/pattern/pattern.h"
 #include "sheet/allowance.h"
@@ -57,6 +58,9 @@ struct SheetPiece {
     /// become valley folds.
     void mirror(double axis);
 };
+
+/// A colour for each piece of the pattern, and a last one for faces in no piece.
+std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern);
 
 /// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece,
