@@ -111,7 +111,7 @@ declare::Declare<O> with_files(declare::Declare<O> filter) {
             "Layer: a layer for each operation. Piece: a group for each piece, with its outline, "
             "folds, marks and texts on layers inside it, so that they move together.")
         .choice(&O::text, "text", "Texts of an SVG", {"Text", "Paths"},
-                "Paths: the outlines of the letters, for programs that drop texts.")
+                "Text: as text. Paths: the outlines of the letters, for programs that drop texts.")
         .boolean(&O::frame, "frame", "Frame",
                  "SVG and DXF for cutters: a frame around the drawing, or around each page.")
         .boolean(&O::scale_check, "scale_check", "Scale check",
@@ -125,10 +125,10 @@ declare::Declare<O> with_guide(declare::Declare<O> filter) {
                  "12 (3) is seam 12, done in step 3.")
         .real(&O::sewing_mm_per_minute, {"sewing_mm_per_minute", 1.0, 1e6},
               "Sewing rate (mm per minute)",
-              "Length of seam that is sewn in a minute, pinning included, for the time that the "
-              "cover tells.")
+              "Seam that is sewn in a minute, pinning included, in millimetres; for the time "
+              "that the cover tells.")
         .real(&O::stuffing_g_per_litre, {"stuffing_g_per_litre", 0.0, 1e5},
-              "Stuffing (g per litre)", "Mass of a litre of stuffing in grams.");
+              "Stuffing (g per litre)", "Mass of the stuffing, in the unit gram per litre.");
 }
 
 // The assembly and what it needs, as numbers: pieces, seams and steps in their order.
