@@ -15,7 +15,7 @@ namespace {
 
 // Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
 // and does not scroll, and a screen has no room for all.
-constexpr std::array<const char*, 14> left_to_the_filter = {
+constexpr std::array<const char*, 15> left_to_the_filter = {
     "max_piece_mm",
     "curve_mm",
     "simplify_mm",
@@ -25,6 +25,7 @@ constexpr std::array<const char*, 14> left_to_the_filter = {
     "dxf_kind",
     "weld",
     "group",
+    "step_numbers",
     "text",
     "sewing_mm_per_minute",
     "stuffing_g_per_litre",
