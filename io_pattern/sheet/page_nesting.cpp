@@ -23,10 +23,10 @@ struct Tuning {
     int large_turns = 24;             // of a piece on several pages, of which
     int large_tries = 4;              // so many are tried at a time
     double most_pages_across = 200.0; // of one piece: more is a wrong scale
-    // Rows of images that are compared with rows of sheets: about a second, and where one attempt
-    // takes longer than that, one attempt.
-    std::int64_t work = 600'000'000;
-    int attempts = 300; // orders that are tried at most
+    // Rows of images that are compared with rows of sheets: about two seconds, and where one
+    // attempt takes longer than that, one attempt.
+    std::int64_t work = 1'200'000'000;
+    int attempts = 600; // orders that are tried at most
     double full = 0.9;  // share of the paper that no nesting covers
 };
 constexpr Tuning tuning;
