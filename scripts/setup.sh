@@ -17,7 +17,7 @@ source "$root/scripts/meshlab_headers.sh"
 
 system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev libeigen3-dev
     libgtest-dev libcgal-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
-    python3-dev)
+    python3-dev fonts-dejavu-core)
 
 # Fresh machines install their own updates for minutes: so many seconds we wait for apt's locks, and
 # look again after each pause.

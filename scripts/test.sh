@@ -13,6 +13,10 @@ source "$root/scripts/build_meshlab.sh"
 # MeshLab with its batch server, an X server without a screen, used with mouse and keyboard, and a
 # reader of PDF files.
 system_packages+=(meshlab xvfb xauth xdotool poppler-utils)
+# A browser for the page of a pattern; elsewhere the package is not the browser itself.
+if [[ $(. /etc/os-release && echo "${ID:-}") == debian ]]; then
+    system_packages+=(chromium chromium-driver)
+fi
 devseg_setup
 if [[ ${DEVSEG_GUI_TESTS:-} == 1 ]]; then
     system_packages=(libglu1-mesa-dev)

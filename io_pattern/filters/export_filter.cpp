@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* help =
     "Writes the pattern of any model with texture coordinates, true to scale: SVG and DXF for "
-    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673).<br>"
+    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673), and an HTML "
+    "page with the model, its pieces and the steps of the assembly.<br>"
     "A <b>preset</b> switches on what sewing, papercraft or a laser needs.";
 
 using O = sheet::ExportOptions;
@@ -103,6 +104,61 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
+declare::Declare<O> with_files(declare::Declare<O> filter) {
+    return filter
+        .choice(
+            &O::group, "group", "Groups of an SVG", {"Layer", "Piece"},
+            "Layer: a layer for each operation. Piece: a group for each piece, with its outline, "
+            "folds, marks and texts on layers inside it, so that they move together.")
+        .choice(&O::text, "text", "Texts of an SVG", {"Text", "Paths"},
+                "Text: as text. Paths: the outlines of the letters, for programs that drop texts.")
+        .boolean(&O::frame, "frame", "Frame",
+                 "SVG and DXF for cutters: a frame around the drawing, or around each page.")
+        .boolean(&O::scale_check, "scale_check", "Scale check",
+                 "SVG and DXF for cutters: squares to check the scale with, one on each page.");
+}
+
+declare::Declare<O> with_guide(declare::Declare<O> filter) {
+    return filter
+        .boolean(&O::step_numbers, "step_numbers", "Step numbers",
+                 "Write the step of the assembly that does it behind the number of each seam: "
+                 "12 (3) is seam 12, done in step 3.")
+        .real(&O::sewing_mm_per_minute, {"sewing_mm_per_minute", 1.0, 1e6},
+              "Sewing rate (mm per minute)",
+              "Seam that is sewn in a minute, pinning included, in millimetres; for the time "
+              "that the cover tells.")
+        .real(&O::stuffing_g_per_litre, {"stuffing_g_per_litre", 0.0, 1e5},
+              "Stuffing (g per litre)", "Mass of the stuffing, in the unit gram per litre.");
+}
+
+// The assembly and what it needs, as numbers: pieces, seams and steps in their order.
+declare::ResultValues guide_values(const PatternFile& file) {
+    const assembly::Assembly& plan = file.assembly;
+    const auto piece_of = [](std::size_t side) {
+        return [side](const pattern::Seam& seam) { return seam.sides[side].piece; };
+    };
+    const auto itself = [](auto value) { return value; };
+    using assembly::AssemblyStep;
+    using assembly::Opening;
+    return {{"piece_section", declare::column(plan.section, itself)},
+            {"seam_first_piece", declare::column(file.seam_list, piece_of(0))},
+            {"seam_second_piece", declare::column(file.seam_list, piece_of(1))},
+            {"seam_step", declare::column(plan.seam_step, itself)},
+            {"step_kind", declare::column(plan.steps, &AssemblyStep::kind)},
+            {"step_section", declare::column(plan.steps, &AssemblyStep::section)},
+            {"opening_seam",
+             declare::column(plan.openings, [](const Opening& o) { return o.seam + 1; })},
+            {"opening_from_mm", declare::column(plan.openings, &Opening::from)},
+            {"opening_to_mm", declare::column(plan.openings, &Opening::to)},
+            {"material_mm2", file.needs.material_mm2},
+            {"seams_mm", file.needs.seam_mm},
+            {"hems_mm", file.needs.hem_mm},
+            {"sewing_minutes", file.needs.minutes},
+            {"stuffing_litres", 1e-6 * file.needs.stuffing_mm3},
+            {"stuffing_g", file.needs.stuffing_g},
+            {"paper_sheets_number", file.needs.sheets_of_paper}};
+}
+
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
     PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
@@ -115,6 +171,8 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
                      {"untabbed_seams_number", file.untabbed_seams},
                      {"sheets_number", file.sheets},
                      {"pages_number", file.pages}};
+    for (auto& value : guide_values(file))
+        output.values.push_back(std::move(value));
     output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
         writers::save_file(path, bytes);
     };
@@ -125,12 +183,12 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
 
 const declare::FilterDeclaration& export_filter() {
     static const declare::FilterDeclaration filter =
-        with_paper(with_seams(with_scale(
+        with_guide(with_files(with_paper(with_seams(with_scale(
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
-                                 "File to write; its extension says the format: .svg, .pdf or "
-                                 ".dxf."))))
+                                 "File to write; its extension says the format: .svg, .pdf, "
+                                 ".dxf or .html."))))))
             .needs_uv()
             .shows_outside()
             .result("pieces_number", "pieces in the file")
@@ -143,6 +201,23 @@ const declare::FilterDeclaration& export_filter() {
                                              "have")
             .result("sheets_number", "sheets that the pieces lie on")
             .result("pages_number", "pages of a PDF, cover included; 0 for other formats")
+            .result("piece_section", "section that each piece is made in, counted from 0")
+            .result("seam_first_piece", "for each seam the piece of its first side, from 0")
+            .result("seam_second_piece", "the same of its second side")
+            .result("seam_step", "step of the assembly that does each seam, from 1")
+            .result("step_kind", "of each step: 1 darts, 2 joins a piece, 3 a piece with itself, "
+                                 "4 attaches a section, 5 closes a solid")
+            .result("step_section", "section that each step works on")
+            .result("opening_seam", "number of the seam that each opening lies on")
+            .result("opening_from_mm", "where each opening begins, in mm from the seam's start")
+            .result("opening_to_mm", "where it ends")
+            .result("material_mm2", "area inside all cut lines in mm²")
+            .result("seams_mm", "length of all seams in mm")
+            .result("hems_mm", "length of all hems in mm")
+            .result("sewing_minutes", "time to sew them")
+            .result("stuffing_litres", "volume of the closed solids in litres")
+            .result("stuffing_g", "mass of the stuffing in grams")
+            .result("paper_sheets_number", "pages of the pattern alone; 0 without a page size")
             .runs(run_export);
     return filter;
 }

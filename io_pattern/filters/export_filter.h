@@ -5,8 +5,8 @@
 
 namespace devseg::exporting {
 
-/// Writes output_file; its extension says the format: svg, pdf or dxf. Saving a mesh in one of
-/// these formats takes the same parameters but for the file's name.
+/// Writes output_file; its extension says the format: svg, pdf, dxf or html. Saving a mesh in one
+/// of these formats takes the same parameters but for the file's name.
 const declare::FilterDeclaration& export_filter();
 
 /// All filters of the plugin: those of the core and the export.

@@ -5,10 +5,12 @@
 #include <ctime>
 
 #include "devseg/base/errors.h"
+#include "page/page.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
 #include "sheet/sheet_drawing.h"
 #include "writers/dxf_writer.h"
+#include "writers/font.h"
 #include "writers/pdf_writer.h"
 #include "writers/svg_writer.h"
 
@@ -16,7 +18,7 @@ namespace devseg::exporting {
 
 namespace {
 
-enum class Format { svg, pdf, dxf };
+enum class Format { svg, pdf, dxf, html };
 
 std::size_t name_start(const std::string& path) {
     const std::size_t slash = path.find_last_of("/\\");
@@ -37,7 +39,10 @@ Format format_of(const std::string& path) {
         return Format::pdf;
     if (extension == ".dxf")
         return Format::dxf;
-    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf or .dxf, found '" +
+    if (extension == ".html")
+        return Format::html;
+    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf, .dxf or .html, "
+                           "found '" +
                            path + "'");
 }
 
@@ -68,11 +73,14 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
                                 const sheet::ExportOptions& options, const Progress& progress) {
     writers::Document document;
     document.title = title_of(options.output_file);
-    document.drawing = sheet::draw_sheets(layout, options);
+    // Pages of a PDF have marks of their own.
+    sheet::ExportOptions drawn = options;
+    drawn.frame = drawn.scale_check = !layout.page;
+    document.drawing = sheet::draw_sheets(layout, drawn);
     const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)
-        document.pages = sheet::cover_pages(pattern, layout, printed, document.title);
+        document.pages = sheet::cover_pages(pattern, layout, printed, options, document.title);
     progress.check();
     if (options.cover && layout.page && printed.size() > 1)
         document.pages.push_back(
@@ -81,6 +89,13 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
          sheet::page_sheets(layout, document.drawing, printed, document.title))
         document.pages.push_back(std::move(page));
     return document;
+}
+
+// Pages with pieces on them.
+Index printed_count(const sheet::PatternLayout& layout) {
+    writers::Drawing places;
+    places.sheets.resize(layout.sheets.size());
+    return static_cast<Index>(sheet::printed_pages(layout, places).size());
 }
 
 } // namespace
@@ -104,8 +119,13 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     } else if (format == Format::dxf && is_apparel(options)) {
         file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options,
                                               {title_of(options.output_file), today()});
+    } else if (format == Format::html) {
+        file.bytes =
+            page::page_bytes(pattern, layout, options, title_of(options.output_file), writing);
     } else {
-        const writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        if (format == Format::svg && options.text == sheet::TextKind::paths)
+            drawing = writers::with_outlined_texts(std::move(drawing));
         file.bytes =
             format == Format::svg ? writers::svg_bytes(drawing) : writers::dxf_bytes(drawing);
     }
@@ -116,7 +136,15 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.unnamed_pieces = static_cast<Index>(layout.left_out.pieces.size());
     file.untabbed_seams = layout.seams_without_tab;
     file.sheets = static_cast<Index>(layout.sheets.size());
+    file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
+    file.assembly = layout.assembly;
+    file.seam_list = pattern.seams;
     file.notes = pattern.notes;
+    const int missing = writers::missing_glyphs(title_of(options.output_file));
+    if (missing > 0 && format == Format::pdf)
+        file.notes.push_back(std::to_string(missing) +
+                             " characters of the file's name are in no font that PDF files get: "
+                             "they are drawn as boxes");
     for (std::string& note : sheet::layout_notes(pattern, layout))
         file.notes.push_back(std::move(note));
     return file;

@@ -7,6 +7,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
 #include "sheet/export_options.h"
+#include "sheet/needs.h"
 
 namespace devseg::exporting {
 
@@ -18,6 +19,9 @@ struct PatternFile {
     Index unnamed_pieces = 0;
     Index untabbed_seams = 0;
     Index sheets = 0;
+    sheet::Needs needs;
+    assembly::Assembly assembly;
+    std::vector<pattern::Seam> seam_list;
     Index pages = 0;                // of a PDF; 0 for other formats
     std::vector<std::string> notes; // for the user, one sentence each
 };

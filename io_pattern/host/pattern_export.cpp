@@ -15,9 +15,22 @@ namespace {
 
 // Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
 // and does not scroll, and a screen has no room for all.
-constexpr std::array<const char*, 8> left_to_the_filter = {
-    "max_piece_mm", "curve_mm",     "simplify_mm", "corner_style",
-    "match_seams",  "tab_depth_mm", "dxf_kind",    "weld",
+constexpr std::array<const char*, 15> left_to_the_filter = {
+    "max_piece_mm",
+    "curve_mm",
+    "simplify_mm",
+    "corner_style",
+    "match_seams",
+    "tab_depth_mm",
+    "dxf_kind",
+    "weld",
+    "group",
+    "step_numbers",
+    "text",
+    "sewing_mm_per_minute",
+    "stuffing_g_per_litre",
+    "frame",
+    "scale_check",
 };
 
 // The file's name is asked for by the host itself.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "devseg/declare/segmentation_output.h"
+#include "sheet/needs.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -109,14 +109,6 @@ DepthBuffer project(const Mesh& mesh, const Eigen::Matrix3d& rotation, int side)
     return buffer;
 }
 
-std::vector<declare::Color> piece_colors(const Mesh& mesh, const pattern::Pattern& pattern) {
-    atlas::ChartMap charts;
-    charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
-    for (const Index piece : pattern.face_piece)
-        charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
-    return declare::chart_colors(mesh, charts);
-}
-
 // For each piece the pixel that is farthest from others, in city blocks.
 std::vector<PieceLabel> find_labels(const std::vector<Index>& piece_of_pixel, int side,
                                     std::size_t pieces) {
@@ -156,7 +148,7 @@ ModelView draw_model(const Mesh& mesh, const pattern::Pattern& pattern, double a
     const int side = pixels * picture_samples;
     const Eigen::Matrix3d rotation = view_rotation(azimuth);
     const DepthBuffer buffer = project(mesh, rotation, side);
-    const std::vector<declare::Color> colors = piece_colors(mesh, pattern);
+    const std::vector<declare::Color> colors = piece_colors(pattern);
     const auto piece_at = [&](int x, int y) {
         const Index f = buffer.face(x, y);
         return f < 0 ? Index{-2} : pattern.face_piece[f];
@@ -400,11 +392,36 @@ void add_table(const std::vector<Row>& rows, Book& book) {
     }
 }
 
+void add_paragraph(const std::string& text, double indent, Book& book) {
+    for (const std::string& line : wrapped(text, book.width() - indent)) {
+        book.advance(cover_pitch);
+        book.write(indent, cover_text, line);
+    }
+}
+
+// What is needed, and the steps.
+void add_guide(const pattern::Pattern& pattern, const PatternLayout& layout,
+               const std::vector<PrintedPage>& pages, const ExportOptions& options, Book& book) {
+    book.advance(0.5 * cover_pitch);
+    add_paragraph("What you need", 0.0, book);
+    const Needs needs = find_needs(pattern, layout, options, static_cast<Index>(pages.size()));
+    for (const auto& [name, value] : needs_texts(needs, options))
+        add_paragraph(name + ": " + value, 2.0 * cover_text, book);
+    book.advance(0.5 * cover_pitch);
+    add_paragraph("Steps", 0.0, book);
+    for (const std::string& text : opening_texts(pattern, layout))
+        add_paragraph(text, 2.0 * cover_text, book);
+    for (std::size_t k = 0; k < layout.assembly.steps.size(); ++k)
+        add_paragraph(std::to_string(k + 1) + ". " + step_text(pattern, layout, options, k),
+                      2.0 * cover_text, book);
+}
+
 } // namespace
 
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
+                                               const ExportOptions& options,
                                                const std::string& title) {
     Book book(layout.page ? layout.page->size : a4,
               layout.page ? std::max(layout.page->margin, 0.5 * sheet_margin) : sheet_margin);
@@ -418,12 +435,10 @@ std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                    " mm. Print at 100 %, without scaling.");
     add_pictures(pattern.mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
+    add_guide(pattern, layout, pages, options, book);
     for (const std::string& text : note_texts(pattern, layout)) {
         book.advance(0.5 * cover_pitch);
-        for (const std::string& line : wrapped(text, book.width())) {
-            book.advance(cover_pitch);
-            book.write(0.0, cover_text, line);
-        }
+        add_paragraph(text, 0.0, book);
     }
     return book.take();
 }

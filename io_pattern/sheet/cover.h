@@ -16,6 +16,7 @@ namespace devseg::sheet {
 std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
                                                const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
+                                               const ExportOptions& options,
                                                const std::string& title);
 
 } // namespace devseg::sheet

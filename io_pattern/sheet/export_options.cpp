@@ -68,6 +68,9 @@ ExportOptions resolved(const ExportOptions& given) {
           "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
+    check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
+    check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");
+    options.edge_numbers = options.edge_numbers || options.step_numbers;
     switch (options.preset) {
     case PatternPreset::plain:
         break;

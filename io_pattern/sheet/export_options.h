@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "devseg/assembly/assembly.h"
 #include "devseg/mesh/mesh.h"
 #include "devseg/pattern/pieces.h"
 #include "sheet/allowance.h"
@@ -13,6 +14,10 @@ namespace devseg::sheet {
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
+/// What makes a group in an SVG: all of one operation, or all of one piece.
+enum class Grouping { layer, piece };
+/// Texts of an SVG: as text, or as outlines of its letters.
+enum class TextKind { text, paths };
 
 struct ExportOptions : pattern::PatternOptions {
     ExportOptions() { notch_spacing_mm = 0.0; }
@@ -26,6 +31,7 @@ struct ExportOptions : pattern::PatternOptions {
     double tab_depth_mm = 5.0;
     bool fold_lines = false;
     bool edge_numbers = false; // the number of each seam on both sides
+    bool step_numbers = false; // behind each number, the step of the assembly that does the seam
     bool grain_line = false;
     bool mirror = false;       // as seen from inside the model
     std::string page = "none"; // none, a4, letter, a3 or WxH in mm
@@ -33,7 +39,22 @@ struct ExportOptions : pattern::PatternOptions {
     bool tiling = true; // pieces larger than a page go on several
     bool cover = true;  // PDF: picture of the model, list of the pieces, overview
     DxfKind dxf_kind = DxfKind::automatic;
+    Grouping group = Grouping::layer;
+    TextKind text = TextKind::text;
+    bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
+    bool scale_check = true; // the same: squares to check the scale with
 
+    double sewing_mm_per_minute = 100.0; // with pins and needles, at home
+    double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
+
+    /// Sewn, unless there are tabs to glue.
+    assembly::Craft craft() const {
+        return glue_tabs ? assembly::Craft::papercraft : assembly::Craft::sewing;
+    }
+    /// Whether the place that stays open is drawn: on patterns to sew.
+    bool marks_openings() const {
+        return preset == PatternPreset::sewing || allowance().largest() > 0.0;
+    }
     AllowanceWidths allowance() const {
         return {seam_allowance_mm, hem_allowance_mm < 0.0 ? seam_allowance_mm : hem_allowance_mm};
     }

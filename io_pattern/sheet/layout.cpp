@@ -9,6 +9,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/pack/first_fit.h"
 #include "devseg/plane/plane.h"
+#include "sheet/page_nesting.h"
 #include "sheet/segment_grid.h"
 #include "writers/text.h"
 
@@ -66,11 +67,6 @@ double box_area(const SheetPiece& piece) {
     return piece.box().sizes().prod();
 }
 
-constexpr double most_pages_across = 200.0; // of one piece: more is a wrong scale
-
-// Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
-constexpr double piece_gap = 3.0; // mm
-
 // Nesting by outline covers about this share of a sheet.
 constexpr double covered_share = 0.7;
 
@@ -102,124 +98,24 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
     return false;
 }
 
-void place(std::vector<SheetPiece>& pieces, const std::vector<std::size_t>& chosen,
-           const Nesting& nesting, Index first_sheet, double margin) {
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        if (nesting.sheet[i] < 0)
-            continue;
-        pack::Placement placement = nesting.placements[i];
-        placement.offset += Vec2::Constant(margin);
-        pieces[chosen[i]].move(placement);
-        pieces[chosen[i]].sheet = first_sheet + nesting.sheet[i];
-    }
-}
-
-std::vector<const SheetPiece*> pointers(const std::vector<SheetPiece>& pieces,
-                                        const std::vector<std::size_t>& chosen) {
-    std::vector<const SheetPiece*> result;
-    for (const std::size_t i : chosen)
-        result.push_back(&pieces[i]);
-    return result;
-}
-
 // One sheet that is about as high as wide.
 void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     double area = 0.0;
     double widest = 0.0;
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
-        all.push_back(i);
-        area += std::abs(plane::signed_area(layout.pieces[i].cut.front()));
-        widest = std::max(widest, layout.pieces[i].box().sizes().norm());
+    std::vector<const SheetPiece*> pieces;
+    for (const SheetPiece& piece : layout.pieces) {
+        pieces.push_back(&piece);
+        area += std::abs(plane::signed_area(piece.cut.front()));
+        widest = std::max(widest, piece.box().sizes().norm());
     }
     NestingOptions nesting;
     const double side = std::max(std::sqrt(area / covered_share), widest);
     nesting.gap = std::min(piece_gap, pattern::gap_share * side);
     nesting.width = side + nesting.gap;
     nesting.keep_grain = keep_grain;
-    place(layout.pieces, all, nest_pieces(pointers(layout.pieces, all), nesting, progress), 0, 0.0);
-}
-
-[[noreturn]] void refuse_size(const SheetPiece& piece, const PageFormat& page) {
-    const Vec2 size = piece.box().sizes();
-    throw InvalidParameter(
-        "page: expected pieces that fit on " + writers::number_text(page.printable().x(), 1) +
-        " x " + writers::number_text(page.printable().y(), 1) + " mm, found " + piece.name +
-        " of " + writers::number_text(size.x(), 1) + " x " + writers::number_text(size.y(), 1) +
-        " mm; take a larger page, switch tiling on, or split large pieces with "
-        "max_piece_mm");
-}
-
-Index pages_along(double length, double step) {
-    return static_cast<Index>(std::max(1.0, std::ceil((length - tile_overlap) / step - 1e-9)));
-}
-
-// Pieces larger than a page share a sheet of several pages: as wide as it takes the fewest.
-void nest_tiles(PatternLayout& layout, const std::vector<std::size_t>& large, bool keep_grain,
-                Progress& progress) {
-    const PageFormat& page = *layout.page;
-    double widest = 0.0;
-    for (const std::size_t i : large)
-        widest = std::max(widest, layout.pieces[i].box().sizes().norm() + piece_gap);
-    if (widest > most_pages_across * page.step().minCoeff())
-        throw InvalidParameter("mm_per_unit: expected pieces of at most " +
-                               writers::number_text(most_pages_across, 0) +
-                               " pages, found one of " + writers::number_text(widest / 1000.0, 1) +
-                               " m; give a smaller mm_per_unit or height_mm, or a larger page");
-    const Index most = pages_along(widest, page.step().x());
-    std::vector<SheetPiece> best;
-    PatternSheet best_sheet;
-    for (Index columns = 1; columns <= most; ++columns) {
-        NestingOptions nesting;
-        nesting.width = columns * page.step().x() + tile_overlap;
-        nesting.gap = piece_gap;
-        nesting.keep_grain = keep_grain;
-        const Nesting nested = nest_pieces(pointers(layout.pieces, large), nesting, progress);
-        if (std::count(nested.sheet.begin(), nested.sheet.end(), -1) > 0)
-            continue;
-        std::vector<SheetPiece> placed = layout.pieces;
-        place(placed, large, nested, 0, page.margin);
-        Eigen::AlignedBox2d box;
-        for (const std::size_t i : large)
-            box.extend(placed[i].box());
-        PatternSheet sheet;
-        sheet.columns = pages_along(box.max().x() - page.margin, page.step().x());
-        sheet.rows = pages_along(box.max().y() - page.margin, page.step().y());
-        if (best.empty() || sheet.columns * sheet.rows < best_sheet.columns * best_sheet.rows) {
-            best = std::move(placed);
-            best_sheet = sheet;
-        }
-    }
-    layout.pieces = std::move(best);
-    best_sheet.size =
-        Vec2(best_sheet.columns * page.step().x(), best_sheet.rows * page.step().y()) +
-        Vec2::Constant(tile_overlap + 2.0 * page.margin);
-    layout.sheets.push_back(best_sheet);
-}
-
-void nest_on_pages(PatternLayout& layout, const ExportOptions& options, Progress& progress) {
-    const PageFormat& page = *layout.page;
-    NestingOptions nesting;
-    nesting.width = page.printable().x();
-    nesting.height = page.printable().y();
-    nesting.gap = piece_gap;
-    nesting.keep_grain = options.grain_line;
-    std::vector<std::size_t> all;
+    const Nesting nested = nest_pieces(pieces, nesting, progress);
     for (std::size_t i = 0; i < layout.pieces.size(); ++i)
-        all.push_back(i);
-    const Nesting nested = nest_pieces(pointers(layout.pieces, all), nesting, progress);
-    std::vector<std::size_t> large;
-    for (const std::size_t i : all)
-        if (nested.sheet[i] < 0)
-            large.push_back(i);
-    if (!large.empty() && !options.tiling)
-        refuse_size(layout.pieces[large.front()], page);
-    if (!large.empty())
-        nest_tiles(layout, large, options.grain_line, progress);
-    const Index first = static_cast<Index>(layout.sheets.size());
-    place(layout.pieces, all, nested, first, page.margin);
-    for (Index i = 0; i < nested.sheet_count; ++i)
-        layout.sheets.push_back({page.size, 1, 1});
+        layout.pieces[i].move(nested.placements[i]);
 }
 
 // Each sheet as it is seen from its back.
@@ -228,10 +124,33 @@ void mirror_sheets(PatternLayout& layout) {
         piece.mirror(0.5 * layout.sheets[piece.sheet].size.x());
 }
 
+// For each sheet, where its pages end within it: paper is cut and glued there.
+std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& layout) {
+    std::vector<std::vector<std::array<Vec2, 2>>> borders(layout.sheets.size());
+    for (std::size_t s = 0; s < borders.size(); ++s) {
+        const PatternSheet& sheet = layout.sheets[s];
+        const double margin = layout.page ? layout.page->margin : 0.0;
+        const auto add = [&](Index pages, int axis) {
+            for (Index k = 1; k < pages; ++k)
+                for (const double strip : {-margin, 0.0, tile_overlap, tile_overlap + margin}) {
+                    Vec2 from = Vec2::Zero();
+                    from[axis] = margin + k * layout.page->step()[axis] + strip;
+                    Vec2 to = from;
+                    to[1 - axis] = sheet.size[1 - axis];
+                    borders[s].push_back({from, to});
+                }
+        };
+        add(sheet.columns, 0);
+        add(sheet.rows, 1);
+    }
+    return borders;
+}
+
 // All pieces in their places, without texts.
 PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions& options,
                            Progress& progress) {
     PatternLayout layout;
+    layout.assembly = assembly::plan_assembly(pattern, options.craft(), progress);
     layout.page = page_format(options);
     GlueTabs tabs;
     tabs.tabs.resize(pattern.pieces.size());
@@ -244,10 +163,18 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
         layout.pieces.push_back(
             compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
+        if (options.marks_openings())
+            add_openings(pattern, layout.assembly, layout.pieces.back());
     }
     auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
-        nest_on_pages(layout, options, laying);
+        const PageNesting nesting =
+            nest_on_pages(layout.pieces, *layout.page, options.grain_line, options.tiling, laying);
+        layout.sheets = nesting.sheets;
+        for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
+            layout.pieces[i].move(nesting.placements[i]);
+            layout.pieces[i].sheet = nesting.sheet[i];
+        }
         return layout;
     }
     if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
@@ -310,7 +237,8 @@ PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptio
     PatternLayout layout = place_pieces(pattern, options, progress);
     if (options.mirror)
         mirror_sheets(layout);
-    layout.left_out = add_texts(pattern, options, layout.pieces);
+    layout.left_out =
+        add_texts(pattern, layout.assembly, options, layout.pieces, page_borders(layout));
     return layout;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "devseg/assembly/assembly.h"
 #include "devseg/base/progress.h"
 #include "devseg/pack/pack.h"
 #include "sheet/export_options.h"
@@ -14,6 +15,9 @@ namespace devseg::sheet {
 
 constexpr double sheet_margin = 10.0; // mm, around pieces where no page says otherwise
 constexpr double sheet_gap = 2.0 * sheet_margin;
+
+// Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
+constexpr double piece_gap = 3.0; // mm
 
 struct NestingOptions {
     double width = 0.0;      // mm
@@ -44,7 +48,8 @@ struct PatternSheet {
 struct PatternLayout {
     std::vector<SheetPiece> pieces; // in the order of the pattern, on their sheets
     std::vector<PatternSheet> sheets;
-    LeftOut left_out; // texts for which there was no room
+    assembly::Assembly assembly; // the order in which the pieces are put together
+    LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
     Index seams_without_tab = 0; // for lack of room, where tabs were asked for
 };

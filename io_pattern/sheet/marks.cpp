@@ -104,7 +104,7 @@ public:
                 solid_.add_ring(ring, 0);
         for (const std::vector<Vec2>& slit : piece.slits)
             add_line(slit, solid_);
-        for (const auto* lines : {&piece.mountains, &piece.valleys, &piece.grain})
+        for (const auto* lines : {&piece.mountains, &piece.valleys, &piece.grain, &piece.openings})
             for (const std::vector<Vec2>& line : *lines)
                 add_line(line, lines_);
         for (const SheetNotch& notch : piece.notches)
@@ -218,8 +218,13 @@ class NumberWriter {
 public:
     NumberWriter(const pattern::PiecePath& path, const pattern::SeamSide& side,
                  const std::string& label, const SheetPiece& piece, const Room& room)
-        : path_(path), side_(side), piece_(piece), room_(room) {
+        : path_(path), side_(side), piece_(piece), room_(room), to_(side.length) {
         text_.text = label;
+    }
+    /// Only beside this stretch of the seam, mm.
+    void keep_to(double from, double to) {
+        from_ = from;
+        to_ = to;
     }
 
     // Whether there is a place; `text` and `leader` are what to draw then.
@@ -239,7 +244,7 @@ private:
     };
 
     Place place(double share) const {
-        const OutlinePlace found = place_on(path_, side_, share * side_.length);
+        const OutlinePlace found = place_on(path_, side_, from_ + share * (to_ - from_));
         const Vec2 inward = plane::left_of(found.direction);
         return {piece_.frame(found.position), piece_.frame.direction(found.direction),
                 piece_.frame.direction(inward)};
@@ -292,9 +297,44 @@ private:
     const pattern::SeamSide& side_;
     const SheetPiece& piece_;
     const Room& room_;
+    double from_ = 0.0;
+    double to_;
     writers::DrawingText text_;
     std::vector<Vec2> leader_;
 };
+
+const char* const opening_text = "leave open";
+
+void write_openings(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
+                    SheetPiece& piece, Room& room) {
+    for (const assembly::Opening& opening : assembly.openings) {
+        const pattern::Seam& seam = pattern.seams[at(opening.seam)];
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+            const pattern::SeamSide& side = seam.sides[k];
+            if (side.piece != piece.piece)
+                continue;
+            NumberWriter text(pattern.pieces[at(side.piece)].path(side.path), side, opening_text,
+                              piece, room);
+            const auto [from, to] = opening_stretch(seam, k, opening);
+            text.keep_to(from, to);
+            if (!text.find())
+                continue; // the marks are there, and the cover says what they mean
+            room.take(text.text());
+            room.take(text.leader());
+            piece.names.push_back(text.text());
+            if (!text.leader().empty())
+                piece.leaders.push_back(text.leader());
+        }
+    }
+}
+
+// What stands beside a seam: its number, and the step that does it.
+std::string seam_text(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
+                      const ExportOptions& options, std::size_t s) {
+    const std::string& label = pattern.seams[s].label;
+    return options.step_numbers ? label + " (" + std::to_string(assembly.seam_step[s]) + ")"
+                                : label;
+}
 
 struct WrittenNumber {
     std::size_t piece = 0; // in the layout
@@ -351,22 +391,28 @@ void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
         {barb(from, -direction, arrow_angle), from, barb(from, -direction, -arrow_angle)}};
 }
 
-LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
-                  std::vector<SheetPiece>& pieces) {
+LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
+                  const ExportOptions& options, std::vector<SheetPiece>& pieces,
+                  const std::vector<std::vector<std::array<Vec2, 2>>>& borders) {
     LeftOut left_out;
     std::vector<std::vector<WrittenNumber>> written(pattern.seams.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
         const pattern::PatternPiece& source = pattern.pieces[piece.piece];
         Room room(piece);
+        if (!borders.empty())
+            for (const auto& [from, to] : borders[at(piece.sheet)])
+                room.take({from, to});
         if (options.labels && !add_name(source, pattern, piece, room))
             left_out.pieces.push_back(piece.piece);
+        if (options.labels && options.marks_openings())
+            write_openings(pattern, assembly, piece, room);
         for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)
             for (const pattern::SeamSide& side : pattern.seams[s].sides) {
                 if (side.piece != piece.piece)
                     continue;
-                NumberWriter number(source.path(side.path), side, pattern.seams[s].label, piece,
-                                    room);
+                NumberWriter number(source.path(side.path), side,
+                                    seam_text(pattern, assembly, options, s), piece, room);
                 if (!number.find())
                     continue;
                 room.take(number.text());

@@ -2,9 +2,12 @@
 // of its seams.
 #pragma once
 
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "devseg/assembly/assembly.h"
 #include "sheet/sheet_piece.h"
 
 namespace devseg::sheet {
@@ -22,6 +25,14 @@ OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& s
 /// Adds the notches of the piece, where the pattern has it; the cut and sew lines must be there.
 void add_notches(const pattern::Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
 
+/// From where to where an opening is on one side of its seam, mm from the seam's start.
+std::pair<double, double> opening_stretch(const pattern::Seam& seam, std::size_t side,
+                                          const assembly::Opening& opening);
+
+/// Adds brackets along the stretches of the piece's seams that stay open until the last step.
+void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
+                  SheetPiece& result);
+
 /// Adds the arrow along the threads, where it is long enough to be of use.
 void add_grain(const pattern::PatternPiece& piece, SheetPiece& result);
 
@@ -36,7 +47,9 @@ struct LeftOut {
 /// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
 /// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
 /// number on both sides or on none.
-LeftOut add_texts(const pattern::Pattern& pattern, const ExportOptions& options,
-                  std::vector<SheetPiece>& pieces);
+/// Openings are named as well. `borders`: for each sheet, lines that no text may cross; or nothing.
+LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
+                  const ExportOptions& options, std::vector<SheetPiece>& pieces,
+                  const std::vector<std::vector<std::array<Vec2, 2>>>& borders = {});
 
 } // namespace devseg::sheet

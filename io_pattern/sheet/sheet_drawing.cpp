@@ -5,23 +5,12 @@
 #include <limits>
 
 #include "devseg/plane/plane.h"
-#include "sheet/segment_grid.h"
+#include "sheet/drawing_plan.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
 
 namespace {
-
-constexpr double check_text = 8.0; // mm, font size
-
-// Importers that scale drawings do it unseen: a ruler on these squares shows it.
-struct CheckSquare {
-    const char* id;
-    const char* text;
-    double side; // mm
-};
-constexpr CheckSquare check_squares[] = {{"check-square", "50 mm", 50.0},
-                                         {"check-square-inch", "2 inch", 50.8}};
 
 // Three decimals (1 µm) are far below what a blade can follow. Small patterns, such as models in
 // metres exported at 1 mm for a unit, need more. The grid is to be at most this share of the
@@ -39,10 +28,6 @@ constexpr double least_caption = 1.2;
 constexpr double cross = 2.5; // mm, half the size of a registration cross
 constexpr double page_title = 6.0;
 constexpr double page_text = 3.5;
-
-writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
-    return {{low, low + Vec2(size.x(), 0.0), low + size, low + Vec2(0.0, size.y())}, true};
-}
 
 // Area of a path whose points are rounded to the grid; as they are for a grid of 0.
 double area_of(const writers::DrawingPath& path, double grid) {
@@ -90,41 +75,10 @@ int decimals_for(const writers::DrawingLayer& cut) {
     return decimals;
 }
 
-// The place of the sheets, and of the check squares in a strip beside them or below, whatever
-// takes less paper.
-struct Plan {
-    std::vector<Vec2> sheets; // lower left corners
-    std::vector<Vec2> squares;
-    Vec2 size = Vec2::Zero();
-};
-
-Plan plan_drawing(const PatternLayout& layout) {
-    const double strip = check_squares[1].side + sheet_margin;
-    const double along = check_squares[0].side + check_squares[1].side + 3.0 * sheet_margin;
-    Vec2 sheets(-sheet_gap, 0.0);
-    for (const PatternSheet& sheet : layout.sheets)
-        sheets =
-            Vec2(sheets.x() + sheet_gap + sheet.size.x(), std::max(sheets.y(), sheet.size.y()));
-    const Vec2 below(std::max(sheets.x(), along), sheets.y() + strip);
-    const Vec2 beside(sheets.x() + strip, std::max(sheets.y(), along));
-    const bool is_below = below.prod() <= beside.prod();
-    Plan plan;
-    plan.size = Vec2((is_below ? below : beside).array().ceil());
-    double x = 0.0;
-    for (const PatternSheet& sheet : layout.sheets) {
-        plan.sheets.emplace_back(x, is_below ? std::ceil(strip) : 0.0);
-        x += sheet.size.x() + sheet_gap;
-    }
-    const double step = check_squares[0].side + sheet_margin;
-    const Vec2 first = is_below ? Vec2::Constant(sheet_margin) : Vec2(sheets.x(), sheet_margin);
-    plan.squares = {first, first + (is_below ? Vec2(step, 0.0) : Vec2(0.0, step))};
-    return plan;
-}
-
 // One path, whose parts are the lines.
-void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const std::string& id,
-               writers::DrawingLayer& layer) {
-    writers::DrawingPath path{id, {}};
+void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const SheetPiece& piece,
+               const char* kind, writers::DrawingLayer& layer) {
+    writers::DrawingPath path{piece.name + kind, {}, piece.name};
     for (const std::vector<Vec2>& line : lines)
         path.parts.push_back({line, closed});
     if (!path.parts.empty())
@@ -133,9 +87,9 @@ void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const s
 
 // The same for closed lines that may be curves.
 void add_rings(const std::vector<std::vector<Vec2>>& rings,
-               const std::vector<std::vector<pattern::OutlineCurve>>& curves, const std::string& id,
-               writers::DrawingLayer& layer) {
-    writers::DrawingPath path{id, {}};
+               const std::vector<std::vector<pattern::OutlineCurve>>& curves,
+               const SheetPiece& piece, const char* kind, writers::DrawingLayer& layer) {
+    writers::DrawingPath path{piece.name + kind, {}, piece.name};
     for (std::size_t i = 0; i < rings.size(); ++i) {
         path.parts.push_back({rings[i], true});
         if (i < curves.size())
@@ -150,44 +104,11 @@ void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
     std::vector<std::vector<Vec2>> lines;
     for (const SheetNotch& notch : piece.notches)
         lines.push_back({notch.outer, notch.inner});
-    add_lines(lines, false, piece.name + "-notch", layer);
-}
-
-writers::DrawingLayer scale_layer(const PatternLayout& layout, const Plan& plan) {
-    writers::DrawingLayer layer{"scale", "Scale check", "#000000", {}, {}, {}};
-    layer.paths.push_back({"frame", {rectangle(Vec2::Zero(), plan.size)}});
-    if (layout.page)
-        for (std::size_t i = 0; i < layout.sheets.size(); ++i)
-            layer.paths.push_back({"sheet-" + std::to_string(i + 1),
-                                   {rectangle(plan.sheets[i], layout.sheets[i].size)}});
-    for (std::size_t i = 0; i < plan.squares.size(); ++i) {
-        const CheckSquare& square = check_squares[i];
-        const Vec2 side = Vec2::Constant(square.side);
-        layer.paths.push_back({square.id, {rectangle(plan.squares[i], side)}});
-        layer.texts.push_back({plan.squares[i] + 0.5 * side, check_text, square.text});
-    }
-    return layer;
+    add_lines(lines, false, piece, "-notch", layer);
 }
 
 writers::DrawingPolyline segment(const Vec2& a, const Vec2& b) {
     return {{a, b}, false};
-}
-
-bool touches_window(const std::vector<Vec2>& ring, const writers::PageWindow& window) {
-    const Eigen::AlignedBox2d box(window.low, window.low + window.size);
-    const std::vector<Vec2> corners = rectangle(window.low, window.size).points;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vec2& a = ring[i];
-        const Vec2& b = ring[(i + 1) % ring.size()];
-        if (!box.intersects(Eigen::AlignedBox2d(a).extend(b)))
-            continue;
-        if (box.contains(a))
-            return true;
-        for (std::size_t k = 0; k < 4; ++k)
-            if (plane::segments_touch(a, b, corners[k], corners[(k + 1) % 4]))
-                return true;
-    }
-    return plane::is_inside(ring, box.center()); // a page within a piece
 }
 
 // Crosses in the middle of the strips that a page shares with its neighbours, in the drawing.
@@ -247,7 +168,7 @@ void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::s
 } // namespace
 
 writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& options) {
-    const Plan plan = plan_drawing(layout);
+    const DrawingPlan plan = plan_drawing(layout, options.scale_check);
     const bool laser = options.preset == PatternPreset::laser;
     writers::DrawingLayer cut{"cut", "Cut", "#ff0000", {}, {}, {}};
     writers::DrawingLayer mountain{"mountain", "Fold mountain", "#0000ff", {}, {}, {}};
@@ -260,58 +181,38 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
     writers::DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
     for (SheetPiece piece : layout.pieces) {
         piece.move({1.0, 0.0, plan.sheets[piece.sheet]});
-        add_rings(piece.cut, piece.cut_curves, piece.name + "-cut", cut);
-        add_lines(piece.slits, false, piece.name + "-slit", piece.has_allowance() ? sew : cut);
-        add_rings(piece.sew, piece.sew_curves, piece.name + "-sew", sew);
-        add_lines(piece.mountains, false, piece.name + "-mountain", mountain);
-        add_lines(piece.valleys, false, piece.name + "-valley", valley);
-        add_lines(piece.grain, false, piece.name + "-grain", grain);
+        add_rings(piece.cut, piece.cut_curves, piece, "-cut", cut);
+        add_lines(piece.slits, false, piece, "-slit", piece.has_allowance() ? sew : cut);
+        add_rings(piece.sew, piece.sew_curves, piece, "-sew", sew);
+        add_lines(piece.mountains, false, piece, "-mountain", mountain);
+        add_lines(piece.valleys, false, piece, "-valley", valley);
+        add_lines(piece.grain, false, piece, "-grain", grain);
         add_notches(piece, notch);
-        add_lines(piece.leaders, false, piece.name + "-leader", laser ? engrave : numbers);
+        add_lines(piece.openings, false, piece, "-opening", notch);
+        add_lines(piece.leaders, false, piece, "-leader", laser ? engrave : numbers);
         for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
                                            std::pair(&piece.numbers, laser ? &engrave : &numbers)})
-            layer->texts.insert(layer->texts.end(), texts->begin(), texts->end());
+            for (writers::DrawingText written : *texts) {
+                written.owner = piece.name;
+                layer->texts.push_back(std::move(written));
+            }
     }
     writers::Drawing drawing;
     drawing.width = plan.size.x();
     drawing.height = plan.size.y();
     drawing.decimals = decimals_for(cut);
-    drawing.layers = {cut,     mountain, valley,  sew,
-                      notch,   grain,    engrave, scale_layer(layout, plan),
-                      numbers, text};
+    drawing.by_piece = options.group == Grouping::piece;
     for (std::size_t i = 0; i < layout.sheets.size() && layout.page; ++i)
         drawing.sheets.push_back({plan.sheets[i], layout.sheets[i].size});
+    const std::vector<PrintedPage> pages = printed_pages(layout, drawing);
+    for (std::size_t i = 0; i < pages.size() && layout.page; ++i)
+        drawing.pages.push_back(
+            {pages[i].window.low - pages[i].window.position, layout.page->size});
+    drawing.layers = {
+        cut,     mountain, valley,  sew,
+        notch,   grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
+        numbers, text};
     return drawing;
-}
-
-std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
-                                       const writers::Drawing& drawing) {
-    if (!layout.page)
-        return {
-            {{Vec2::Zero(), Vec2(drawing.width, drawing.height), Vec2::Zero(), 1.0}, 0, 0, 0, {}}};
-    const PageFormat& format = *layout.page;
-    std::vector<PrintedPage> pages;
-    for (std::size_t s = 0; s < layout.sheets.size(); ++s) {
-        const PatternSheet& sheet = layout.sheets[s];
-        for (Index row = 0; row < sheet.rows; ++row)
-            for (Index column = 0; column < sheet.columns; ++column) {
-                PrintedPage page;
-                page.sheet = static_cast<Index>(s);
-                page.row = row;
-                page.column = column;
-                const Vec2 low = Vec2::Constant(format.margin) +
-                                 Vec2(column, sheet.rows - 1 - row).cwiseProduct(format.step());
-                page.window = {low, format.printable(), Vec2::Constant(format.margin), 1.0};
-                for (std::size_t p = 0; p < layout.pieces.size(); ++p)
-                    if (layout.pieces[p].sheet == page.sheet &&
-                        touches_window(layout.pieces[p].cut.front(), page.window))
-                        page.pieces.push_back(static_cast<Index>(p));
-                page.window.low += drawing.sheets[s].low;
-                if (!page.pieces.empty())
-                    pages.push_back(page);
-            }
-    }
-    return pages;
 }
 
 std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "devseg/base/errors.h"
+#include "devseg/declare/segmentation_output.h"
 #include "devseg/pattern/curves.h"
 #include "devseg/pattern/inside.h"
 #include "devseg/plane/plane.h"
@@ -217,7 +218,7 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
     for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
-                        &piece.grain, &piece.leaders})
+                        &piece.grain, &piece.leaders, &piece.openings})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
@@ -271,6 +272,14 @@ void SheetPiece::mirror(double axis) {
     frame.mirrored = true;
     frame.placement.sine = -frame.placement.sine;
     frame.placement.offset.x() = 2.0 * axis - frame.placement.offset.x();
+}
+
+std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern) {
+    atlas::ChartMap charts;
+    charts.count = static_cast<Index>(pattern.pieces.size()) + 1;
+    for (const Index piece : pattern.face_piece)
+        charts.chart.push_back(piece < 0 ? charts.count - 1 : piece);
+    return declare::chart_colors(pattern.mesh, charts);
 }
 
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devseg/declare/filter.h"
 #include "devseg/pack/pack.h"
 #include "devseg/pattern/pattern.h"
 #include "sheet/allowance.h"
@@ -40,7 +41,8 @@ struct SheetPiece {
     std::vector<std::vector<Vec2>> mountains; // open lines
     std::vector<std::vector<Vec2>> valleys;
     std::vector<SheetNotch> notches;
-    std::vector<std::vector<Vec2>> grain; // the arrow's lines
+    std::vector<std::vector<Vec2>> openings; // brackets along what stays open
+    std::vector<std::vector<Vec2>> grain;    // the arrow's lines
     std::vector<writers::DrawingText> names;
     std::vector<writers::DrawingText> numbers; // of seams
     std::vector<std::vector<Vec2>> leaders;    // lines from seams to numbers that lie apart
@@ -56,6 +58,9 @@ struct SheetPiece {
     /// become valley folds.
     void mirror(double axis);
 };
+
+/// A colour for each piece of the pattern, and a last one for faces in no piece.
+std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern);
 
 /// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece,

@@ -30,6 +30,7 @@ struct DrawingPolyline {
 struct DrawingPath {
     std::string id; // unique in the drawing, or empty
     std::vector<DrawingPolyline> parts;
+    std::string owner = {}; // the piece that it belongs to, or empty
 };
 
 enum class TextAnchor { middle, left };
@@ -40,6 +41,7 @@ struct DrawingText {
     std::string text;             // UTF-8
     double angle = 0.0;           // counterclockwise, radians
     TextAnchor anchor = TextAnchor::middle;
+    std::string owner = {}; // the piece that it belongs to, or empty
 };
 
 struct DrawingLayer {
@@ -63,6 +65,13 @@ struct Drawing {
     int decimals = 3;                 // of all numbers in the file, enough for the smallest path
     std::vector<DrawingLayer> layers; // those without paths and texts are not written
     std::vector<DrawingSheet> sheets; // none: the whole drawing is one
+    std::vector<DrawingSheet> pages;  // of the sheets; those of one sheet share strips
+    /// 0 where the whole drawing is one sheet.
+    Vec2 sheet_low(Index sheet) const {
+        return sheets.empty() ? Vec2(Vec2::Zero()) : sheets[at(sheet)].low;
+    }
+    bool by_piece = false; // what belongs to one piece makes one group, if a format
+                           // knows groups
 };
 
 /// Pixels from the upper left corner, row by row, red, green and blue each.

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "writers/font.h"
 #include "writers/pdf_objects.h"
 #include "writers/text.h"
 
@@ -28,6 +30,8 @@ public:
         tree_ = objects_.reserve();
         font_ = objects_.add("<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica "
                              "/Encoding /WinAnsiEncoding >>");
+        if (has_wide_text())
+            wide_font_ = objects_.reserve();
         declare_layers();
         const std::string pattern = content(document_.drawing.layers);
         form_ = objects_.add_stream(
@@ -37,6 +41,8 @@ public:
         std::string kids;
         for (const DocumentPage& page : document_.pages)
             kids += PdfObjects::reference(add_page(page)) + ' ';
+        if (wide_font_ > 0)
+            define_wide_font();
         objects_.define(tree_, "<< /Type /Pages /Count " + std::to_string(document_.pages.size()) +
                                    " /Kids [" + kids + "] >>");
         objects_.define(catalogue, "<< /Type /Catalog /Pages " + PdfObjects::reference(tree_) +
@@ -50,6 +56,81 @@ public:
     }
 
 private:
+    bool has_wide_text() const {
+        const auto is_wide = [](const DrawingLayer& layer) {
+            return std::any_of(layer.texts.begin(), layer.texts.end(),
+                               [](const DrawingText& text) { return needs_font(text.text); });
+        };
+        const auto& layers = document_.drawing.layers;
+        return std::any_of(layers.begin(), layers.end(), is_wide) ||
+               std::any_of(document_.pages.begin(), document_.pages.end(),
+                           [&](const DocumentPage& page) {
+                               return std::any_of(page.marks.begin(), page.marks.end(), is_wide);
+                           });
+    }
+
+    // The glyphs that are used, under their numbers, with a map back for who copies text.
+    void define_wide_font() {
+        const Font& font = Font::built_in();
+        std::set<int> glyphs;
+        std::string widths;
+        std::string map;
+        for (const auto& [glyph, point] : used_glyphs_) {
+            glyphs.insert(glyph);
+            widths +=
+                std::to_string(glyph) + " [" + number_text(1000.0 * font.advance(glyph), 0) + "] ";
+            map += '<' + hex(static_cast<unsigned>(glyph)) + "> <" + hex(point) + ">\n";
+        }
+        const std::string data = font.subset(glyphs);
+        const int file = objects_.add_stream("/Length1 " + std::to_string(data.size()), data);
+        const std::string name = "/BaseFont /DEVSEG+DejaVuSans";
+        const int descriptor = objects_.add(
+            "<< /Type /FontDescriptor /FontName /DEVSEG+DejaVuSans /Flags 32 /FontBBox [-1021 -463 "
+            "1793 1232] /ItalicAngle 0 /Ascent 928 /Descent -236 /CapHeight 729 /StemV 80 "
+            "/FontFile2 " +
+            PdfObjects::reference(file) + " >>");
+        const int glyph_font = objects_.add(
+            "<< /Type /Font /Subtype /CIDFontType2 " + name +
+            " /CIDSystemInfo << /Registry (Adobe) /Ordering (Identity) /Supplement 0 >> "
+            "/CIDToGIDMap /Identity /DW 600 /W [" +
+            widths + "] /FontDescriptor " + PdfObjects::reference(descriptor) + " >>");
+        const int unicode = objects_.add_stream(
+            "", "/CIDInit /ProcSet findresource begin 12 dict begin begincmap\n/CMapName /devseg "
+                "def\n/CMapType 2 def\n1 begincodespacerange <0000> <FFFF> endcodespacerange\n" +
+                    std::to_string(used_glyphs_.size()) + " beginbfchar\n" + map +
+                    "endbfchar\nendcmap CMapName currentdict /CMap defineresource pop end end\n");
+        objects_.define(wide_font_, "<< /Type /Font /Subtype /Type0 " + name +
+                                        " /Encoding /Identity-H /DescendantFonts [" +
+                                        PdfObjects::reference(glyph_font) + "] /ToUnicode " +
+                                        PdfObjects::reference(unicode) + " >>");
+    }
+
+    // UTF-16, big-endian.
+    static std::string hex(unsigned point) {
+        const auto digits = [](unsigned value) {
+            static const char* const names = "0123456789ABCDEF";
+            std::string four;
+            for (int shift = 12; shift >= 0; shift -= 4)
+                four += names[value >> shift & 15U];
+            return four;
+        };
+        if (point < 0x10000)
+            return digits(point);
+        return digits(0xd800 + ((point - 0x10000) >> 10)) + digits(0xdc00 + (point & 0x3ffU));
+    }
+
+    std::string shown_text(const std::string& utf8) {
+        if (!needs_font(utf8))
+            return PdfObjects::literal(latin1(utf8));
+        std::string text = "<";
+        for (const unsigned point : code_points(utf8)) {
+            const int glyph = Font::built_in().glyph(point);
+            used_glyphs_.emplace(glyph, point);
+            text += hex(static_cast<unsigned>(glyph));
+        }
+        return text + '>';
+    }
+
     // A layer of the same id is the same group on all pages.
     void declare_layers() {
         const auto declare = [&](const DrawingLayer& layer) {
@@ -69,7 +150,9 @@ private:
     }
 
     std::string resources(const std::string& objects) const {
-        return "<< /Font << /F1 " + PdfObjects::reference(font_) + " >> /Properties << " +
+        const std::string wide =
+            wide_font_ > 0 ? " /F2 " + PdfObjects::reference(wide_font_) : std::string();
+        return "<< /Font << /F1 " + PdfObjects::reference(font_) + wide + " >> /Properties << " +
                properties_ + ">> /XObject << " + objects + ">> >>";
     }
 
@@ -110,7 +193,7 @@ private:
                                    std::string(image.rgb.begin(), image.rgb.end()));
     }
 
-    std::string content(const std::vector<DrawingLayer>& layers) const {
+    std::string content(const std::vector<DrawingLayer>& layers) {
         std::string data = millimetres(line_width) + " w 1 j 1 J\n";
         for (const DrawingLayer& layer : layers) {
             if (layer.paths.empty() && layer.texts.empty())
@@ -154,12 +237,13 @@ private:
         data += "S\n";
     }
 
-    void append(const DrawingText& text, std::string& data) const {
+    void append(const DrawingText& text, std::string& data) {
         const double c = std::cos(text.angle);
         const double s = std::sin(text.angle);
-        data += "BT /F1 " + millimetres(text.size) + " Tf " + factor(c) + ' ' + factor(s) + ' ' +
-                factor(-s) + ' ' + factor(c) + ' ' + point(text_start(text)) + " Tm " +
-                PdfObjects::literal(latin1(text.text)) + " Tj ET\n";
+        data += std::string("BT ") + (needs_font(text.text) ? "/F2 " : "/F1 ") +
+                millimetres(text.size) + " Tf " + factor(c) + ' ' + factor(s) + ' ' + factor(-s) +
+                ' ' + factor(c) + ' ' + point(text_start(text)) + " Tm " + shown_text(text.text) +
+                " Tj ET\n";
     }
 
     static std::string colour(const std::string& code) {
@@ -183,6 +267,8 @@ private:
     std::string properties_; // the same by name, for content
     int tree_ = 0;
     int font_ = 0;
+    int wide_font_ = 0;                   // 0 = every text is written in the standard font
+    std::map<int, unsigned> used_glyphs_; // with their code points
     int form_ = 0;
 };
 

@@ -3,6 +3,8 @@
 //   Layers: attributes groupmode and label of Inkscape's namespace.
 #include "writers/svg_writer.h"
 
+#include <algorithm>
+
 #include <QByteArray>
 #include <QString>
 #include <QXmlStreamWriter>
@@ -16,6 +18,8 @@ namespace {
 const char* const svg_namespace = "http://www.w3.org/2000/svg";
 const char* const inkscape_namespace = "http://www.inkscape.org/namespaces/inkscape";
 const char* const sodipodi_namespace = "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd";
+
+const char* const all = "*"; // no piece has this name
 
 constexpr double stroke_width = 0.1; // mm, a hairline that viewers still show
 
@@ -39,9 +43,11 @@ public:
         xml_.writeAttribute("height", height + "mm");
         xml_.writeAttribute("viewBox", "0 0 " + width + ' ' + height);
         write_view();
+        if (drawing_.by_piece)
+            for (const std::string& piece : owners())
+                write_piece(piece);
         for (const DrawingLayer& layer : drawing_.layers)
-            if (!layer.paths.empty() || !layer.texts.empty())
-                write_layer(layer);
+            write_layer(layer, "", drawing_.by_piece ? "" : all);
         xml_.writeEndDocument();
         return bytes_;
     }
@@ -51,7 +57,7 @@ private:
     void write_view() {
         xml_.writeStartElement(sodipodi_namespace, "namedview");
         xml_.writeAttribute(inkscape_namespace, "document-units", "mm");
-        for (const DrawingSheet& sheet : drawing_.sheets) {
+        for (const DrawingSheet& sheet : drawing_.pages) {
             xml_.writeEmptyElement(inkscape_namespace, "page");
             xml_.writeAttribute("x", number(sheet.low.x()));
             xml_.writeAttribute("y", number(drawing_.height - sheet.low.y() - sheet.size.y()));
@@ -61,15 +67,48 @@ private:
         xml_.writeEndElement();
     }
 
-    void write_layer(const DrawingLayer& layer) {
+    // Pieces in the order in which they are cut.
+    std::vector<std::string> owners() const {
+        std::vector<std::string> names;
+        for (const DrawingLayer& layer : drawing_.layers)
+            for (const DrawingPath& path : layer.paths)
+                if (!path.owner.empty() &&
+                    std::find(names.begin(), names.end(), path.owner) == names.end())
+                    names.push_back(path.owner);
+        return names;
+    }
+
+    // Everything of one piece, by operation: it moves as one.
+    void write_piece(const std::string& piece) {
+        begin_layer(piece, piece);
+        for (const DrawingLayer& layer : drawing_.layers)
+            write_layer(layer, piece + '-', piece);
+        xml_.writeEndElement();
+    }
+
+    void begin_layer(const std::string& id, const std::string& label) {
         xml_.writeStartElement(svg_namespace, "g");
-        xml_.writeAttribute("id", text(layer.id));
+        xml_.writeAttribute("id", text(id));
         xml_.writeAttribute(inkscape_namespace, "groupmode", "layer");
-        xml_.writeAttribute(inkscape_namespace, "label", text(layer.label));
+        xml_.writeAttribute(inkscape_namespace, "label", text(label));
+    }
+
+    // What belongs to one piece, to none (""), or all of it.
+    void write_layer(const DrawingLayer& layer, const std::string& prefix,
+                     const std::string& piece) {
+        const auto is_wanted = [&](const auto& item) {
+            return piece == all || item.owner == piece;
+        };
+        if (std::none_of(layer.paths.begin(), layer.paths.end(), is_wanted) &&
+            std::none_of(layer.texts.begin(), layer.texts.end(), is_wanted))
+            return;
+        begin_layer(prefix + layer.id + (prefix.empty() ? "" : "-layer"), layer.label);
         for (const DrawingPath& path : layer.paths)
-            write_path(path, layer);
+            if (is_wanted(path))
+                write_path(path, layer);
         for (const DrawingText& item : layer.texts)
-            write_text(item, layer);
+            if (is_wanted(item))
+                write_text(item, layer);
         xml_.writeEndElement();
     }
 

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "writers/font.h"
+
 namespace devseg::writers {
 
 namespace {
@@ -19,7 +21,18 @@ constexpr std::array<int, 95> widths = {
     222, 833, 556, 556, 556, 556, 333, 500, 278, 556, 500, 722, 500, 500,  500, 334, 260, 334, 584};
 constexpr int other_width = 667; // accented letters are as wide as their letter, at most about this
 
-// Code points of valid UTF-8; stray bytes count as characters that no file can hold.
+// One byte for each character; `last` is the largest that fits.
+std::string narrowed(const std::string& utf8, unsigned last) {
+    std::string bytes;
+    for (const unsigned point : code_points(utf8)) {
+        const bool control = point < 0x20 || (point >= 0x7f && point < 0xa0);
+        bytes.push_back(control ? ' ' : point > last ? '?' : static_cast<char>(point));
+    }
+    return bytes;
+}
+
+} // namespace
+
 std::vector<unsigned> code_points(const std::string& utf8) {
     std::vector<unsigned> points;
     for (std::size_t i = 0; i < utf8.size();) {
@@ -32,18 +45,6 @@ std::vector<unsigned> code_points(const std::string& utf8) {
     }
     return points;
 }
-
-// One byte for each character; `last` is the largest that fits.
-std::string narrowed(const std::string& utf8, unsigned last) {
-    std::string bytes;
-    for (const unsigned point : code_points(utf8)) {
-        const bool control = point < 0x20 || (point >= 0x7f && point < 0xa0);
-        bytes.push_back(control ? ' ' : point > last ? '?' : static_cast<char>(point));
-    }
-    return bytes;
-}
-
-} // namespace
 
 std::string number_text(double value, int decimals) {
     char digits[400]; // the largest double has 309 digits
@@ -59,10 +60,13 @@ std::string number_text(double value, int decimals) {
 }
 
 double text_width(const std::string& text, double size) {
-    int width = 0;
+    double width = 0.0;
+    const bool in_font = needs_font(text);
     for (const unsigned point : code_points(text))
-        width += point >= 32 && point < 127 ? widths[point - 32] : other_width;
-    return 1e-3 * width * size;
+        width += in_font ? Font::built_in().advance(Font::built_in().glyph(point))
+                 : point >= 32 && point < 127 ? 1e-3 * widths[point - 32]
+                                              : 1e-3 * other_width;
+    return width * size;
 }
 
 Vec2 text_baseline(const DrawingText& text) {

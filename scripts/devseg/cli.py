@@ -407,6 +407,7 @@ _LABELS = {
     "svg": "pattern",
     "pdf": "pattern",
     "dxf": "pattern",
+    "html": "guide",
     "ply": "mesh",
     "obj": "mesh",
     "png": "picture",

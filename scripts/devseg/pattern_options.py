@@ -9,10 +9,12 @@ from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
 # Formats that the export filter writes.
-PATTERN_FORMATS = ("svg", "pdf", "dxf")
+PATTERN_FORMATS = ("svg", "pdf", "dxf", "html")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
+TEXTS = {"text": "Text", "paths": "Paths"}
+GROUPS = {"layer": "Layer", "piece": "Piece"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -67,6 +69,18 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--tab-depth-mm", type=millimetres(0.5), metavar="D", help="of glue tabs; default: 5"
     )
+    group.add_argument(
+        "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
+    )
+    group.add_argument(
+        "--text", choices=TEXTS, help="texts of an SVG, as outlines or not; default: text"
+    )
+    group.add_argument(
+        "--sewing-mm-per-minute", type=length(), metavar="R", help="sewing rate; default: 100"
+    )
+    group.add_argument(
+        "--stuffing-g-per-litre", type=length(), metavar="D", help="density; default: 30"
+    )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     _add_switches(group)
 
@@ -76,6 +90,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("glue-tabs", "flaps to glue the pieces with"),
         ("fold-lines", "mountain and valley folds"),
         ("edge-numbers", "the number of each seam on both sides"),
+        ("step-numbers", "the step of the assembly behind each seam number"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
     ):
@@ -85,6 +100,16 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
     )
     group.add_argument(
         "--no-labels", action="store_false", dest="labels", default=None, help="no piece names"
+    )
+    group.add_argument(
+        "--no-frame", action="store_false", dest="frame", default=None, help="SVG, DXF: no frame"
+    )
+    group.add_argument(
+        "--no-scale-check",
+        action="store_false",
+        dest="scale_check",
+        default=None,
+        help="SVG, DXF: no squares to check the scale with",
     )
     group.add_argument(
         "--no-cover", action="store_false", dest="cover", default=None, help="PDF: patterns only"
@@ -110,19 +135,35 @@ _PARAMETERS = (
     "tiling",
     "cover",
     "labels",
+    "frame",
+    "step_numbers",
+    "sewing_mm_per_minute",
+    "stuffing_g_per_litre",
+    "scale_check",
 )
 
 # The option that sets a parameter of the export filter.
 OPTION_OF = {
-    **{name: f"--{name.replace('_', '-')}" for name in (*_PARAMETERS, "preset", "corner_style")},
+    **{
+        name: f"--{name.replace('_', '-')}"
+        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text")
+    },
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
     "labels": "--no-labels",
     "cover": "--no-cover",
+    "frame": "--no-frame",
+    "scale_check": "--no-scale-check",
     "dxf_kind": "--dxf",
 }
 
-_CHOICES = {"preset": PRESETS, "dxf_kind": DXF_KINDS, "corner_style": CORNERS}
+_CHOICES = {
+    "preset": PRESETS,
+    "dxf_kind": DXF_KINDS,
+    "corner_style": CORNERS,
+    "group": GROUPS,
+    "text": TEXTS,
+}
 
 
 def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:

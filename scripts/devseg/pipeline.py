@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import host, ply, scene
+from devseg import guide, host, ply, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
@@ -113,9 +113,9 @@ class Session:
         """Applies a filter of the host that shapes no result, without noting its parameters."""
         return self._guard(self.meshes.apply_filter, name, **parameters) or {}
 
-    def export(self, file: Path, parameters: Mapping[str, Any]) -> None:
-        """Writes the pattern, in the format of the file's extension."""
-        self._noted(EXPORT_FILTER, output_file=str(file), **self._weld, **parameters)
+    def export(self, file: Path, parameters: Mapping[str, Any]) -> dict[str, Any]:
+        """Writes the pattern, in the format of the file's extension; the filter's results."""
+        return self._noted(EXPORT_FILTER, output_file=str(file), **self._weld, **parameters)
 
     def save(self, file: Path, **parameters: Any) -> None:
         """Saves the current mesh, in the format of the file's extension."""
@@ -192,6 +192,7 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
         "parts": scene.counted(session.meshes.current_mesh(), loaded.parts),
         "size_mm": extents,
         **measures,
+        **writer.guide,
         "parameters": {**session.parameters, "pattern": pattern},
         "versions": versions(),
         "warnings": session.warnings,
@@ -425,6 +426,7 @@ class _Writer:
         self.stem = stem
         self.progress = progress
         self.outputs: dict[str, str] = {}
+        self.guide: dict[str, Any] = {}
 
     def _target(self, extension: str) -> Path:
         # with_suffix would cut a name such as "part.v2".
@@ -433,7 +435,8 @@ class _Writer:
     def write_patterns(self, pattern: Mapping[str, Any]) -> None:
         """What shows the mesh upright: patterns and the picture."""
         for extension in self._formats(PATTERN_FORMATS):
-            self.session.export(self._target(extension), pattern)
+            results = self.session.export(self._target(extension), pattern)
+            self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
         if self.options.picture:
             with self.progress.stage("picture"):
                 from devseg.render import render_pair

@@ -202,6 +202,22 @@ def test_pages_of_a_pdf(flattened: Any, export: Callable) -> None:
     assert files.renders(path)
 
 
+def test_names_in_other_scripts_are_drawn(flattened: Any, tmp_path: Path) -> None:
+    name = "\u041c\u0435\u0434\u0432\u0435\u0434\u044c \u0142 \u03a9"
+    path = tmp_path / f"{name}.pdf"
+    flattened.apply_filter("export_pattern", output_file=str(path), page="a4", mm_per_unit=50.0)
+    reader = pypdf.PdfReader(path, strict=True)
+    assert all(name in page.extract_text() for page in reader.pages)
+    fonts = reader.pages[0]["/Resources"]["/Font"]
+    (glyphs,) = fonts["/F2"].get_object()["/DescendantFonts"]
+    assert "/FontFile2" in glyphs.get_object()["/FontDescriptor"]
+    assert path.stat().st_size < 1_000_000
+    assert files.renders(path)
+    plain = tmp_path / "bear.pdf"
+    flattened.apply_filter("export_pattern", output_file=str(plain), page="a4", mm_per_unit=50.0)
+    assert "/F2" not in pypdf.PdfReader(plain).pages[0]["/Resources"]["/Font"]
+
+
 def test_apparel_dxf(flattened: Any, export: Callable) -> None:
     path = export(flattened, "dxf", preset="Sewing", mm_per_unit=50.0)
     text = path.read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,18 @@ def flattened(pymeshlab: Any) -> Any:
     ms.compute_seams_charts_to_disks_per_edge()
     ms.compute_texcoord_parametrization_charts_per_wedge()
     return ms
+
+
+@pytest.fixture
+def export(flattened: Any, tmp_path: Path) -> Callable[..., Path]:
+    """As `save`, with all parameters of the filter."""
+
+    def make(**parameters: Any) -> Path:
+        path = tmp_path / "pattern.svg"
+        flattened.apply_filter("export_pattern", output_file=str(path), **parameters)
+        return path
+
+    return make
 
 
 @pytest.fixture
@@ -156,3 +169,68 @@ def test_texture_coordinates_from_elsewhere_are_exported(meshset: Any, tmp_path:
     path = tmp_path / "foreign.svg"
     ms.save_current_mesh(str(path), mm_per_unit=10.0)
     assert sum(map(area, outlines(path))) == pytest.approx(600, rel=1e-3)
+
+
+def test_every_page_has_its_size_and_its_check_square(export: Callable) -> None:
+    path = export(preset="Sewing", page="a4", mm_per_unit=60.0)
+    root = etree.parse(str(path)).getroot()
+    pages = [
+        tuple(float(page.get(key)) for key in ("x", "y", "width", "height"))
+        for page in root.iter(f"{INKSCAPE}page")
+    ]
+    assert len(pages) > 2
+    assert all(page[2:] == (210, 297) for page in pages)
+    drawn = SVG.parse(str(path), ppi=25.4, reify=True)
+    for number, (x, y, width, height) in enumerate(pages, 1):
+        x0, y0, x1, y1 = drawn.get_element_by_id(f"check-square-{number}").bbox()
+        assert (x1 - x0, y1 - y0) == pytest.approx((50, 50), abs=0.01)
+        assert x <= x0 and x1 <= x + width and y <= y0 and y1 <= y + height
+
+
+def test_a_pattern_on_one_page_is_as_large_as_the_page(export: Callable) -> None:
+    path = export(page="a4", mm_per_unit=15.0)
+    root = etree.parse(str(path)).getroot()
+    assert (root.get("width"), root.get("height")) == ("210mm", "297mm")
+    drawn = SVG.parse(str(path), ppi=25.4, reify=True)
+    square = np.array(drawn.get_element_by_id("check-square").bbox())
+    for polygon in outlines(path):
+        low, high = polygon.min(axis=0), polygon.max(axis=0)
+        assert (high < square[:2]).any() or (low > square[2:]).any(), "the square lies on a piece"
+
+
+def test_frame_and_check_squares_can_be_left_out(export: Callable) -> None:
+    for page in ("none", "a4"):
+        assert "scale" in layers(export(page=page, mm_per_unit=15.0, frame=False))
+        assert "check-square" not in export(
+            page=page, mm_per_unit=15.0, scale_check=False
+        ).read_text(encoding="utf-8")
+        bare = export(page=page, mm_per_unit=15.0, frame=False, scale_check=False)
+        assert "scale" not in layers(bare) and "cut" in layers(bare)
+
+
+def test_a_piece_is_one_group(export: Callable) -> None:
+    options = {"preset": "Sewing", "mm_per_unit": 30.0}
+    flat = layers(export(**options))
+    grouped = layers(export(**options, group="Piece"))
+    names = {path.get("id")[:3] for path in flat["cut"].iter(f"{SVG_NS}path")}
+    assert names and names <= set(grouped)
+    for name in names:
+        parts = {child.get("id") for child in grouped[name]}
+        assert {f"{name}-cut-layer", f"{name}-sew-layer", f"{name}-text-layer"} <= parts
+        assert any(text.text == name for text in grouped[name].iter(f"{SVG_NS}text"))
+    count = {kind: sum(1 for _ in flat[kind].iter()) for kind in ("cut", "numbers", "notch")}
+    for kind, elements in count.items():
+        inside = [g for key, g in grouped.items() if key.endswith(f"-{kind}-layer")]
+        assert sum(sum(1 for _ in group.iter()) - 1 for group in inside) == elements - 1
+
+
+def test_texts_can_be_outlines(export: Callable) -> None:
+    options = {"preset": "Sewing", "mm_per_unit": 30.0, "scale_check": False}
+    written = export(**options).read_text("utf-8")
+    drawn = export(**options, text="Paths")
+    assert "<text" in written and "<text" not in drawn.read_text("utf-8")
+    found = layers(drawn)
+    names = len(re.findall(r">P\d+<", written))
+    assert names >= 1 and len(found["text"]) >= names
+    for path in found["text"]:
+        assert path.get("d").startswith("M ") and path.get("d").endswith("Z")

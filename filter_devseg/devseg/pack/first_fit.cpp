@@ -151,13 +151,13 @@ FitImage::FitImage(ChartCells image) : cells(std::move(image)) {
 }
 
 FreeCells::FreeCells(Index width, Index longest_run)
-    : width_(width), words_(at(width / word_bits) + 2), levels_(log2_floor(longest_run) + 1),
-      blocked_(words_) {}
+    : width_(width), words_(at(width / word_bits) + 2),
+      levels_(log2_floor(std::min(width, longest_run)) + 1), blocked_(words_) {}
 
 bool FreeCells::put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot) {
     bool found = false;
     for (std::size_t pose = 0; pose < poses.size(); ++pose)
-        if (find(poses[pose], from, limit, spot)) {
+        if (find(poses[pose], {0, width_, from, limit - 1}, spot)) {
             found = true;
             spot.pose = pose;
             limit = spot.y + poses[pose].cells.height;
@@ -167,11 +167,12 @@ bool FreeCells::put(const std::vector<FitImage>& poses, Index from, Index limit,
     return found;
 }
 
-bool FreeCells::find(const FitImage& image, Index from, Index limit, Spot& spot) {
-    if (image.cells.width > width_)
+bool FreeCells::find(const FitImage& image, const FitWindow& window, Spot& spot) {
+    last_ = std::min(width_, window.right) - image.cells.width;
+    if (last_ < window.left)
         return false;
-    for (Index y = from; y + image.cells.height < limit; ++y)
-        if (find_blocked(image, y)) {
+    for (Index y = window.from; y <= window.top - image.cells.height; ++y)
+        if (find_blocked(image, y, window.left)) {
             spot.x = first_free();
             spot.y = y;
             return true;
@@ -225,16 +226,18 @@ void FreeCells::bring_up_to_date(Index y) {
     room_[y] = longest;
 }
 
-// Marks the places in row y where the image lies on others; false if none is left.
-bool FreeCells::find_blocked(const FitImage& image, Index y) {
+// Marks the places in row y, from `left` to `last_`, where the image lies on others; false if none
+// is left.
+bool FreeCells::find_blocked(const FitImage& image, Index y, Index left) {
     const auto rows = static_cast<Index>(room_.size());
     for (const CellRun& run : image.runs)
         if (y + run.row < rows && length(run) > room_[y + run.row])
             return false;
-    last_ = width_ - image.cells.width;
     const std::size_t count = at(last_ / word_bits) + 1;
     std::fill_n(blocked_.begin(), count, Word{0});
-    blocked_[count - 1] = ~Word{0} << (last_ % word_bits) << 1; // no places there
+    std::fill_n(blocked_.begin(), left / word_bits, ~Word{0});
+    blocked_[left / word_bits] = (Word{1} << (left % word_bits)) - 1; // no places there,
+    blocked_[count - 1] |= ~Word{0} << (last_ % word_bits) << 1;      // nor there
     for (const CellRun& run : image.runs) {
         const Index row = y + run.row;
         if (row >= rows)

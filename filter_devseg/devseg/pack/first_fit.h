@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "devseg/pack/outline.h"
@@ -28,6 +29,14 @@ struct FitImage {
 
 constexpr double sheet_cells = 320.0; // along a sheet of pieces: fine enough for hands and scissors
 
+/// Where a chart may lie on a grid: columns left … right − 1, rows from … top − 1.
+struct FitWindow {
+    Index left = 0;
+    Index right = std::numeric_limits<Index>::max();
+    Index from = 0;
+    Index top = std::numeric_limits<Index>::max();
+};
+
 /// Rows of cells, and for each power of two 2^k whether any of the 2^k cells from one on is taken.
 /// As many rows as are needed.
 class FreeCells {
@@ -39,6 +48,10 @@ public:
     /// leftmost, whose top is below `limit`. False where there is none.
     bool put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot);
 
+    /// The lowest place of one image in the window, then the leftmost. Nothing is put there.
+    bool find(const FitImage& image, const FitWindow& window, Spot& spot);
+    void take(const FitImage& image, const Spot& spot);
+
     Index height() const { return height_; }
 
 private:
@@ -46,10 +59,8 @@ private:
 
     Word* level(Index y, Index k) { return bits_.data() + (at(y) * at(levels_) + at(k)) * words_; }
     static void add_shifted(const Word* from, Index shift, std::size_t count, Word* to);
-    bool find(const FitImage& image, Index from, Index limit, Spot& spot);
-    bool find_blocked(const FitImage& image, Index y);
+    bool find_blocked(const FitImage& image, Index y, Index left);
     Index first_free() const;
-    void take(const FitImage& image, const Spot& spot);
     void bring_up_to_date(Index y);
 
     Index width_;

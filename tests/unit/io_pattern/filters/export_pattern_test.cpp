@@ -184,9 +184,9 @@ TEST(Notes, SayWhatThereWasNoRoomFor) {
         pattern::make_pattern(model.mesh, model.uv, resolved, progress);
     const sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, resolved, progress);
     std::string cover;
-    for (const writers::DocumentPage& page :
-         sheet::cover_pages(pattern, layout,
-                            sheet::printed_pages(layout, sheet::draw_sheets(layout, resolved)), ""))
+    for (const writers::DocumentPage& page : sheet::cover_pages(
+             pattern, layout, sheet::printed_pages(layout, sheet::draw_sheets(layout, resolved)),
+             resolved, ""))
         for (const writers::DrawingLayer& layer : page.marks)
             for (const writers::DrawingText& text : layer.texts)
                 cover += text.text;

@@ -6,6 +6,7 @@
 #include "devseg/base/errors.h"
 #include "sheet/export_options.h"
 #include "sheet/layout.h"
+#include "sheet/page_nesting.h"
 #include "unit/checks.h"
 
 namespace devseg::sheet {
@@ -52,6 +53,68 @@ TEST(Nesting, LeavesOutPiecesThatAreFarTooWide) {
     EXPECT_EQ(endless.sheet, (std::vector<Index>{-1, 0}));
     const Nesting page = nest_pieces({&huge, &upright}, {100.0, 120.0, 2.0, false}, progress);
     EXPECT_EQ(page.sheet, (std::vector<Index>{-1, -1}));
+}
+
+PageFormat small_page() {
+    return {Vec2(120.0, 160.0), 10.0}; // 100 x 140 mm to print on
+}
+
+std::vector<SheetPiece> put_on_pages(std::vector<SheetPiece> pieces, PageNesting& nesting) {
+    Progress progress;
+    nesting = nest_on_pages(pieces, small_page(), false, true, progress);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        pieces[i].move(nesting.placements[i]);
+        pieces[i].sheet = nesting.sheet[i];
+    }
+    return pieces;
+}
+
+TEST(PageNesting, PiecesThatFitOnAPageLieInsideItsBorder) {
+    PageNesting nesting;
+    std::vector<SheetPiece> pieces(9, rectangle(45, 60));
+    pieces.push_back(rectangle(150, 120)); // takes two pages, and leaves room on the second
+    const std::vector<SheetPiece> placed = put_on_pages(pieces, nesting);
+    for (std::size_t i = 0; i + 1 < placed.size(); ++i) {
+        const PatternSheet& sheet = nesting.sheets[at(placed[i].sheet)];
+        int homes = 0;
+        for (Index row = 0; row < sheet.rows; ++row)
+            for (Index column = 0; column < sheet.columns; ++column) {
+                const PageFormat page = small_page();
+                const Vec2 low =
+                    Vec2::Constant(page.margin + 0.4) + Vec2(column, row).cwiseProduct(page.step());
+                const Eigen::AlignedBox2d inside(low, low + page.printable() - Vec2::Constant(0.8));
+                homes += inside.contains(placed[i].box()) ? 1 : 0;
+            }
+        EXPECT_GE(homes, 1) << i << " lies on the border of its page";
+        for (std::size_t j = 0; j < placed.size(); ++j)
+            if (i != j && placed[i].sheet == placed[j].sheet) {
+                EXPECT_GE(placed[i].box().exteriorDistance(placed[j].box()), piece_gap - 1e-6);
+            }
+    }
+}
+
+TEST(PageNesting, LargePiecesShareTheirPages) {
+    PageNesting nesting;
+    // Each is a page and a half long: three of them take five pages one by one, and six apart.
+    put_on_pages({rectangle(90, 200), rectangle(90, 200), rectangle(90, 200)}, nesting);
+    Index pages = 0;
+    for (const PatternSheet& sheet : nesting.sheets)
+        pages += sheet.columns * sheet.rows;
+    EXPECT_LE(pages, 5);
+}
+
+TEST(PageNesting, IsTheSameInEveryRunAndCanBeCancelled) {
+    std::vector<SheetPiece> pieces;
+    for (int i = 0; i < 12; ++i)
+        pieces.push_back(rectangle(30 + 7 * (i % 5), 40 + 11 * (i % 7)));
+    PageNesting one;
+    PageNesting other;
+    const std::vector<SheetPiece> a = put_on_pages(pieces, one);
+    const std::vector<SheetPiece> b = put_on_pages(pieces, other);
+    for (std::size_t i = 0; i < a.size(); ++i)
+        EXPECT_EQ(a[i].cut, b[i].cut);
+    Progress cancelled([](double, const char*) { return false; });
+    EXPECT_THROW(nest_on_pages(pieces, small_page(), false, true, cancelled), Cancelled);
 }
 
 TEST(PageSize, KnowsNamesAndSizes) {

@@ -76,7 +76,7 @@ TEST(Texts, NamesCrossNoFoldsWhereThereIsRoom) {
     const pattern::Pattern pattern = pattern_of(60.0, 40.0);
     std::vector<SheetPiece> pieces{strip(60.0, 40.0)};
     pieces[0].mountains = {{Vec2(0, 20), Vec2(60, 20)}, {Vec2(30, 0), Vec2(30, 40)}};
-    EXPECT_TRUE(add_texts(pattern, {}, pieces).pieces.empty());
+    EXPECT_TRUE(add_texts(pattern, {}, {}, pieces).pieces.empty());
     ASSERT_EQ(pieces[0].names.size(), 1U);
     const Vec2 place = pieces[0].names[0].position;
     EXPECT_GT(std::abs(place.y() - 20.0), 0.36 * pieces[0].names[0].size);
@@ -88,7 +88,7 @@ TEST(Texts, NamesMayCrossFoldsThatLeaveNoRoom) {
     std::vector<SheetPiece> pieces{strip(30.0, 20.0)};
     for (int i = 1; i < 20; ++i)
         pieces[0].valleys.push_back({Vec2(0, i), Vec2(30, i)});
-    EXPECT_TRUE(add_texts(pattern, {}, pieces).pieces.empty());
+    EXPECT_TRUE(add_texts(pattern, {}, {}, pieces).pieces.empty());
     EXPECT_EQ(pieces[0].names.size(), 1U);
 }
 
@@ -108,7 +108,7 @@ TEST(Texts, LinesLeadToNumbersThatLieApart) {
     pieces[0].cut = {piece.outer.points};
     ExportOptions options = numbered();
     options.labels = false;
-    const LeftOut left_out = add_texts(pattern, options, pieces);
+    const LeftOut left_out = add_texts(pattern, {}, options, pieces);
     ASSERT_TRUE(left_out.seams.empty());
     ASSERT_EQ(pieces[0].numbers.size(), 2U);
     ASSERT_EQ(pieces[0].leaders.size(), 1U);

@@ -1,0 +1,30 @@
+// Pieces → pages: as few as a fixed effort finds.
+#pragma once
+
+#include <vector>
+
+#include "sheet/layout.h"
+
+namespace devseg::sheet {
+
+struct PageNesting {
+    std::vector<pack::Placement> placements; // one for each piece; the sheet's lower left corner,
+                                             // margins included, is the origin
+    std::vector<Index> sheet;                // one for each piece
+    std::vector<PatternSheet> sheets;        // those of several pages first, the emptiest last
+};
+
+/// Pieces that fit on a page lie on one. Larger ones lie on sheets of several pages that share
+/// strips, each where it takes the fewest new pages; others fill what they leave free, clear of the
+/// strips. The order of the pieces is changed again and again, from pieces on the emptiest page
+/// on, and what takes fewer pages stays. No piece touches the border of the printable area of a
+/// page that it fits on. The work is counted, not timed. Throws InvalidParameter where a piece is
+/// larger than a page that it may not leave (`tiling`), and Cancelled.
+PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
+                          bool keep_grain, bool tiling, Progress& progress);
+
+/// The part of a sheet's page that no page before it, in rows from below and in columns from the
+/// left, shows: what lies there needs the page. Millimetres, the sheet's lower left is the origin.
+Eigen::AlignedBox2d own_part(const PageFormat& page, Index column, Index row_from_below);
+
+} // namespace devseg::sheet

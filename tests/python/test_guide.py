@@ -1,0 +1,346 @@
+"""The order of assembly, what a pattern needs, and the HTML page in a real browser."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import meshes
+from devseg import guide
+from devseg.cli import main
+
+PAGE_LIMIT = 5_000_000  # bytes
+SCALE = 60.0  # mm for a unit
+
+
+@pytest.fixture(scope="module")
+def flattened(pymeshlab: Any) -> Any:
+    """A closed ball in several pieces."""
+    ms = pymeshlab.MeshSet()
+    ms.create_sphere(radius=1.0, subdiv=4)
+    ms.compute_segmentation_variational_shape_approximation_per_face(charts_number=6)
+    ms.compute_seams_charts_to_disks_per_edge()
+    ms.compute_texcoord_parametrization_charts_per_wedge()
+    return ms
+
+
+def check_order(results: dict[str, Any], order: dict[str, Any], is_closed: bool) -> None:
+    """Sews step by step, knowing only which pieces each seam joins."""
+    sides = list(zip(results["seam_first_piece"], results["seam_second_piece"], strict=True))
+    part = {name: {name} for name in order["sections"]}
+    names = list(part)
+    open_seams = {opening["seam"] for opening in order["openings"]}
+    done: set[int] = set()
+    for step in order["steps"]:
+        assert step["seams"], "a step does nothing"
+        touched = set()
+        for seam in step["seams"]:
+            assert seam not in done or (step["kind"] == "close" and seam in open_seams)
+            done.add(seam)
+            a, b = (names[int(piece)] for piece in sides[seam - 1])
+            joined = part[a] | part[b]
+            for name in joined:
+                part[name] = joined
+            touched |= {a, b}
+        assert touched <= part[next(iter(touched))], "parts that share no seam are joined"
+    assert done == set(range(1, len(sides) + 1)), "seams are left"
+    closing = [step["step"] for step in order["steps"] if step["kind"] == "close"]
+    assert closing == ([len(order["steps"])] if is_closed else [])
+
+
+def test_order_of_a_ball_to_sew(flattened: Any, tmp_path: Path) -> None:
+    results = flattened.apply_filter(
+        "export_pattern",
+        output_file=str(tmp_path / "ball.svg"),
+        preset="Sewing",
+        mm_per_unit=SCALE,
+        step_numbers=True,
+    )
+    order = guide.assembly(results)
+    check_order(results, order, is_closed=True)
+    (opening,) = order["openings"]
+    assert 40 <= opening["to_mm"] - opening["from_mm"] <= 80
+    seam = results["opening_seam"][0]
+    assert order["steps"][-1]["seams"] == [int(seam)]
+    # The mark and its name are on both sides, and steps stand behind the numbers.
+    svg = (tmp_path / "ball.svg").read_text(encoding="utf-8")
+    assert svg.count("-opening") == 2 and svg.count(">leave open<") == 2
+    for label, step in enumerate(results["seam_step"], 1):
+        assert svg.count(f">{label} ({int(step)})<") in (0, 2)
+    assert svg.count(" (1)<") >= 2
+
+
+def test_what_a_ball_needs(flattened: Any, tmp_path: Path) -> None:
+    def needs(**parameters: Any) -> dict[str, Any]:
+        path = str(tmp_path / "ball.svg")
+        options = {"mm_per_unit": SCALE, **parameters}
+        return guide.needs(flattened.apply_filter("export_pattern", output_file=path, **options))
+
+    plain = needs()
+    surface = 4 * np.pi * SCALE**2
+    assert plain["material_mm2"] == pytest.approx(surface, rel=0.01)
+    assert plain["stuffing_litres"] == pytest.approx(4 / 3 * np.pi * (SCALE / 100) ** 3, rel=0.02)
+    assert plain["stuffing_g"] == pytest.approx(30 * plain["stuffing_litres"])
+    assert plain["sewing_minutes"] == pytest.approx(plain["seams_mm"] / 100)
+    assert plain["hems_mm"] == 0 and plain["paper_sheets_number"] == 0
+    sewn = needs(preset="Sewing", page="a4", sewing_mm_per_minute=200.0, stuffing_g_per_litre=10.0)
+    assert sewn["material_mm2"] > surface + 0.9 * 7 * 2 * sewn["seams_mm"]
+    assert sewn["sewing_minutes"] == pytest.approx(sewn["seams_mm"] / 200)
+    assert sewn["stuffing_g"] == pytest.approx(10 * sewn["stuffing_litres"])
+    assert sewn["paper_sheets_number"] > 0
+    folded = needs(preset="Papercraft")
+    assert folded["stuffing_litres"] == 0 and folded["sewing_minutes"] == 0
+
+
+def test_what_is_open_is_not_closed(meshset: Any, tmp_path: Path) -> None:
+    ms = meshset(meshes.cylinder(radius=1.0, height=3.0))
+    ms.compute_segmentation_variational_shape_approximation_per_face(charts_number=4)
+    ms.compute_seams_charts_to_disks_per_edge()
+    ms.compute_texcoord_parametrization_charts_per_wedge()
+    path = str(tmp_path / "tube.svg")
+    results = ms.apply_filter("export_pattern", output_file=path, mm_per_unit=SCALE)
+    order = guide.assembly(results)
+    check_order(results, order, is_closed=bool(order["openings"]))
+
+
+@pytest.mark.parametrize("name", ["teddy_27648", "penguin_6720"])
+def test_order_of_toys(name: str, pymeshlab: Any, data: Path, tmp_path: Path) -> None:
+    ms = pymeshlab.MeshSet()
+    ms.load_new_mesh(str(data / "public" / f"{name}.ply"))
+    ms.compute_segmentation_dcharts_per_face()
+    ms.compute_texcoord_parametrization_charts_per_wedge(pack=False)
+    path = str(tmp_path / "toy.svg")
+    results = ms.apply_filter("export_pattern", output_file=path, preset="Sewing", height_mm=300.0)
+    order = guide.assembly(results)
+    check_order(results, order, is_closed=True)
+    assert len(order["openings"]) == 1
+
+
+def test_a_teddy_takes_six_pages(data: Path, tmp_path: Path) -> None:
+    teddy = str(data / "public" / "teddy_27648.ply")
+    options = ["--preset", "sewing", "--page", "a4", "--height-mm", "300", "--no-picture"]
+    assert main(["run", teddy, "-o", str(tmp_path), "--formats", "svg", *options]) == 0
+    result = json.loads((tmp_path / "teddy_27648.json").read_text(encoding="utf-8"))
+    assert 0 < result["needs"]["paper_sheets_number"] <= 6
+
+
+# ---------------------------------------------------------------- the page
+
+
+@pytest.fixture(scope="module")
+def page(flattened: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "b\u00e4r <&>.html"
+    flattened.apply_filter(
+        "export_pattern", output_file=str(path), preset="Sewing", page="a4", mm_per_unit=SCALE
+    )
+    return path
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Debian's Chromium without a window, which draws in software."""
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if not chromium or not driver:
+        if os.environ.get("DEVSEG_HOST_TESTS") == "required":
+            pytest.fail("chromium and chromium-driver are missing: run scripts/test.sh")
+        pytest.skip("needs chromium and chromium-driver")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for argument in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--window-size=1280,1000",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+    ):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driven = webdriver.Chrome(options=options, service=Service(driver))
+    yield driven
+    driven.quit()
+
+
+def wait_for(condition: Callable[[], Any], seconds: float = 30.0) -> Any:
+    end = time.monotonic() + seconds
+    while not (value := condition()):
+        assert time.monotonic() < end, "the page did not get there"
+        time.sleep(0.02)
+    return value
+
+
+@pytest.fixture
+def opened(browser: Any, page: Path) -> Any:
+    browser.get(page.as_uri())
+    wait_for(lambda: browser.execute_script("return document.documentElement.dataset.ready"))
+    yield browser
+    errors = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+    assert errors == []
+
+
+def point(browser: Any, x: float, y: float) -> None:
+    """Moves the mouse, as a person does."""
+    from selenium.webdriver.common.actions.action_builder import ActionBuilder
+
+    action = ActionBuilder(browser)
+    action.pointer_action.move_to_location(round(x), round(y))
+    action.perform()
+
+
+def lit(browser: Any) -> tuple[set[str], set[str]]:
+    """Names of the pieces that are lit in the model, and on the sheet."""
+    return tuple(
+        set(names.split())
+        for names in browser.execute_script(
+            "return [document.getElementById('canvas').dataset.lit, "
+            "[...document.querySelectorAll('.piece-lit')].map(g => g.id).join(' ')]"
+        )
+    )
+
+
+def picture(browser: Any) -> np.ndarray:
+    """Of the model, #rows by #columns by 3."""
+    image = Image.open(BytesIO(browser.find_element("id", "canvas").screenshot_as_png))
+    return np.asarray(image.convert("RGB")).astype(int)
+
+
+def test_the_page_is_one_file(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < PAGE_LIMIT
+    assert "b\u00e4r &lt;&amp;&gt;" in text
+    for remote in ('src="', "<link", "@import", "fetch(", "{{"):
+        assert remote not in text.split('<script id="data"')[0] + text.split("<script>")[-1]
+    assert "Permission is hereby granted" in text, "three.js without its licence"
+
+
+def test_a_piece_is_lit_in_both_views(opened: Any) -> None:
+    before = picture(opened)
+    box = opened.execute_script(
+        "const p = document.getElementById('P03-cut'); const b = p.getBBox();"
+        "const m = p.getScreenCTM();"
+        "for (let i = 1; i < 40; ++i) for (let k = 1; k < 40; ++k) {"
+        "  const q = new DOMPoint(b.x + b.width * i / 40, b.y + b.height * k / 40);"
+        "  const s = q.matrixTransform(m);"
+        "  if (document.elementFromPoint(s.x, s.y) === p) return [s.x, s.y]; }"
+    )
+    point(opened, *box)
+    wait_for(lambda: lit(opened) == ({"P03"}, {"P03"}))
+    assert "P03" in opened.find_element("id", "about").text
+    rows = opened.find_elements("css selector", "#piece-list .lit")
+    assert [row.text for row in rows] == ["P03"]
+    # On the model it has turned yellow, or lies on the other side.
+    changed = np.abs(picture(opened) - before).sum(axis=2) > 30
+    canvas = opened.find_element("id", "canvas").rect
+    seen = set()
+    for y in range(round(canvas["y"]) + 20, round(canvas["y"] + canvas["height"]), 90):
+        for x in range(round(canvas["x"]) + 20, round(canvas["x"] + canvas["width"]), 90):
+            point(opened, x, y)
+            model, sheet = wait_for(lambda: (both := lit(opened))[0] == both[1] and both)
+            assert model == sheet and len(model) <= 1
+            seen |= model
+            if model == {"P03"}:
+                assert changed[y - round(canvas["y"]), x - round(canvas["x"])]
+    assert len(seen) >= 3, "the mouse finds no pieces on the model"
+
+
+def test_steps_are_played_forwards_and_back(opened: Any) -> None:
+    count = opened.execute_script("return DATA.steps.length")
+    visible = "return model.meshes.filter(m => m.group.visible).length"
+    pieces = opened.execute_script("return DATA.pieces.length")
+    shown = []
+    for number in range(1, count + 1):
+        opened.find_element("id", "next").click()
+        text = opened.find_element("id", "step-text").text
+        assert text.startswith(f"Step {number} of {count}.")
+        wait_for(lambda: not opened.execute_script("return model.waiting"))
+        shown.append(opened.execute_script(visible))
+    assert shown == sorted(shown) and shown[0] < shown[-1] == pieces
+    assert not opened.find_element("id", "next").is_enabled()
+    assert "stuff it" in opened.find_element("id", "step-text").text
+    opened.find_element("id", "back").click()
+    assert f"Step {count - 1} of" in opened.find_element("id", "step-text").text
+    assert opened.execute_script("return model.flight.every(f => f >= 0 && f <= 1)")
+
+
+def test_a_seam_shows_both_sides(opened: Any) -> None:
+    button = opened.find_elements("css selector", "#seam-list button")[0]
+    button.click()
+    assert len(opened.find_elements("css selector", "#paper .side-lit")) == 2
+    wait_for(lambda: opened.execute_script("return model.seams[0].every(line => line.visible)"))
+    about = opened.find_element("id", "about").text
+    assert "Seam 1" in about and "mm" in about and "allowance 7 mm" in about
+
+
+def test_measuring_is_true(opened: Any) -> None:
+    opened.find_element("id", "measure").click()
+    ends = opened.execute_script(
+        "const m = sheet.svg.getScreenCTM(); const p = DATA.pages[0];"
+        "return [[p[0] + 20, p[1] + 30], [p[0] + 120, p[1] + 30]].map(([x, y]) => {"
+        "  const s = new DOMPoint(x, y).matrixTransform(m); return [s.x, s.y]; })"
+    )
+    from selenium.webdriver.common.action_chains import ActionChains
+
+    for x, y in ends:
+        point(opened, x, y)
+        ActionChains(opened).click().perform()
+    shown = float(opened.find_element("id", "distance").text.split()[0])
+    pixel = 100 / (ends[1][0] - ends[0][0])
+    assert shown == pytest.approx(100, abs=2 * pixel)
+
+
+def test_everything_has_a_name_and_a_key(opened: Any) -> None:
+    unnamed = opened.execute_script(
+        "return [...document.querySelectorAll('button, input, select, [role=img], [role=group]')]"
+        ".filter(e => !(e.textContent.trim() || e.getAttribute('aria-label') || e.labels?.length))"
+        ".map(e => e.outerHTML.slice(0, 80))"
+    )
+    assert unnamed == []
+    from selenium.webdriver.common.keys import Keys
+
+    canvas = opened.find_element("id", "canvas")
+    place = "return model.camera.position.toArray()"
+    before = opened.execute_script(place)
+    canvas.send_keys(Keys.ARROW_LEFT)
+    assert opened.execute_script(place) != before
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_it_fits_small_and_large_screens(opened: Any, width: int, theme: str) -> None:
+    size = {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": width < 800}
+    opened.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    opened.execute_script("setTheme(arguments[0])", theme)
+    try:
+        assert opened.execute_script("return document.documentElement.scrollWidth") <= width
+        colors = opened.execute_script(
+            "const s = getComputedStyle(document.querySelector('section'));"
+            "return [s.backgroundColor, getComputedStyle(document.body).color]"
+        )
+        back, ink = (sum(map(int, c.strip("rgb()").split(",")[:3])) for c in colors)
+        assert abs(back - ink) > 3 * 128 and (back > ink) == (theme == "light")
+    finally:
+        opened.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_command_line_writes_a_guide(obj: Callable, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    options = ["--formats", "html", "--preset", "sewing", "--height-mm", "200", "--no-picture"]
+    assert main(["run", str(obj(meshes.cube(), "cube")), "-o", str(out), *options]) == 0
+    assert (out / "cube.html").is_file()
+    result = json.loads((out / "cube.json").read_text(encoding="utf-8"))
+    assert result["outputs"]["html"] == "cube.html"
+    assert result["assembly"]["steps"][-1]["kind"] == "close"
+    assert result["needs"]["stuffing_litres"] == pytest.approx(8.0, rel=0.01)

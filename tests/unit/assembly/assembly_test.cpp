@@ -1,0 +1,151 @@
+// The order in which pieces are put together, checked by a walk that knows nothing of how it was
+// found: it only sews what each step says.
+#include "devseg/assembly/assembly.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/errors.h"
+#include "devseg/pattern/pieces.h"
+#include "unit/host_checks.h"
+#include "unit/shapes.h"
+
+namespace devseg::assembly {
+namespace {
+
+pattern::Pattern pattern_of(const mesh::RawMesh& raw, double height_mm, int charts) {
+    declare::HostMesh host = checks::host_of(raw);
+    checks::take_charts(host, checks::run("Segmentation: Variational Shape Approximation", host,
+                                          {{"charts_number", charts}}));
+    checks::take_charts(host, checks::run("Charts: Cut to Disks", host));
+    host.wedge_uv = checks::run("Charts: Flatten", host).wedge_uv;
+    const mesh::GatedMesh gated = mesh::gate_mesh(host.geometry, {0.0, true});
+    CornerUv uv;
+    for (const Face f : gated.mesh.all_faces())
+        for (Index k = 0; k < 3; ++k)
+            uv.push_back(host.wedge_uv[gated.source_face[f]][gated.source_corner(f, k)]);
+    pattern::PatternOptions options;
+    options.height_mm = height_mm;
+    Progress progress;
+    return pattern::make_pattern(gated.mesh, uv, options, progress);
+}
+
+// Sews step by step. Returns what is wrong with the order, or nothing.
+std::string fault_of(const pattern::Pattern& pattern, const Assembly& plan) {
+    std::vector<std::set<Index>> built; // what hangs together
+    for (Index p = 0; p < static_cast<Index>(pattern.pieces.size()); ++p)
+        built.push_back({p});
+    std::set<Index> done;
+    const auto with = [&](Index piece) {
+        return std::find_if(built.begin(), built.end(),
+                            [&](const std::set<Index>& part) { return part.count(piece) > 0; });
+    };
+    for (std::size_t k = 0; k < plan.steps.size(); ++k) {
+        const AssemblyStep& step = plan.steps[k];
+        const std::string name = "step " + std::to_string(k + 1);
+        if (step.seams.empty())
+            return name + " does nothing";
+        std::set<Index> touched;
+        for (const Index s : step.seams) {
+            const pattern::Seam& seam = pattern.seams[at(s)];
+            const auto a = with(seam.sides[0].piece);
+            const auto b = with(seam.sides[1].piece);
+            if (a != b) {
+                a->insert(b->begin(), b->end());
+                built.erase(b);
+            }
+            touched.insert(seam.sides[0].piece);
+            const bool was_open = std::any_of(plan.openings.begin(), plan.openings.end(),
+                                              [&](const Opening& o) { return o.seam == s; });
+            if (!done.insert(s).second && !(was_open && step.kind == StepKind::close))
+                return name + " sews seam " + seam.label + " again";
+        }
+        const auto part = with(*touched.begin());
+        for (const Index p : touched)
+            if (part->count(p) == 0)
+                return name + " works on parts that do not hang together";
+        for (const Index p : step.pieces)
+            if (part->count(p) == 0)
+                return name + " leaves a piece loose that it adds";
+    }
+    if (done.size() != pattern.seams.size())
+        return "seams are left";
+    return "";
+}
+
+TEST(Assembly, EveryStepJoinsWhatSharesASeam) {
+    for (const Craft craft : {Craft::sewing, Craft::papercraft})
+        for (const auto& [raw, charts] :
+             {std::pair(shapes::cube(3), 6), std::pair(shapes::cube(3), 2),
+              std::pair(shapes::sphere(2), 8), std::pair(shapes::torus(16, 10), 7),
+              std::pair(shapes::capped_cylinder(12, 4), 1),
+              std::pair(shapes::cylinder_tube(12, 4), 4)}) {
+            const pattern::Pattern pattern = pattern_of(raw, 200.0, charts);
+            Progress progress;
+            const Assembly plan = plan_assembly(pattern, craft, progress);
+            EXPECT_EQ(fault_of(pattern, plan), "") << charts;
+            for (const Index section : plan.section)
+                EXPECT_TRUE(section >= 0 && section < plan.section_count);
+        }
+}
+
+TEST(Assembly, OnlyTheLastStepClosesASolid) {
+    const pattern::Pattern pattern = pattern_of(shapes::cube(3), 200.0, 6);
+    Progress progress;
+    const Assembly sewn = plan_assembly(pattern, Craft::sewing, progress);
+    ASSERT_EQ(sewn.openings.size(), 1U);
+    const Opening& opening = sewn.openings.front();
+    EXPECT_GE(opening.to - opening.from, least_opening - 1e-9);
+    EXPECT_LE(opening.to - opening.from, most_opening + 1e-9);
+    EXPECT_LE(opening.to, pattern.seams[at(opening.seam)].sides[0].length);
+    const auto closes = [](const Assembly& plan) {
+        return std::count_if(plan.steps.begin(), plan.steps.end(),
+                             [](const AssemblyStep& step) { return step.kind == StepKind::close; });
+    };
+    EXPECT_EQ(closes(sewn), 1);
+    EXPECT_EQ(sewn.steps.back().kind, StepKind::close);
+    EXPECT_EQ(sewn.steps.back().seams, std::vector<Index>{opening.seam});
+    const Assembly glued = plan_assembly(pattern, Craft::papercraft, progress);
+    EXPECT_TRUE(glued.openings.empty());
+    EXPECT_EQ(glued.steps.back().kind, StepKind::close);
+    EXPECT_EQ(glued.steps.back().seams.size(), 4U) << "a side of the cube is the lid";
+}
+
+TEST(Assembly, WhatIsOpenNeedsNoOpening) {
+    const pattern::Pattern pattern = pattern_of(shapes::cylinder_tube(12, 4), 200.0, 2);
+    Progress progress;
+    EXPECT_TRUE(plan_assembly(pattern, Craft::sewing, progress).openings.empty());
+}
+
+TEST(Assembly, SmallToysAreClosedAlongAWholeSeam) {
+    const pattern::Pattern pattern = pattern_of(shapes::cube(3), 20.0, 6);
+    Progress progress;
+    const Assembly plan = plan_assembly(pattern, Craft::sewing, progress);
+    ASSERT_EQ(plan.openings.size(), 1U);
+    EXPECT_TRUE(plan.openings.front().is_whole);
+    EXPECT_EQ(fault_of(pattern, plan), "");
+    EXPECT_EQ(plan.seam_step[at(plan.openings.front().seam)],
+              static_cast<Index>(plan.steps.size()));
+}
+
+TEST(Assembly, CanBeCancelled) {
+    const pattern::Pattern pattern = pattern_of(shapes::cube(3), 200.0, 6);
+    Progress progress([](double, const char*) { return false; });
+    EXPECT_THROW(
+        {
+            auto part = progress.part("assembly", 1.0);
+            plan_assembly(pattern, Craft::sewing, part);
+        },
+        Cancelled);
+}
+
+TEST(Sections, NamesAreLikeThoseOfColumns) {
+    EXPECT_EQ(section_name(0), "A");
+    EXPECT_EQ(section_name(25), "Z");
+    EXPECT_EQ(section_name(26), "AA");
+}
+
+} // namespace
+} // namespace devseg::assembly
