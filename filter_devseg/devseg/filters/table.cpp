@@ -24,6 +24,9 @@ Filters filters();
 namespace baselines {
 Filters filters();
 }
+namespace edit {
+Filters given_filters();
+}
 
 namespace filters {
 
@@ -40,9 +43,10 @@ const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), chart_filters(), smooth_filters(), t_flooding::filters(),
-              plush::filters(), papercraft::filters(), baselines::filters(), deformation_filters(),
-              flattening_filters(), pattern_filters(), sewn_preview_filters(), measure_filters()})
+             {dcharts::filters(), edit::given_filters(), chart_filters(), smooth_filters(),
+              t_flooding::filters(), plush::filters(), papercraft::filters(), baselines::filters(),
+              deformation_filters(), flattening_filters(), pattern_filters(),
+              sewn_preview_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();

@@ -22,6 +22,12 @@ namespace {
 using checks::contains;
 using checks::number;
 
+// The faces on one side of the origin.
+void select_half(HostMesh& host) {
+    for (const Triangle& t : host.geometry.faces)
+        host.face_selected.push_back(host.geometry.points[t[0]].x() > 0.0 ? 1 : 0);
+}
+
 // A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
 // that it is packed at once.
 HostMesh prepared() {
@@ -32,6 +38,7 @@ HostMesh prepared() {
     for (std::array<Vec2, 3>& corners : host.wedge_uv)
         for (Vec2& p : corners)
             p = Eigen::Rotation2Dd(0.5) * p; // no box stands upright
+    select_half(host);
     return host;
 }
 
@@ -169,6 +176,8 @@ HostResult run_or_refuse(const FilterDeclaration& filter, const HostMesh& host,
         return refused(error);
     } catch (const InvalidParameter& error) {
         return refused(error);
+    } catch (const InvalidMesh& error) { // nothing is selected
+        return refused(error);
     }
 }
 
@@ -180,6 +189,37 @@ HostMesh bumpy_body() {
         p.z() *= 2.2;
     }
     return checks::host_of(raw);
+}
+
+// A tube in four charts and two colours, with a patch of faces selected across a seam, a line of
+// edges that ends inside a chart, and a vertex.
+HostMesh chosen_by_hand() {
+    HostMesh host = checks::host_of(shapes::cylinder_tube(24, 12));
+    const std::vector<Vec3>& points = host.geometry.points;
+    const auto angle = [](const Vec3& p) { return std::atan2(p.y(), p.x()); };
+    const double low = points.front().z();
+    for (const Triangle& t : host.geometry.faces) {
+        const Vec3 middle = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
+        const double height = std::abs(middle.z() - low);
+        host.chart_id.push_back(std::floor((angle(middle) + pi) / (0.5 * pi)));
+        host.seam_edges.push_back(0.0);
+        host.face_color.push_back(height < 1.0 ? Color{255, 0, 0} : Color{0, 0, 255});
+        host.face_selected.push_back(std::abs(angle(middle)) < 0.5 && height < 1.0 ? 1 : 0);
+        int bits = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 edge = 0.5 * (points[t[k]] + points[t[(k + 1) % 3]]);
+            if (std::abs(angle(edge) - 0.25 * pi) < 1e-6 && std::abs(edge.z() - low) > 1.1)
+                bits |= 1 << k;
+        }
+        host.edge_selected.push_back(static_cast<std::uint8_t>(bits));
+    }
+    for (const Vec3& p : points)
+        host.vertex_selected.push_back(
+            (p - Vec3(std::cos(0.25 * pi), std::sin(0.25 * pi), p.z())).norm() < 1e-6 &&
+                    std::abs(std::abs(p.z() - low) - 0.5) < 1e-6
+                ? 1
+                : 0);
+    return host;
 }
 
 // They need a file, and faces that are selected: plush_test and test_plush.py have them. `weld`
@@ -213,9 +253,12 @@ bool changes_the_result(const FilterDeclaration& filter, const HostMesh& host, c
 
 TEST(DeclaredFilters, EveryParameterChangesTheResult) {
     // What one mesh does not have, such as two pieces of one shape, another one has.
-    const std::vector<HostMesh> hosts{prepared(), samples::unfinished().host(),
-                                      samples::nearly_equal().host(), cubes_and_a_finger(),
-                                      bumpy_body()};
+    const std::vector<HostMesh> hosts{prepared(),
+                                      samples::unfinished().host(),
+                                      samples::nearly_equal().host(),
+                                      cubes_and_a_finger(),
+                                      bumpy_body(),
+                                      chosen_by_hand()};
     for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
@@ -266,6 +309,8 @@ TEST(DeclaredFilters, AllJoinBordersThatLieOnEachOtherUnlessToldNotTo) {
     for (const FilterDeclaration& filter : filters::filter_table()) {
         SCOPED_TRACE(filter.menu_name);
         ASSERT_EQ(filter.parameters.back().name, "weld");
+        if (filter.needs_selection)
+            continue; // nothing is selected
         const auto joined = [&](const ParameterValues& values) {
             const HostResult r = run_or_refuse(filter, host, values);
             return std::any_of(r.notes.begin(), r.notes.end(), [](const std::string& note) {
@@ -330,6 +375,8 @@ TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
     HostMesh host;
     host.geometry = shapes::sphere(1);
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        if (filter.needs_selection)
+            continue;
         if (!filter.needs_uv) {
             EXPECT_NO_THROW(run(filter, host, {})) << filter.menu_name;
             continue;
@@ -337,6 +384,18 @@ TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
         const std::string text = checks::error_of<InvalidMesh>([&] { run(filter, host, {}); });
         EXPECT_TRUE(contains(text, "expected wedge texture coordinates, found none"));
         EXPECT_TRUE(contains(text, "Charts: Flatten"));
+    }
+}
+
+TEST(DeclaredFilters, FiltersOnSelectionsAskForThem) {
+    HostMesh host;
+    host.geometry = shapes::sphere(1);
+    for (const FilterDeclaration& filter : filters::filter_table()) {
+        if (!filter.needs_selection)
+            continue;
+        const std::string text = checks::error_of<InvalidMesh>([&] { run(filter, host, {}); });
+        EXPECT_TRUE(contains(text, "expected selected")) << filter.menu_name;
+        EXPECT_TRUE(contains(text, "found none"));
     }
 }
 
