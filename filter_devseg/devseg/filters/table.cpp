@@ -26,7 +26,8 @@ Filters filters();
 }
 namespace edit {
 Filters given_filters();
-}
+Filters edit_filters();
+} // namespace edit
 
 namespace filters {
 
@@ -43,9 +44,9 @@ const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), edit::given_filters(), chart_filters(), smooth_filters(),
-              t_flooding::filters(), plush::filters(), papercraft::filters(), baselines::filters(),
-              deformation_filters(), flattening_filters(), pattern_filters(),
+             {dcharts::filters(), edit::given_filters(), edit::edit_filters(), chart_filters(),
+              smooth_filters(), t_flooding::filters(), plush::filters(), papercraft::filters(),
+              baselines::filters(), deformation_filters(), flattening_filters(), pattern_filters(),
               sewn_preview_filters(), measure_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;

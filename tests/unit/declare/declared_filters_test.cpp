@@ -28,6 +28,55 @@ void select_half(HostMesh& host) {
         host.face_selected.push_back(host.geometry.points[t[0]].x() > 0.0 ? 1 : 0);
 }
 
+// A barrel in four charts and two colours, with a patch of faces selected across a seam, a line of
+// edges that ends inside a chart, and a vertex.
+HostMesh chosen_by_hand(double bulge) {
+    HostMesh host = checks::host_of(shapes::cylinder_tube(24, 12));
+    for (Vec3& p : host.geometry.points) {
+        const double up = std::abs(p.z() - host.geometry.points.front().z()) - 1.0;
+        p.head<2>() *= 1.0 + bulge * (1.0 - up * up);
+    }
+    const std::vector<Vec3>& points = host.geometry.points;
+    const auto angle = [](const Vec3& p) { return std::atan2(p.y(), p.x()); };
+    const double low = points.front().z();
+    for (const Triangle& t : host.geometry.faces) {
+        const Vec3 middle = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
+        const double height = std::abs(middle.z() - low);
+        host.chart_id.push_back(std::floor((angle(middle) + pi) / (0.5 * pi)));
+        host.seam_edges.push_back(0.0);
+        host.face_color.push_back(height < 1.0 ? Color{255, 0, 0} : Color{0, 0, 255});
+        host.face_selected.push_back(std::abs(angle(middle)) < 0.5 && height < 1.0 ? 1 : 0);
+        int bits = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 edge = 0.5 * (points[t[k]] + points[t[(k + 1) % 3]]);
+            if (std::abs(angle(edge) - 0.25 * pi) < 1e-6 && std::abs(edge.z() - low) > 1.1)
+                bits |= 1 << k;
+        }
+        host.edge_selected.push_back(static_cast<std::uint8_t>(bits));
+    }
+    for (const Vec3& p : points)
+        host.vertex_selected.push_back(std::abs(angle(p) - 0.25 * pi) < 1e-6 &&
+                                               std::abs(std::abs(p.z() - low) - 1.0) < 0.1
+                                           ? 1
+                                           : 0);
+    return host;
+}
+
+// A ball in two charts, with a face selected in each.
+HostMesh halves_of_a_ball() {
+    HostMesh host = checks::host_of(shapes::sphere(3));
+    std::array<int, 2> seen{};
+    for (const Triangle& t : host.geometry.faces) {
+        const double x = (host.geometry.points[t[0]] + host.geometry.points[t[1]]).x() +
+                         host.geometry.points[t[2]].x();
+        const std::size_t side = x > 0.0 ? 1 : 0;
+        host.chart_id.push_back(static_cast<double>(side));
+        host.face_selected.push_back(seen[side]++ == 30 ? 1 : 0);
+        host.edge_selected.push_back(7);
+    }
+    return host;
+}
+
 // A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
 // that it is packed at once.
 HostMesh prepared() {
@@ -42,6 +91,11 @@ HostMesh prepared() {
     return host;
 }
 
+// With what is chosen, for filters that work on that.
+HostMesh prepared_for(const FilterDeclaration& filter) {
+    return filter.needs_selection ? chosen_by_hand(0.1) : prepared();
+}
+
 HostResult run(const FilterDeclaration& filter, const HostMesh& host,
                const ParameterValues& values) {
     Progress progress;
@@ -49,8 +103,8 @@ HostResult run(const FilterDeclaration& filter, const HostMesh& host,
 }
 
 TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         SCOPED_TRACE(filter.menu_name);
         const HostResult r = run(filter, host, {});
         EXPECT_EQ(r.refinement.has_value(), (filter.writes & writes_mesh) != 0);
@@ -107,8 +161,8 @@ bool same(const HostResult& a, const HostResult& b) {
 }
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         const HostResult a = run(filter, host, {});
         const HostResult b = run(filter, host, {});
         EXPECT_TRUE(same(a, b)) << filter.menu_name;
@@ -117,8 +171,8 @@ TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
 }
 
 TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         ParameterValues all;
         for (const Parameter& p : filter.parameters)
             all[p.name] = p.default_value;
@@ -191,37 +245,6 @@ HostMesh bumpy_body() {
     return checks::host_of(raw);
 }
 
-// A tube in four charts and two colours, with a patch of faces selected across a seam, a line of
-// edges that ends inside a chart, and a vertex.
-HostMesh chosen_by_hand() {
-    HostMesh host = checks::host_of(shapes::cylinder_tube(24, 12));
-    const std::vector<Vec3>& points = host.geometry.points;
-    const auto angle = [](const Vec3& p) { return std::atan2(p.y(), p.x()); };
-    const double low = points.front().z();
-    for (const Triangle& t : host.geometry.faces) {
-        const Vec3 middle = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
-        const double height = std::abs(middle.z() - low);
-        host.chart_id.push_back(std::floor((angle(middle) + pi) / (0.5 * pi)));
-        host.seam_edges.push_back(0.0);
-        host.face_color.push_back(height < 1.0 ? Color{255, 0, 0} : Color{0, 0, 255});
-        host.face_selected.push_back(std::abs(angle(middle)) < 0.5 && height < 1.0 ? 1 : 0);
-        int bits = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 edge = 0.5 * (points[t[k]] + points[t[(k + 1) % 3]]);
-            if (std::abs(angle(edge) - 0.25 * pi) < 1e-6 && std::abs(edge.z() - low) > 1.1)
-                bits |= 1 << k;
-        }
-        host.edge_selected.push_back(static_cast<std::uint8_t>(bits));
-    }
-    for (const Vec3& p : points)
-        host.vertex_selected.push_back(
-            (p - Vec3(std::cos(0.25 * pi), std::sin(0.25 * pi), p.z())).norm() < 1e-6 &&
-                    std::abs(std::abs(p.z() - low) - 0.5) < 1e-6
-                ? 1
-                : 0);
-    return host;
-}
-
 // They need a file, and faces that are selected: plush_test and test_plush.py have them. `weld`
 // needs borders that lie on each other, and has a test of its own.
 bool needs_more_than_a_mesh(const std::string& name) {
@@ -258,7 +281,9 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
                                       samples::nearly_equal().host(),
                                       cubes_and_a_finger(),
                                       bumpy_body(),
-                                      chosen_by_hand()};
+                                      chosen_by_hand(0.1),
+                                      chosen_by_hand(0.0),
+                                      halves_of_a_ball()};
     for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
@@ -333,11 +358,13 @@ TEST(DeclaredFilters, WhatIsNotJoinedStaysASeamForTheNextFilter) {
 }
 
 TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
-    const HostMesh host = prepared();
+    const HostMesh usual = prepared();
+    const HostMesh chosen = chosen_by_hand(0.1);
     for (const FilterDeclaration& filter : filters::filter_table())
         for (const Parameter& p : filter.parameters) {
             if (p.kind != ParameterKind::integer && p.kind != ParameterKind::real)
                 continue;
+            const HostMesh& host = filter.needs_selection ? chosen : usual;
             SCOPED_TRACE(filter.menu_name + ", " + p.name);
             const auto refused = [&](const ParameterValue& value) {
                 const std::string text = checks::error_of<InvalidParameter>([&] {
@@ -400,8 +427,8 @@ TEST(DeclaredFilters, FiltersOnSelectionsAskForThem) {
 }
 
 TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         int calls = 0;
         Progress progress([&](double, const char*) { return ++calls < 1; });
         try {
@@ -414,8 +441,8 @@ TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
 }
 
 TEST(DeclaredFilters, ProgressNeverGoesBackAndPhasesHaveNames) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         double last = 0.0;
         Progress progress([&](double fraction, const char* phase) {
             EXPECT_GE(fraction, last);
