@@ -8,11 +8,14 @@
 
 #include "devseg/atlas/border_path.h"
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/fragments.h"
 #include "devseg/base/errors.h"
 #include "devseg/edit/given_charts.h"
 #include "devseg/judge/final_map.h"
 #include "devseg/mesh/angle_defects.h"
+#include "devseg/mesh/coarsen.h"
 #include "devseg/methods/dcharts/draft.h"
+#include "devseg/methods/dcharts/full_charts.h"
 
 namespace devseg::edit {
 
@@ -119,21 +122,29 @@ ChartMap divide_along(const Mesh& part, std::vector<std::uint8_t> cuts, Progress
                                  true);
 }
 
-// D-Charts splits what is above its bound, and halves what its cones do not divide.
+// D-Charts splits what is above its bound, and halves what its cones do not divide. Decided on a
+// coarse surface where the chart is large.
 ChartMap divide_best(const Mesh& part, double wanted_l2, Progress& progress) {
-    const std::vector<Index> one(part.faces.size(), 0);
+    const auto decimation = dcharts::decimate(part, false, 1, progress);
+    const Mesh& coarse = decimation ? decimation->mesh : part;
+    const std::vector<Index> one(coarse.faces.size(), 0);
     const auto labels = [&](auto take_apart) {
-        dcharts::Draft draft = dcharts::make_untried_draft(part, one);
+        dcharts::Draft draft = dcharts::make_untried_draft(coarse, one);
         take_apart(draft);
+        if (decimation)
+            draft.chart = atlas::absorb_fragments(
+                part, mesh::refine_labels(part, *decimation, draft.chart, progress),
+                tuning.least_part);
         return atlas::make_chart_map(part, draft.chart, {}, false);
     };
     ChartMap grown = labels([&](dcharts::Draft& draft) {
-        dcharts::split_chart(part, {}, wanted_l2, 0, draft, progress);
+        dcharts::split_chart(coarse, {}, wanted_l2, 0, draft, progress);
     });
     if (grown.count == 2)
         return grown;
-    ChartMap halves = labels(
-        [&](dcharts::Draft& draft) { dcharts::halve_chart(part, wanted_l2, 0, draft, progress); });
+    ChartMap halves = labels([&](dcharts::Draft& draft) {
+        dcharts::halve_chart(coarse, wanted_l2, 0, draft, progress);
+    });
     return grown.count < 2 || (halves.count > 1 && halves.count < grown.count) ? halves : grown;
 }
 
