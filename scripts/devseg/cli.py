@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from devseg import edit, given
 from devseg.errors import DevsegError, one_line
 from devseg.lengths import length, millimetres, number, shown, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
@@ -95,6 +96,10 @@ def _parser() -> argparse.ArgumentParser:
     measure.add_argument("--json", action="store_true", help="print them as JSON")
     measure.set_defaults(command=_measure_command, subparser=measure)
 
+    change = commands.add_parser("edit", help="join, split and open charts by their numbers")
+    edit.add_options(change)
+    change.set_defaults(command=edit.command, subparser=change)
+
     info = commands.add_parser("info", help="versions, plugins, filters and hosts")
     info.set_defaults(command=_info_command, subparser=info)
     return parser
@@ -147,6 +152,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         help=f"of {','.join(FORMATS)}; default: svg,ply",
     )
     _add_input_options(parser)
+    given.add_options(parser)
     add_pattern_options(parser)
     parser.add_argument(
         "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
@@ -197,6 +203,12 @@ def _add_input_options(parser: argparse.ArgumentParser) -> None:
         dest="objects",
         metavar="NAME",
         help="take this object of the file; may be given again; default: all",
+    )
+    parser.add_argument(
+        "--component",
+        type=_integer(1),
+        metavar="N",
+        help="take this connected component, the largest is 1; default: all",
     )
     parser.add_argument(
         "--list-objects", action="store_true", help="only print the objects of the file"
@@ -280,9 +292,9 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
     if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
         parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
     method = METHODS[args.method]
-    given = {name: getattr(args, name) for name in METHOD_OPTIONS}
+    chosen = {name: getattr(args, name) for name in METHOD_OPTIONS}
     segmentation: dict[str, Any] = {}
-    for name, value in given.items():
+    for name, value in chosen.items():
         if value is None:
             continue
         if name not in method.options:
@@ -314,6 +326,7 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         args.keep_texcoords,
         _smooth_seams(args, pattern, parser),
         args.weld,
+        given.check(args, parser),
     )
     results = []
     for path in args.input:
@@ -354,8 +367,8 @@ def _smooth_seams(
         parser.error(f"--seams smooth does not apply to --method {args.method}")
     if args.seams == "smooth" and args.keep_texcoords:
         parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
-    if args.seams:
-        return args.seams == "smooth"
+    if args.seams or args.charts_from or args.keep_seams:
+        return args.seams == "smooth"  # seams that somebody has chosen stay where they are
     is_pattern = any(kind in PATTERN_FORMATS for kind in args.formats)
     fits = args.method in SMOOTH_METHODS and not args.keep_texcoords
     return fits and is_pattern and pattern.get("preset") != PRESETS["papercraft"]
