@@ -96,6 +96,10 @@ public:
         filter_.needs_uv = true;
         return *this;
     }
+    Declare& needs_texture() {
+        filter_.needs_texture = true;
+        return *this;
+    }
     /// It refuses to run where neither a selection nor a parameter says what is meant.
     Declare& needs_selection() {
         filter_.needs_selection = true;

@@ -90,14 +90,15 @@ bool is_coordinate(const Vec2& p) {
 }
 
 // Broken texture coordinates only matter to filters that need them.
-std::optional<CornerUv> read_uv(const HostMesh& host, const mesh::GatedMesh& gated, bool needed) {
-    if (host.wedge_uv.empty())
+std::optional<CornerUv> read_uv(const std::vector<std::array<Vec2, 3>>& wedge_uv,
+                                const mesh::GatedMesh& gated, bool needed) {
+    if (wedge_uv.empty())
         return std::nullopt;
     CornerUv uv(3 * gated.mesh.faces.size());
     for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k) {
             const std::size_t source = at(gated.source_face[f]);
-            const Vec2& p = host.wedge_uv[source][gated.source_corner(f, k)];
+            const Vec2& p = wedge_uv[source][gated.source_corner(f, k)];
             if (!is_coordinate(p) && !needed)
                 return std::nullopt;
             if (!is_coordinate(p))
@@ -250,6 +251,7 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
         result.points = moved_points(host, gated, *output.points);
     result.values = std::move(output.values);
     result.layer = std::move(output.layer);
+    result.texture = std::move(output.texture);
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
     const std::vector<OutputFace> faces = output_faces(gated, output);
@@ -316,7 +318,7 @@ void FilterRun::operator()(Progress& progress) {
     reading.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),
-                            read_uv(host, gated, filter.needs_uv),
+                            read_uv(host.wedge_uv, gated, filter.needs_uv),
                             gated.source_face,
                             gated.source_vertex,
                             of_faces(host.face_selected, gated),
@@ -325,7 +327,10 @@ void FilterRun::operator()(Progress& progress) {
                             read_chart_id(host, gated),
                             of_faces(host.face_material, gated),
                             read_selected_edges(host, gated),
-                            read_selected_vertices(host, gated)};
+                            read_selected_vertices(host, gated),
+                            read_uv(host.uv_before, gated, false),
+                            of_faces(host.page_before, gated),
+                            std::move(host.textures)};
     auto running = progress.part(0.98);
     try {
         FilterOutput output = run_on_part(filter, input, std::move(values), running);

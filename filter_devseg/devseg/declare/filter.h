@@ -16,6 +16,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/mesh/input_gate.h"
 #include "devseg/mesh/refinement.h"
+#include "devseg/plane/image.h"
 
 namespace devseg::declare {
 
@@ -73,9 +74,10 @@ enum Writes : unsigned {
     writes_quality = 2,
     writes_color = 4,
     writes_uv = 8,
-    writes_layer = 16,  // a new mesh; the host's own stays as it is
-    writes_points = 32, // coordinates of the vertices
-    writes_mesh = 64    // faces are split: new faces and vertices
+    writes_layer = 16,   // a new mesh; the host's own stays as it is
+    writes_points = 32,  // coordinates of the vertices
+    writes_mesh = 64,    // faces are split: new faces and vertices
+    writes_texture = 128 // an image for the wedge texture coordinates, instead of the old ones
 };
 
 /// What filters see of a mesh: checked, in internal units.
@@ -93,6 +95,9 @@ struct FilterInput {
     std::vector<Index> material;              // #F; empty if the host has none
     std::vector<std::uint8_t> selected_edges; // 3 #F, symmetric; empty if none is
     std::vector<std::uint8_t> selected_vertices; // #V; empty if none is
+    std::optional<CornerUv> uv_before; // that fit the textures, for filters that need them
+    std::vector<Index> page_before;    // #F: number of the texture
+    std::vector<plane::Image> textures;
 
     /// Between internal units and model coordinates.
     Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
@@ -107,6 +112,7 @@ struct FilterOutput {
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
+    std::optional<plane::Image> texture;
     std::vector<std::uint8_t> untouched;        // #F of the mesh: 1 where all stays as it is
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
@@ -131,6 +137,7 @@ struct FilterDeclaration {
     bool needs_uv = false;
     bool needs_selection = false; // of faces, edges or vertices, where no parameter names charts
     bool shows_outside = false;   // closed surfaces that are inside out are turned over
+    bool needs_texture = false;   // and the coordinates that fit them
     bool on_part = false;         // takes `selected_only` (declare/part.h)
     bool keeps = false;           // takes `keep`
     std::vector<Parameter> parameters;
@@ -157,6 +164,10 @@ struct HostMesh {
     std::vector<std::uint8_t> edge_selected;   // of each face: bits 1, 2, 4, as seam_edges
     std::vector<std::uint8_t> vertex_selected; // #V: 1 for selected vertices
     std::vector<Index> face_material;
+    // For filters that need textures: the images, and what fits them.
+    std::vector<std::array<Vec2, 3>> uv_before;
+    std::vector<Index> page_before;
+    std::vector<plane::Image> textures;
 };
 
 /// How the host's own faces are split. All that a host keeps for its faces and vertices is carried
@@ -188,6 +199,7 @@ struct HostResult {
     std::vector<std::uint8_t> untouched;
     std::vector<Vec3> points; // for all vertices or empty
     std::optional<LayerMesh> layer;
+    std::optional<plane::Image> texture;
     std::optional<HostRefinement> refinement;
     ResultValues values;
     std::vector<std::string> notes;

@@ -124,8 +124,9 @@ public:
     Index face(Index f) const { return surface_.face[at(f)]; }
 
     FilterInput input() const {
-        FilterInput part{mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {},
-                         {},    {}, {}};
+        FilterInput part{
+            mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {}, {}, {}, {},
+            {},    {}, {}};
         if (whole_.charts)
             part.charts = charts();
         if (whole_.uv) {

@@ -40,15 +40,17 @@ Filters flattening_filters();
 Filters pattern_filters();
 Filters sewn_preview_filters();
 Filters measure_filters();
+Filters texture_filters();
 
 const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
-        for (Filters group : {dcharts::filters(), edit::given_filters(), edit::edit_filters(),
-                              dcharts::refinement_filters(), chart_filters(), smooth_filters(),
-                              t_flooding::filters(), plush::filters(), papercraft::filters(),
-                              baselines::filters(), deformation_filters(), flattening_filters(),
-                              pattern_filters(), sewn_preview_filters(), measure_filters()})
+        for (Filters group :
+             {dcharts::filters(), edit::given_filters(), edit::edit_filters(),
+              dcharts::refinement_filters(), chart_filters(), smooth_filters(),
+              t_flooding::filters(), plush::filters(), papercraft::filters(), baselines::filters(),
+              deformation_filters(), flattening_filters(), pattern_filters(),
+              sewn_preview_filters(), measure_filters(), texture_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();

@@ -93,8 +93,23 @@ HostMesh prepared() {
     return host;
 }
 
+// The same with a texture and the coordinates that fit it.
+HostMesh textured() {
+    HostMesh host = prepared();
+    host.wedge_uv = checks::run("Charts: Pack", host).wedge_uv;
+    plane::Image image{8, 8, {}};
+    for (int i = 0; i < 3 * 64; ++i)
+        image.rgb.push_back(static_cast<std::uint8_t>(i));
+    host.textures = {std::move(image)};
+    host.uv_before.assign(host.wedge_uv.size(), {Vec2(0.1, 0.1), Vec2(0.9, 0.2), Vec2(0.3, 0.8)});
+    host.page_before.assign(host.wedge_uv.size(), 0);
+    return host;
+}
+
 // With what is chosen, for filters that work on that.
 HostMesh prepared_for(const FilterDeclaration& filter) {
+    if (filter.needs_texture)
+        return textured();
     return filter.needs_selection ? chosen_by_hand(0.1) : prepared();
 }
 
@@ -131,6 +146,7 @@ TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
         expect_written(writes_uv, r.wedge_uv.size());
         EXPECT_EQ(r.points.size(),
                   (filter.writes & writes_points) != 0 ? host.geometry.points.size() : 0U);
+        EXPECT_EQ(r.texture.has_value(), (filter.writes & writes_texture) != 0);
         EXPECT_EQ(r.layer.has_value(), (filter.writes & writes_layer) != 0);
     }
 }
@@ -159,7 +175,9 @@ bool same_refinement(const HostResult& a, const HostResult& b) {
 bool same(const HostResult& a, const HostResult& b) {
     return same_refinement(a, b) && a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
            a.face_quality == b.face_quality && a.face_color == b.face_color &&
-           a.wedge_uv == b.wedge_uv && a.points == b.points && same_layer(a, b);
+           a.wedge_uv == b.wedge_uv && a.texture.has_value() == b.texture.has_value() &&
+           (!a.texture || a.texture->rgb == b.texture->rgb) && a.points == b.points &&
+           same_layer(a, b);
 }
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
@@ -336,8 +354,8 @@ TEST(DeclaredFilters, AllJoinBordersThatLieOnEachOtherUnlessToldNotTo) {
     for (const FilterDeclaration& filter : filters::filter_table()) {
         SCOPED_TRACE(filter.menu_name);
         ASSERT_EQ(filter.parameters.back().name, "weld");
-        if (filter.needs_selection)
-            continue; // nothing is selected
+        if (filter.needs_selection || filter.needs_texture)
+            continue; // there is none
         const auto joined = [&](const ParameterValues& values) {
             const HostResult r = run_or_refuse(filter, host, values);
             return std::any_of(r.notes.begin(), r.notes.end(), [](const std::string& note) {
