@@ -21,7 +21,8 @@ def run(jobs: list[dict[str, Any]]) -> list[list[str]]:
     """Does each job on the sample mesh; the names of the results of its last filter.
 
     A job may have "mesh", another file; "script", an .mlx file to run; "steps", pairs of a filter
-    and its parameters; "history", where to save what was applied as .mlx; "save", where to save the mesh.
+    and its parameters; "history", where to save what was applied as .mlx; "save", where to save
+    the mesh.
     """
     import pymeshlab
 
