@@ -303,7 +303,8 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
                                       bumpy_body(),
                                       chosen_by_hand(0.1),
                                       chosen_by_hand(0.0),
-                                      halves_of_a_ball()};
+                                      halves_of_a_ball(),
+                                      textured()};
     for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
