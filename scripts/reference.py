@@ -60,6 +60,7 @@ WRITES = {
     16: "a new layer",
     32: "coordinates of the vertices",
     64: "split faces, with all that the mesh keeps for faces and vertices",
+    128: "one texture image",
 }
 WRITES_LAYER = 16
 RICH_TYPES = {
@@ -195,7 +196,7 @@ def readme_table(text: str, table: list[dict[str, Any]]) -> str:
     """README.md with a row for each filter; what it does is kept as it was written there."""
     rows = [line.strip("| ").split(" | ") for line in text.split(FILTERS)[1].splitlines()]
     written = {row[1].strip("`"): row[2] for row in rows if len(row) == 3}
-    groups = ["Segmentation", "Charts", "Pattern"]
+    groups = ["Segmentation", "Charts", "Texture", "Pattern"]
     measures = "get_"
 
     def rank(filter_: dict[str, Any]) -> tuple[bool, int]:

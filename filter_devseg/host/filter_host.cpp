@@ -8,6 +8,7 @@
 #include "host/observer.h"
 #include "host/rich_parameters.h"
 #include "host/split_faces.h"
+#include "host/textures.h"
 
 namespace devseg::host {
 
@@ -79,6 +80,8 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
         declare::HostMesh host = read_host_mesh(*model);
         if (filter.needs_uv)
             host.wedge_uv = read_layout_uv(*model);
+        if (filter.needs_texture)
+            read_textures(*model, host);
         declare::HostResult result = declare::run_filter(
             filter, std::move(host), parameter_values(filter, parameters), progress);
         HostRun run;
@@ -87,7 +90,13 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
             layer.emplace(document, *result.layer);
         if (result.refinement)
             split_faces(*model, *result.refinement);
+        if (!result.wedge_uv.empty())
+            keep_old_uv(*model);
         run.changed = write_host_result(*model, result);
+        if (result.texture) {
+            replace_textures(*model, *result.texture);
+            run.changed |= MeshModel::MM_WEDGTEXCOORD;
+        }
         if (result.refinement)
             run.changed |= MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE;
         if (layer)
@@ -108,7 +117,7 @@ int written_elements(const declare::FilterDeclaration& filter) {
         mask |= MeshModel::MM_FACEQUALITY;
     if (filter.writes & declare::writes_color)
         mask |= MeshModel::MM_FACECOLOR;
-    if (filter.writes & declare::writes_uv)
+    if (filter.writes & (declare::writes_uv | declare::writes_texture))
         mask |= MeshModel::MM_WEDGTEXCOORD;
     if (filter.writes & declare::writes_points)
         mask |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;

@@ -96,6 +96,22 @@ int source_edge(const HostRefinement::Part& part, int e) {
     return -1;
 }
 
+// The coordinates that fit the textures (textures.h) are those of corners, as the wedge's own.
+void split_old_uv(CMeshO& m, std::size_t to, std::size_t source, const HostRefinement::Part& part) {
+    for (const char* name : {"texcoord_before_u", "texcoord_before_v"}) {
+        auto values = vcg::tri::Allocator<CMeshO>::FindPerFaceAttribute<CMeshO::CoordType>(m, name);
+        if (!vcg::tri::Allocator<CMeshO>::IsValidHandle(m, values))
+            continue;
+        const CMeshO::CoordType old = values[source];
+        for (int k = 0; k < 3; ++k) {
+            double sum = 0.0;
+            for (int j = 0; j < 3; ++j)
+                sum += part.weights[static_cast<std::size_t>(k)][j] * old[j];
+            values[to][k] = static_cast<Scalarm>(sum);
+        }
+    }
+}
+
 // The part takes what its face has; the face's own place comes last of its parts.
 void fill_part(MeshModel& model, std::size_t to, std::size_t source,
                const HostRefinement::Part& part, const std::vector<std::size_t>& vertices) {
@@ -118,6 +134,7 @@ void fill_part(MeshModel& model, std::size_t to, std::size_t source,
         for (const CMeshO::PointerToAttribute& attribute : m.face_attr)
             attribute._handle->CopyValue(to, source, attribute._handle);
     }
+    split_old_uv(m, to, source, part);
     for (int k = 0; k < 3; ++k) {
         const auto corner = static_cast<std::size_t>(k);
         f.V(k) = &m.vert[vertices[static_cast<std::size_t>(part.corners[corner])]];

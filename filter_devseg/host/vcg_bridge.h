@@ -67,6 +67,45 @@ inline void write_face_attribute(CMeshO& m, FaceAttribute handle, const std::vec
             handle[f] = static_cast<Scalarm>(values[i++]);
 }
 
+/// Selected edges and vertices; empty where none is.
+inline void read_edges_and_vertices(const CMeshO& m, declare::HostMesh& host) {
+    bool any = false;
+    for (const auto& f : m.face) {
+        if (f.IsD())
+            continue;
+        int bits = 0;
+        for (int k = 0; k < 3; ++k)
+            bits |= f.IsFaceEdgeS(k) ? 1 << k : 0;
+        host.edge_selected.push_back(static_cast<std::uint8_t>(bits));
+        any = any || bits != 0;
+    }
+    if (!any)
+        host.edge_selected.clear();
+    any = false;
+    for (const auto& v : m.vert) {
+        if (v.IsD())
+            continue;
+        host.vertex_selected.push_back(v.IsS() ? 1 : 0);
+        any = any || v.IsS();
+    }
+    if (!any)
+        host.vertex_selected.clear();
+}
+
+/// The face attribute material_id; without it the number of each face's texture image; empty
+/// where the mesh has neither.
+inline std::vector<Index> read_materials(MeshModel& model) {
+    std::vector<Index> materials;
+    for (const double id : read_face_attribute(model.cm, "material_id"))
+        materials.push_back(id >= -1e9 && id <= 1e9 ? static_cast<Index>(id) : -1);
+    if (!materials.empty() || !model.hasDataMask(MeshModel::MM_WEDGTEXCOORD))
+        return materials;
+    for (const auto& f : model.cm.face)
+        if (!f.IsD())
+            materials.push_back(f.cWT(0).N());
+    return materials;
+}
+
 inline declare::HostMesh read_host_mesh(MeshModel& model) {
     declare::HostMesh host;
     host.geometry = read_raw_mesh(model.cm);
@@ -86,6 +125,8 @@ inline declare::HostMesh read_host_mesh(MeshModel& model) {
     }
     if (!is_any_selected)
         host.face_selected.clear();
+    read_edges_and_vertices(model.cm, host);
+    host.face_material = read_materials(model);
     return host;
 }
 
@@ -131,14 +172,15 @@ inline unsigned write_host_result(MeshModel& model, const declare::HostResult& r
     for (auto& f : model.cm.face) {
         if (f.IsD())
             continue;
-        if (!result.face_quality.empty())
+        const bool stays = !result.untouched.empty() && result.untouched[i] != 0;
+        if (!result.face_quality.empty() && !stays)
             f.Q() = static_cast<Scalarm>(result.face_quality[i]);
-        if (!result.face_color.empty()) {
+        if (!result.face_color.empty() && !stays) {
             const declare::Color& c = result.face_color[i];
             f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
         }
         for (int k = 0; k < 3; ++k) {
-            if (!result.wedge_uv.empty()) {
+            if (!result.wedge_uv.empty() && !stays) {
                 const Vec2& p = result.wedge_uv[i][static_cast<std::size_t>(k)];
                 f.WT(k).U() = static_cast<float>(p.x());
                 f.WT(k).V() = static_cast<float>(p.y());

@@ -8,25 +8,16 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from devseg import edit
 from devseg.batch_cli import add_batch_options, batch_command
 from devseg.completion import SHELLS, completion
 from devseg.errors import DevsegError, one_line
 from devseg.help_text import add_examples
-from devseg.lengths import length, millimetres, number, shown, size
-from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
-from devseg.pattern_options import (
-    PATTERN_FORMATS,
-    PRESETS,
-    add_pattern_options,
-    pattern_parameters,
-)
-
-if TYPE_CHECKING:
-    from devseg.pipeline import RunOptions
-
-FORMATS = (*PATTERN_FORMATS, "ply", "obj")
+from devseg.lengths import shown
+from devseg.methods import FLATTENINGS, METHODS
+from devseg.run_options import add_run_options, integer, methods, run_options
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -86,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     compare.add_argument("input", type=Path, metavar="INPUT", help="a mesh file")
     compare.add_argument(
         "--methods",
-        type=_methods,
+        type=methods,
         default=tuple(METHODS),
         metavar="LIST",
         help=f"of {','.join(METHODS)}; default: all",
@@ -95,9 +86,9 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--out", type=Path, default=Path(), metavar="DIR", help="for the picture; default: ."
     )
     compare.add_argument(
-        "--charts", type=_integer(1), metavar="N", help="for all methods; default: 20"
+        "--charts", type=integer(1), metavar="N", help="for all methods; default: 20"
     )
-    compare.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
+    compare.add_argument("--seed", type=integer(0), metavar="N", help="of the random choices")
     compare.add_argument(
         "--flatten", choices=FLATTENINGS, default="symmetric-dirichlet", help="of the charts"
     )
@@ -109,6 +100,10 @@ def _parser() -> argparse.ArgumentParser:
     measure.add_argument("--json", action="store_true", help="print them as JSON")
     measure.set_defaults(command=_measure_command, subparser=measure)
 
+    change = commands.add_parser("edit", help="join, split and open charts by their numbers")
+    edit.add_options(change)
+    change.set_defaults(command=edit.command, subparser=change)
+
     info = commands.add_parser("info", help="versions, plugins, filters and hosts")
     info.add_argument("--json", action="store_true", help="print them as JSON")
     info.set_defaults(command=_info_command, subparser=info)
@@ -118,173 +113,6 @@ def _parser() -> argparse.ArgumentParser:
     shell.set_defaults(command=_completion_command, subparser=shell)
     add_examples(commands)
     return parser
-
-
-def add_run_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `devseg run` beside its inputs and its folder."""
-    parser.add_argument("--method", choices=METHODS, default="dcharts", help="default: dcharts")
-    parser.add_argument(
-        "--charts",
-        type=_charts,
-        metavar="N",
-        help="number of charts to start from, or auto: the fewest within the bounds (dcharts)",
-    )
-    for name, help_text in (
-        ("--max-l2-stretch", "of all charts together; implies --charts auto (dcharts)"),
-        ("--max-linf-stretch", "at the worst spot; implies --charts auto (dcharts)"),
-    ):
-        parser.add_argument(name, type=_stretch, metavar="S", help=help_text)
-    parser.add_argument(
-        "--max-fitting-error", type=_positive, metavar="E", help="how far from developable"
-    )
-    parser.add_argument(
-        "--slit-threshold", type=length(), metavar="T", help="width of the gaps that are closed"
-    )
-    parser.add_argument(
-        "--target-faces",
-        type=_integer(4),
-        metavar="N",
-        help="simplify the mesh to N faces first; people fold tens of edges, not thousands",
-    )
-    parser.add_argument("--max-iterations", type=_integer(1), metavar="N", help="at most N rounds")
-    parser.add_argument("--seed", type=_integer(0), metavar="N", help="of the random choices")
-    parser.add_argument(
-        "--flatten",
-        choices=FLATTENINGS,
-        help="default: symmetric-dirichlet; lpfb with --method plush",
-    )
-    parser.add_argument(
-        "--seams",
-        choices=("smooth", "edges"),
-        help="smooth curves, which split faces, or edges of the mesh; default: smooth in patterns "
-        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges",
-    )
-    parser.add_argument(
-        "--formats",
-        type=_formats,
-        default=("svg", "ply"),
-        metavar="LIST",
-        help=f"of {','.join(FORMATS)}; default: svg,ply",
-    )
-    _add_input_options(parser)
-    add_pattern_options(parser)
-    parser.add_argument(
-        "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
-    )
-    parser.add_argument(
-        "--weld",
-        type=_weld,
-        default=0.0,
-        metavar="on|off|SHARE",
-        help="join border vertices at the same place where that closes open edges (on), or within "
-        "a share of the size up to 0.01, or not (off); default: on",
-    )
-    parser.add_argument(
-        "--keep-texcoords",
-        action="store_true",
-        help="PLY: the file's own texture coordinates as well, as texcoord_before",
-    )
-    parser.add_argument(
-        "--json", action="store_true", help="print the results as JSON (a list for several inputs)"
-    )
-
-
-def _add_input_options(parser: argparse.ArgumentParser) -> None:
-    scale = parser.add_argument_group("size of the finished object").add_mutually_exclusive_group()
-    for side, help_text in (
-        ("height", "along the axis that is up"),
-        ("longest", "its longest side"),
-    ):
-        scale.add_argument(f"--{side}-mm", type=_size_mm, metavar="L", help=help_text)
-        scale.add_argument(
-            f"--{side}", type=size, dest=f"{side}_mm", metavar="L", help="such as 250mm or 10in"
-        )
-    scale.add_argument(
-        "--mm-per-unit",
-        type=_positive,
-        metavar="S",
-        help="size of a model unit; default: as 3mf, dae and gltf say, else 1",
-    )
-    parser.add_argument(
-        "--up",
-        choices=("y", "z"),
-        help="axis of the file that points up; default: as 3mf, dae and gltf say, else y",
-    )
-    parser.add_argument(
-        "--object",
-        action="append",
-        default=[],
-        dest="objects",
-        metavar="NAME",
-        help="take this object of the file; may be given again; default: all",
-    )
-    parser.add_argument(
-        "--list-objects", action="store_true", help="only print the objects of the file"
-    )
-
-
-def _integer(least: int) -> Callable[[str], int]:
-    def integer(text: str) -> int:
-        value = int(text) if text.lstrip("+-").isdecimal() else None
-        # The host stores integers in 32 bits.
-        if value is None or not least <= value < 2**31:
-            raise argparse.ArgumentTypeError(
-                f"expected a whole number of at least {least}, found '{text}'"
-            )
-        return value
-
-    return integer
-
-
-def _charts(text: str) -> int:
-    return 0 if text == "auto" else _integer(1)(text)
-
-
-def _above(least: float) -> Callable[[str], float]:
-    def parse(text: str) -> float:
-        value = number(text)
-        if not value > least:
-            raise argparse.ArgumentTypeError(f"expected a number above {least:g}, found '{text}'")
-        return value
-
-    return parse
-
-
-_positive = _above(0)
-
-
-def _weld(text: str) -> float:
-    named = {"on": 0.0, "off": -1.0}
-    share = number(text)
-    if text not in named and not 0 < share <= 0.01:
-        raise argparse.ArgumentTypeError(f"expected on, off or a share to 0.01, found '{text}'")
-    return named.get(text, share)
-
-
-def _size_mm(text: str) -> float:
-    value = millimetres()(text)
-    if value == 0:
-        raise argparse.ArgumentTypeError(f"expected a length above 0, found '{text}'")
-    return value
-
-
-_stretch = _above(1)
-
-
-def _formats(text: str) -> tuple[str, ...]:
-    return _words(text, FORMATS)
-
-
-def _methods(text: str) -> tuple[str, ...]:
-    return _words(text, tuple(METHODS))
-
-
-def _words(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    chosen = tuple(dict.fromkeys(text.lower().split(",")))
-    for name in chosen:
-        if name not in known:
-            raise argparse.ArgumentTypeError(f"expected some of {','.join(known)}, found '{name}'")
-    return chosen
 
 
 def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
@@ -311,49 +139,6 @@ def run_command(args: argparse.Namespace, parser: argparse.ArgumentParser) -> No
         sys.stdout.write(to_json(results[0] if len(results) == 1 else results))
 
 
-def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> RunOptions:
-    """What the options of add_run_options ask for; parser reports those that do not fit."""
-    from devseg.pipeline import RunOptions
-
-    if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
-        parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
-    method = METHODS[args.method]
-    given = {name: getattr(args, name) for name in METHOD_OPTIONS}
-    segmentation: dict[str, Any] = {}
-    for name, value in given.items():
-        if value is None:
-            continue
-        if name not in method.options:
-            parser.error(f"--{name.replace('_', '-')} does not apply to --method {method.name}")
-        segmentation[method.options[name]] = value
-    if args.max_l2_stretch or args.max_linf_stretch:
-        if args.charts:
-            parser.error("bounds on the stretch find the number of charts: give --charts auto")
-        segmentation["charts_number"] = 0
-    elif args.charts == 0 and "max_l2_stretch" not in method.options:
-        parser.error(f"--charts auto does not apply to --method {method.name}")
-    pattern = pattern_parameters(args)
-    if method.preset:
-        pattern.setdefault("preset", PRESETS[method.preset])
-    flattening = args.flatten or method.flatten
-    return RunOptions(
-        args.out,
-        method,
-        segmentation,
-        flattening,
-        args.formats,
-        pattern,
-        args.target_faces,
-        args.longest_mm,
-        args.up,
-        tuple(args.objects),
-        args.picture,
-        args.keep_texcoords,
-        _smooth_seams(args, pattern, parser),
-        args.weld,
-    )
-
-
 def _list_objects(args: argparse.Namespace) -> None:
     from devseg.apart import READING, run_apart
     from devseg.load import list_objects
@@ -371,21 +156,6 @@ def _list_objects(args: argparse.Namespace) -> None:
         for name, faces in objects.items():
             head = f"{path}: " if len(found) > 1 else ""
             print(f"{head}{name or '(no name)'}\t{faces} faces")
-
-
-def _smooth_seams(
-    args: argparse.Namespace, pattern: dict[str, Any], parser: argparse.ArgumentParser
-) -> bool:
-    """Whether seams become smooth curves: asked for, or a pattern to sew or to cut."""
-    if args.seams == "smooth" and args.method not in SMOOTH_METHODS:
-        parser.error(f"--seams smooth does not apply to --method {args.method}")
-    if args.seams == "smooth" and args.keep_texcoords:
-        parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
-    if args.seams:
-        return args.seams == "smooth"
-    is_pattern = any(kind in PATTERN_FORMATS for kind in args.formats)
-    fits = args.method in SMOOTH_METHODS and not args.keep_texcoords
-    return fits and is_pattern and pattern.get("preset") != PRESETS["papercraft"]
 
 
 def _check_names(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:

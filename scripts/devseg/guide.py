@@ -39,9 +39,9 @@ def assembly(results: Mapping[str, Any]) -> dict[str, Any]:
     closing = iter(openings)
     kinds, sections = _whole(results["step_kind"]), _whole(results["step_section"])
     for number, (kind, section) in enumerate(zip(kinds, sections, strict=True), 1):
-        seams: list[float] = [s for s, step in enumerate(done, 1) if step == number]
+        seams = [s for s, step in enumerate(done, 1) if step == number]
         if KINDS[kind] == "close" and openings:
-            seams = [next(closing)["seam"]]
+            seams = [int(next(closing)["seam"])]
         pieces = sorted({side[s - 1] for s in seams for side in (first, second)})
         steps.append(
             {

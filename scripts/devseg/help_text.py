@@ -44,6 +44,10 @@ EXAMPLES: dict[str, list[tuple[str, str]]] = {
         ("devseg measure out/toy.ply", "what devseg has made"),
         ("devseg measure other.obj --json", "any mesh with texture coordinates"),
     ],
+    "edit": [
+        ("devseg edit out/toy.ply --join 3,5 --split 2 -o new.ply", "numbers of the pattern"),
+        ("devseg edit out/toy.ply --remove-seam 14 -o new.ply", "a seam by its number"),
+    ],
     "info": [("devseg info", "for people"), ("devseg info --json", "for programs")],
     "completion": [
         (

@@ -7,7 +7,7 @@ import importlib.metadata
 import platform
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from devseg import guide, host, ply, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
+from devseg.given import Given, keep, make_charts, prepare
 from devseg.lengths import shown
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, Method
@@ -65,6 +66,7 @@ class RunOptions:
         objects: names of the objects of the file to take; none: all.
         picture: whether to draw one.
         keep_texcoords: whether PLY files keep the coordinates of the file beside the new ones.
+        given: charts and seams that there are, and the component to take.
         smooth_seams: whether seams become smooth curves, along which the faces are split.
     """
 
@@ -82,6 +84,7 @@ class RunOptions:
     keep_texcoords: bool = False
     smooth_seams: bool = False
     weld: float = 0.0  # as the parameter of all filters
+    given: Given = field(default_factory=Given)
 
 
 class Session:
@@ -173,6 +176,8 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
     with progress.stage(READING):
         loaded = load_mesh(path, options.objects)
         up = options.up or loaded.frame.up or "y"
+        with host.captured():
+            prepare(path, loaded.meshes, loaded.parts, options.given)
         scene.turn(loaded.meshes, up)
     mesh = loaded.meshes.current_mesh()
     size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
@@ -187,7 +192,8 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
     writer.outputs["json"] = f"{name}.json"
     result = {
         "input": path.name,
-        "method": options.method.name,
+        "method": options.method.name if options.method.filter in session.parameters else None,
+        "charts_from": options.given.charts_from,
         "mesh": size,
         "parts": scene.counted(session.meshes.current_mesh(), loaded.parts),
         "size_mm": extents,
@@ -214,7 +220,7 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         with progress.stage("simplify"):
             found["simplification"] = simplify(session, options.target_faces)
     with progress.stage("segment"):
-        made = segment(session, options.method, options.segmentation)
+        made = _make_charts(session, options)
     found["method_results"] = made
     if not made.get("bounds_kept", True) and not made.get("charts_above_bound_number"):
         session.warnings.append(
@@ -239,6 +245,16 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         session.meshes.set_current_mesh(kept)
         measures = _flatten(session, options, progress)
     return {**found, **measures}
+
+
+def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
+    """Makes charts of what there is, by the method, or both; the results of the last filter."""
+    made = make_charts(session, options.given) if options.given.charts_from else {}
+    kept = keep(session, options.given)
+    if options.given.charts_from and kept is None:
+        return made
+    parameters = {**options.segmentation, **({"keep": kept} if kept else {})}
+    return segment(session, options.method, parameters)
 
 
 def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:

@@ -8,7 +8,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from devseg.cli import add_run_options, guarded, run_command
+from devseg.cli import guarded, run_command
+from devseg.run_options import add_run_options
 
 # Plush size: the sample's own unit means nothing.
 SAMPLE_HEIGHT_MM = 200.0

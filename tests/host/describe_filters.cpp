@@ -96,6 +96,8 @@ std::string describe(const declare::FilterDeclaration& filter) {
            ", \"menu\": " + json(category_name(filter.category)) +
            ", \"writes\": " + std::to_string(filter.writes) +
            ", \"needs_uv\": " + json(filter.needs_uv) +
+           ", \"needs_texture\": " + json(filter.needs_texture) +
+           ", \"needs_selection\": " + json(filter.needs_selection) +
            ", \"command\": " + describe(filter.command) + ", \"parameters\": " +
            list(filter.parameters,
                 [](const declare::Parameter& p) { return "\n  " + describe(p); }) +

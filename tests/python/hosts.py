@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import re
@@ -14,9 +15,12 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
+import devseg
 from conftest import ROOT
+from devseg import host
 from devseg.installations import Installation, find_installations
 from devseg.plugins import PLUGIN_FILES
 
@@ -25,6 +29,8 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import reference
 
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "devseg"
+# pymeshlab may keep a pointer to the log of a MeshSet and use it for later ones.
+_alive: list[Any] = []
 OLD_PYTHON = CACHE / "pymeshlab-2022.2" / "bin" / "python"
 
 
@@ -159,13 +165,60 @@ def prepared(filter_: dict[str, Any]) -> list[dict[str, Any]]:
     return [*(by_name[name] for name in reference.PREPARATION), filter_]
 
 
-def with_output(steps: list[dict[str, Any]], file: Path) -> list[dict[str, Any]]:
-    """The same steps; those that write a file write this one."""
+@functools.cache
+def numbers(mesh: Path) -> dict[str, Any]:
+    """What filters on a selection are told instead, for a mesh that was prepared.
+
+    All of its pieces, a seam, and a vertex inside of a chart; even where that costs stretch.
+    """
+    devseg.load_plugins()
+    meshset = host.pymeshlab().MeshSet()
+    _alive.append(meshset)
+    with host.captured():
+        meshset.load_new_mesh(str(mesh))
+        for step in prepared({})[:2]:
+            made = meshset.apply_filter(step["python_name"])
+    prepared_mesh = meshset.current_mesh()
+    seams = prepared_mesh.face_custom_scalar_attribute_array("seam_edges")
+    faces = prepared_mesh.face_matrix()
+    outside = np.unique(faces[seams > 0])
+    inside = np.setdiff1d(np.arange(prepared_mesh.vertex_number()), outside)
+    pieces = ",".join(str(n + 1) for n in range(made["charts_number"]))
+    return {"pieces": pieces, "seams": "1", "vertices": str(inside[0]), "force": True}
+
+
+def sample(filter_: dict[str, Any], plain: Path, folder: Path) -> Path:
+    """The mesh to run a filter on: a bunny with a texture where that is needed, else `plain`."""
+    file = folder / "textured.ply"
+    if not filter_["needs_texture"]:
+        return plain
+    if not file.is_file():
+        meshset = host.pymeshlab().MeshSet()
+        _alive.append(meshset)
+        samples = Path(host.pymeshlab().__file__).parent / "tests" / "sample_meshes"
+        with host.captured():
+            meshset.load_new_mesh(str(samples / "bunny10k_textured.obj"))
+            meshset.save_current_mesh(str(file))
+    return file
+
+
+def told(filter_: dict[str, Any], file: Path, mesh: Path) -> dict[str, Any]:
+    """The values of parameters that have no default which works: files and numbers."""
+    chosen = numbers(mesh) if filter_["needs_selection"] else {}
+    return {
+        p["name"]: str(file) if p["kind"] == "output file" else chosen[p["name"]]
+        for p in filter_["parameters"]
+        if p["kind"] == "output file" or p["name"] in chosen
+    }
+
+
+def with_values(steps: list[dict[str, Any]], file: Path, mesh: Path) -> list[dict[str, Any]]:
+    """The same steps with what they must be told."""
     return [
         {
             **step,
             "parameters": [
-                {**p, "default": str(file)} if p["kind"] == "output file" else p
+                {**p, "default": told(step, file, mesh).get(p["name"], p["default"])}
                 for p in step["parameters"]
             ],
         }

@@ -34,8 +34,8 @@ class MeshLabWindow:
     """A running MeshLab; a context."""
 
     def __init__(self, meshlab: hosts.PrivateMeshLab, mesh: Path) -> None:
-        self._meshlab = meshlab
-        self._mesh = mesh
+        self.meshlab = meshlab
+        self.mesh = mesh
         self._processes: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> MeshLabWindow:
@@ -52,7 +52,7 @@ class MeshLabWindow:
         self._stop()
 
     def _start(self) -> None:
-        self._log = (self._meshlab.folder / "window.log").open("wb")
+        self._log = (self.meshlab.folder / "window.log").open("wb")
         read, write = os.pipe()
         self._processes.append(
             subprocess.Popen(
@@ -65,9 +65,9 @@ class MeshLabWindow:
         os.close(write)
         with os.fdopen(read) as answer:
             self.display = f":{int(answer.readline())}"
-        environment = self._meshlab.environment()
+        environment = self.meshlab.environment()
         _settle_first_questions(Path(environment["XDG_CONFIG_HOME"]))
-        self._socket_path = self._meshlab.folder / "inspector"
+        self._socket_path = self.meshlab.folder / "inspector"
         self._socket_path.unlink(missing_ok=True)
         environment |= {
             "DISPLAY": self.display,
@@ -76,7 +76,7 @@ class MeshLabWindow:
         }
         self._processes.append(
             subprocess.Popen(
-                [self._meshlab.folder / "meshlab", self._mesh],
+                [self.meshlab.folder / "meshlab", self.mesh],
                 env=environment,
                 stdout=self._log,
                 stderr=self._log,
@@ -117,7 +117,7 @@ class MeshLabWindow:
             if answer:
                 return answer
             time.sleep(0.1)
-        picture = self._meshlab.folder / "failed.png"
+        picture = self.meshlab.folder / "failed.png"
         self.screenshot().save(picture)
         raise AssertionError(f"{what} did not appear within {PATIENCE:.0f} s; see {picture}")
 

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -44,23 +45,23 @@ def in_wheel(flavour: str, jobs: list[dict[str, Any]], folder: Path) -> list[lis
     return json.loads((folder / "answer.json").read_text())
 
 
-def values_of(filter_: dict[str, Any], output: Path) -> dict[str, Any]:
-    """Files that it has to be told; everything else is left at its default."""
-    return {p["name"]: str(output) for p in filter_["parameters"] if p["kind"] == "output file"}
-
-
-def test_every_filter_runs_and_is_reported_as_declared(wheel: str, tmp_path: Path) -> None:
+def test_every_filter_runs_and_is_reported_as_declared(
+    wheel: str, tmp_path: Path, pymeshlab: ModuleType
+) -> None:
     table = hosts.declarations()
+    sample = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / wheel_jobs.SAMPLE
     jobs = []
     for number, filter_ in enumerate(table):
         output = tmp_path / f"{number}.svg"
-        steps = [(s["python_name"], values_of(s, output)) for s in hosts.prepared(filter_)]
-        jobs.append({"steps": steps, "history": str(tmp_path / f"{number}.mlx")})
+        steps = [(s["python_name"], hosts.told(s, output, sample)) for s in hosts.prepared(filter_)]
+        mesh = hosts.sample(filter_, sample, tmp_path)
+        history = str(tmp_path / f"{number}.mlx")
+        jobs.append({"mesh": str(mesh), "steps": steps, "history": history})
     answers = in_wheel(wheel, jobs, tmp_path)
     for number, (filter_, answer) in enumerate(zip(table, answers, strict=True)):
         name = filter_["menu_name"]
         assert answer == sorted(r["name"] for r in filter_["results"]), name
-        expected = hosts.with_output([filter_], tmp_path / f"{number}.svg")[0]
+        expected = hosts.with_values([filter_], tmp_path / f"{number}.svg", sample)[0]
         reported = hosts.reported_script(tmp_path / f"{number}.mlx")
         assert hosts.without_extensions(reported[name]) == hosts.declared_script(expected), name
         hosts.record(wheel, name, "as declared, runs")

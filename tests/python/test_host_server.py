@@ -106,8 +106,9 @@ def test_every_filter_runs(server: hosts.PrivateMeshLab, bone: Path, tmp_path: P
             for p in filter_["parameters"]
         ], name
         # It aborts on scripts that do not name exactly the parameters that it knows.
-        steps = hosts.with_output(hosts.prepared(filter_), tmp_path / f"{number}.svg")
-        done = server.serve("-i", bone, "-s", mlx(tmp_path / f"{number}.mlx", steps))
+        steps = hosts.with_values(hosts.prepared(filter_), tmp_path / f"{number}.svg", bone)
+        mesh = hosts.sample(filter_, bone, tmp_path)
+        done = server.serve("-i", mesh, "-s", mlx(tmp_path / f"{number}.mlx", steps))
         assert done.returncode == 0 and "Problem with filter" not in done.stdout, done.stdout
         for result in filter_["results"]:
             assert f"{result['name']}: " in done.stdout, name

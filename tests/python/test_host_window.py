@@ -144,13 +144,7 @@ def run_filter(
     window.wait_for(f"the dialog of {name}", lambda: dialog() or ended())
     if dialog():
         check_dialog(window, filter_)
-        for parameter in filter_["parameters"]:
-            if parameter["kind"] == "output file":
-                row = row_of(window, name, parameter["label"])
-                window.focus(name)
-                window.click(next(w for w in row if w["class"] == "QLineEdit"))
-                window.press("ctrl+a")
-                window.type(str(folder / "from_filter.svg"))
+        tell(window, filter_, hosts.told(filter_, folder / "from_filter.svg", window.mesh))
         window.click(dialog()[0])
     else:
         assert not filter_["parameters"]
@@ -159,6 +153,23 @@ def run_filter(
         show_beside(window, name, picture)
     if dialog():
         window.click(window.widgets(dock=name, text="Close")[0])
+
+
+def tell(window: MeshLabWindow, filter_: dict[str, Any], values: dict[str, Any]) -> None:
+    """Writes values into the dialog of a filter, and ticks what is true."""
+    name = filter_["menu_name"]
+    for parameter in filter_["parameters"]:
+        value = values.get(parameter["name"])
+        if value is None:
+            continue
+        row = row_of(window, name, parameter["label"])
+        window.focus(name)
+        if parameter["kind"] == "boolean":
+            window.click(next(w for w in row if w["class"] == "QCheckBox"))
+            continue
+        window.click(next(w for w in row if w["class"] == "QLineEdit"))
+        window.press("ctrl+a")
+        window.type(value)
 
 
 def show_beside(window: MeshLabWindow, dock: str, picture: Path) -> None:
@@ -237,7 +248,9 @@ def test_every_filter_is_found_explains_itself_and_runs(
     table = hosts.declarations()
     on_new_layer = False
     for filter_ in sorted(table, key=reference.makes_layer):
-        for step in steps if on_new_layer else ():
+        if filter_["needs_texture"]:
+            continue  # the mesh has none
+        for step in steps if on_new_layer or filter_["needs_selection"] else ():
             run_filter(window, step, tmp_path)
         run_filter(window, filter_, tmp_path)
         on_new_layer = reference.makes_layer(filter_)

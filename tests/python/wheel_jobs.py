@@ -20,8 +20,9 @@ _alive: list[Any] = []
 def run(jobs: list[dict[str, Any]]) -> list[list[str]]:
     """Does each job on the sample mesh; the names of the results of its last filter.
 
-    A job may have "script", an .mlx file to run; "steps", pairs of a filter and its parameters;
-    "history", where to save what was applied as .mlx; "save", where to save the mesh.
+    A job may have "mesh", another file; "script", an .mlx file to run; "steps", pairs of a filter
+    and its parameters; "history", where to save what was applied as .mlx; "save", where to save
+    the mesh.
     """
     import pymeshlab
 
@@ -30,7 +31,7 @@ def run(jobs: list[dict[str, Any]]) -> list[list[str]]:
     for job in jobs:
         meshset = pymeshlab.MeshSet()
         _alive.append(meshset)
-        meshset.load_new_mesh(str(sample))
+        meshset.load_new_mesh(job.get("mesh", str(sample)))
         if "script" in job:
             meshset.load_filter_script(job["script"])
             meshset.apply_filter_script()

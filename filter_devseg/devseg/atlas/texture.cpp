@@ -9,8 +9,6 @@ namespace devseg::atlas {
 
 namespace {
 
-// Writers of texture coordinates round to 6 digits: smaller differences are no seams.
-constexpr double seam_tolerance = 1e-6;
 // Charts whose boundary lengths agree to this share were flattened to keep them. Coordinates of 32
 // bit change the length of a short boundary by about a tenth of that.
 constexpr double same_length = 1e-4;
@@ -142,10 +140,10 @@ struct ChartSizes {
 
 } // namespace
 
-ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv) {
-    const double tolerance = seam_tolerance * plane::box_of(uv).diagonal().norm();
+ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv, double tolerance) {
+    const double apart = tolerance * plane::box_of(uv).diagonal().norm();
     const auto differ = [&](Index a, Index b) {
-        return !((uv[a] - uv[b]).cwiseAbs().maxCoeff() <= tolerance);
+        return !((uv[a] - uv[b]).cwiseAbs().maxCoeff() <= apart);
     };
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges()) {

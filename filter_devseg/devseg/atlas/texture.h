@@ -9,11 +9,12 @@
 namespace devseg::atlas {
 
 /// Charts and cuts as texture coordinates show them: an edge is a seam where the coordinates on
-/// its two sides differ by more than a millionth of the size of the whole layout. It is one as well
-/// where its two faces lie on the same side of it, as where one half of a model is the mirror image
-/// of the other in the texture; but faces that are turned over here and there, less than a
+/// its two sides differ by more than `tolerance`, a share of the size of the whole layout: writers
+/// of texture coordinates round to 6 digits, and smaller differences are no seams. It is one as
+/// well where its two faces lie on the same side of it, as where one half of a model is the mirror
+/// image of the other in the texture; but faces that are turned over here and there, less than a
 /// twentieth of their chart, are flaws of the chart.
-ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv);
+ChartMap charts_from_uv(const Mesh& mesh, const CornerUv& uv, double tolerance = 1e-6);
 
 /// A layout that is true at one scale.
 struct EvenLayout {

@@ -11,6 +11,7 @@
 
 #include "devseg/base/option_checks.h"
 #include "devseg/declare/filter.h"
+#include "devseg/declare/part.h"
 
 namespace devseg::declare {
 
@@ -95,6 +96,25 @@ public:
         filter_.needs_uv = true;
         return *this;
     }
+    Declare& needs_texture() {
+        filter_.needs_texture = true;
+        return *this;
+    }
+    /// It refuses to run where neither a selection nor a parameter says what is meant.
+    Declare& needs_selection() {
+        filter_.needs_selection = true;
+        return *this;
+    }
+    /// It works on the selected faces alone where `selected_only` says so.
+    Declare& on_part() {
+        filter_.on_part = true;
+        return *this;
+    }
+    /// Existing seams or charts stay where `keep` says so.
+    Declare& keeps() {
+        filter_.keeps = true;
+        return *this;
+    }
     Declare& result(std::string name, std::string meaning) {
         filter_.results.push_back({std::move(name), std::move(meaning)});
         return *this;
@@ -113,6 +133,8 @@ public:
             }
             return run(input, options, progress);
         };
+        for (Parameter& parameter : part_parameters(filter_.on_part, filter_.keeps))
+            filter_.parameters.push_back(std::move(parameter));
         filter_.parameters.push_back(weld_parameter());
         return filter_;
     }

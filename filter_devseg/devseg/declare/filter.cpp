@@ -8,39 +8,80 @@
 #include "devseg/base/errors.h"
 #include "devseg/base/option_checks.h"
 #include "devseg/base/worker.h"
+#include "devseg/declare/part.h"
 
 namespace devseg::declare {
 
 namespace {
 
+std::vector<Index> read_chart_id(const HostMesh& host, const mesh::GatedMesh& gated) {
+    std::vector<Index> labels;
+    if (host.chart_id.empty())
+        return labels;
+    for (const Index source : gated.source_face) {
+        const double id = host.chart_id[source];
+        if (!(std::abs(id) <= std::numeric_limits<Index>::max()))
+            throw InvalidMesh("expected whole numbers in the face attribute chart_id, found " +
+                                  std::to_string(id) + " at face " + std::to_string(source) +
+                                  "; run a segmentation filter again",
+                              {source});
+        labels.push_back(static_cast<Index>(std::lround(id)));
+    }
+    return labels;
+}
+
+// What is written where a host keeps bits 1, 2, 4.
+int edge_bits(double value) {
+    return value >= 0.0 && value <= 7.0 ? static_cast<int>(std::lround(value)) : 0;
+}
+
+// Marks of half-edges and their twins (3 #F), from the bits of the host's faces.
+template <class Bits>
+std::vector<std::uint8_t> of_edges(const mesh::GatedMesh& gated, Bits bits) {
+    const Mesh& mesh = gated.mesh;
+    std::vector<std::uint8_t> marks(mesh.twin.size(), 0);
+    for (const Face f : mesh.all_faces()) {
+        const int mask = bits(gated.source_face[f]);
+        for (Index e = 0; e < 3; ++e)
+            marks[3 * f + e] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
+    }
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 && marks[h] != 0)
+            marks[mesh.twin[h]] = 1;
+    return marks;
+}
+
 std::optional<atlas::ChartMap> read_charts(const HostMesh& host, const mesh::GatedMesh& gated) {
     if (host.chart_id.empty() && host.seam_edges.empty())
         return std::nullopt;
     const Mesh& mesh = gated.mesh;
-    std::vector<Index> labels(mesh.faces.size(), 0);
+    std::vector<Index> labels = read_chart_id(host, gated);
+    labels.resize(mesh.faces.size(), 0);
     std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
-    for (const Face f : mesh.all_faces()) {
-        const std::size_t source = at(gated.source_face[f]);
-        if (!host.chart_id.empty()) {
-            const double id = host.chart_id[source];
-            if (!(std::abs(id) <= std::numeric_limits<Index>::max()))
-                throw InvalidMesh("expected whole numbers in the face attribute chart_id, found " +
-                                      std::to_string(id) + " at face " + std::to_string(source) +
-                                      "; run a segmentation filter again",
-                                  {static_cast<Index>(source)});
-            labels[f] = static_cast<Index>(std::lround(id));
-        }
-        if (host.seam_edges.empty())
-            continue;
-        const double bits = host.seam_edges[source];
-        const int mask = bits >= 0.0 && bits <= 7.0 ? static_cast<int>(std::lround(bits)) : 0;
-        for (Index e = 0; e < 3; ++e)
-            seam[3 * f + e] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
-    }
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (mesh.twin[h] >= 0 && seam[h] != 0)
-            seam[mesh.twin[h]] = 1;
+    if (!host.seam_edges.empty())
+        seam = of_edges(gated, [&](Index f) { return edge_bits(host.seam_edges[f]); });
     return atlas::make_chart_map(mesh, labels, seam, true);
+}
+
+std::vector<std::uint8_t> read_selected_edges(const HostMesh& host, const mesh::GatedMesh& gated) {
+    if (host.edge_selected.empty())
+        return {};
+    return of_edges(gated, [&](Index f) { return int{host.edge_selected[f]}; });
+}
+
+// A vertex is selected where one of those is that were joined at its place.
+std::vector<std::uint8_t> read_selected_vertices(const HostMesh& host,
+                                                 const mesh::GatedMesh& gated) {
+    if (host.vertex_selected.empty())
+        return {};
+    std::vector<std::uint8_t> selected(gated.mesh.points.size(), 0);
+    for (const Face f : gated.mesh.all_faces())
+        for (Index k = 0; k < 3; ++k) {
+            const Triangle& corners = host.geometry.faces[gated.source_face[f]];
+            selected[gated.mesh.faces[f][k]] |=
+                host.vertex_selected[corners[gated.source_corner(f, k)]];
+        }
+    return selected;
 }
 
 // Hosts keep texture coordinates in 32 bits, where larger numbers are infinite.
@@ -49,14 +90,15 @@ bool is_coordinate(const Vec2& p) {
 }
 
 // Broken texture coordinates only matter to filters that need them.
-std::optional<CornerUv> read_uv(const HostMesh& host, const mesh::GatedMesh& gated, bool needed) {
-    if (host.wedge_uv.empty())
+std::optional<CornerUv> read_uv(const std::vector<std::array<Vec2, 3>>& wedge_uv,
+                                const mesh::GatedMesh& gated, bool needed) {
+    if (wedge_uv.empty())
         return std::nullopt;
     CornerUv uv(3 * gated.mesh.faces.size());
     for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k) {
             const std::size_t source = at(gated.source_face[f]);
-            const Vec2& p = host.wedge_uv[source][gated.source_corner(f, k)];
+            const Vec2& p = wedge_uv[source][gated.source_corner(f, k)];
             if (!is_coordinate(p) && !needed)
                 return std::nullopt;
             if (!is_coordinate(p))
@@ -95,6 +137,16 @@ int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, const
         if (charts.seam[3 * f.face + e] != 0 || (edge >= 0 && gated.cut[3 * f.gated + edge] != 0))
             bits |= 1 << gated.source_edge(f.gated, e);
     }
+    return bits;
+}
+
+// Bits of the edges of an untouched face that lie beside others.
+int bits_to_touched(const mesh::GatedMesh& gated, const std::vector<std::uint8_t>& untouched,
+                    Face f) {
+    int bits = 0;
+    for (const HalfEdge h : half_edges_of(f))
+        if (const Face g = gated.mesh.across(h); g >= 0 && untouched[g] == 0)
+            bits |= 1 << gated.source_edge(f, corner_of(h));
     return bits;
 }
 
@@ -199,15 +251,26 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
         result.points = moved_points(host, gated, *output.points);
     result.values = std::move(output.values);
     result.layer = std::move(output.layer);
+    result.texture = std::move(output.texture);
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
     const std::vector<OutputFace> faces = output_faces(gated, output);
     if (output.refinement && !output.refinement->parts.empty())
         result.refinement = host_refinement(host, gated, *output.refinement, faces);
     for (const OutputFace& f : faces) {
+        const auto source = result.untouched.size();
+        const bool stays = !output.untouched.empty() && source < host.geometry.faces.size() &&
+                           (!f.own || output.untouched[f.gated] != 0);
+        result.untouched.push_back(stays ? 1 : 0);
         if (output.charts) {
-            result.chart_id.push_back(output.charts->chart[f.face]);
-            result.seam_edges.push_back(f.own ? seam_bits(gated, *output.charts, f) : 0);
+            result.chart_id.push_back(stays && !host.chart_id.empty()
+                                          ? static_cast<int>(std::lround(host.chart_id[source]))
+                                          : output.charts->chart[f.face]);
+            int bits = f.own ? seam_bits(gated, *output.charts, f) : 0;
+            if (stays && !host.seam_edges.empty()) // and its edges to faces that have changed
+                bits = edge_bits(host.seam_edges[source]) |
+                       (f.own ? bits & bits_to_touched(gated, output.untouched, f.gated) : 0);
+            result.seam_edges.push_back(bits);
         }
         if (output.face_quality)
             result.face_quality.push_back((*output.face_quality)[f.face]);
@@ -221,6 +284,8 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
             result.wedge_uv.push_back(corners);
         }
     }
+    if (output.untouched.empty())
+        result.untouched.clear();
     return result;
 }
 
@@ -233,27 +298,6 @@ double weld_of(const ParameterValues& values) {
     const double weld = std::get<double>(given->second);
     weld_range.check(weld);
     return weld;
-}
-
-// The number of charts is an aim: more of them than faces are as many as faces. Whoever gave the
-// number is told.
-void limit_charts_number(const FilterDeclaration& filter, Index faces, ParameterValues& values,
-                         std::vector<std::string>& notes) {
-    constexpr const char* name = "charts_number";
-    for (const Parameter& p : filter.parameters) {
-        if (p.name != name)
-            continue;
-        ParameterValue& value = values.try_emplace(name, p.default_value).first->second;
-        const int asked = std::get<int>(value);
-        if (asked <= faces)
-            continue;
-        if (value != p.default_value)
-            notes.push_back(std::string(name) + ": " + std::to_string(asked) +
-                            " charts were asked for, and the mesh has " + std::to_string(faces) +
-                            (faces == 1 ? " face" : " faces") +
-                            " to divide among them: " + std::to_string(faces) + " was used");
-        value = faces;
-    }
 }
 
 // A run owns all that it reads and writes: a cancelled one is abandoned.
@@ -271,19 +315,25 @@ void FilterRun::operator()(Progress& progress) {
     auto reading = progress.part("reading the mesh", 0.02);
     mesh::GatedMesh gated =
         mesh::gate_mesh(host.geometry, {weld_of(values), filter.shows_outside}, reading);
-    limit_charts_number(filter, gated.mesh.face_count(), values, gated.notes);
     reading.check();
     const FilterInput input{gated.mesh,
                             read_charts(host, gated),
-                            read_uv(host, gated, filter.needs_uv),
+                            read_uv(host.wedge_uv, gated, filter.needs_uv),
                             gated.source_face,
                             gated.source_vertex,
                             of_faces(host.face_selected, gated),
                             of_faces(host.face_color, gated),
-                            gated.center};
+                            gated.center,
+                            read_chart_id(host, gated),
+                            of_faces(host.face_material, gated),
+                            read_selected_edges(host, gated),
+                            read_selected_vertices(host, gated),
+                            read_uv(host.uv_before, gated, false),
+                            of_faces(host.page_before, gated),
+                            std::move(host.textures)};
     auto running = progress.part(0.98);
     try {
-        FilterOutput output = filter.run(input, values, running);
+        FilterOutput output = run_on_part(filter, input, std::move(values), running);
         save = std::move(output.save);
         result = map_back(host, gated, std::move(output));
     } catch (InvalidMesh& error) {

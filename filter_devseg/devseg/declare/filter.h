@@ -16,6 +16,7 @@
 #include "devseg/base/progress.h"
 #include "devseg/mesh/input_gate.h"
 #include "devseg/mesh/refinement.h"
+#include "devseg/plane/image.h"
 
 namespace devseg::declare {
 
@@ -73,22 +74,30 @@ enum Writes : unsigned {
     writes_quality = 2,
     writes_color = 4,
     writes_uv = 8,
-    writes_layer = 16,  // a new mesh; the host's own stays as it is
-    writes_points = 32, // coordinates of the vertices
-    writes_mesh = 64    // faces are split: new faces and vertices
+    writes_layer = 16,   // a new mesh; the host's own stays as it is
+    writes_points = 32,  // coordinates of the vertices
+    writes_mesh = 64,    // faces are split: new faces and vertices
+    writes_texture = 128 // an image for the wedge texture coordinates, instead of the old ones
 };
 
 /// What filters see of a mesh: checked, in internal units.
 struct FilterInput {
     const Mesh& mesh;
-    std::optional<atlas::ChartMap> charts;   // from chart_id and seam_edges, if the mesh has them
-    std::optional<CornerUv> uv;              // wedge texture coordinates, if the mesh has them
-    const std::vector<Index>& source_face;   // #F: the host's number of each face, for results
-    const std::vector<Index>& source_vertex; // #V: the host's number of each vertex; the parts of
-                                             // a vertex that the gate had to split share one
-    std::vector<std::uint8_t> selected;      // #F: 1 for selected faces; empty if none is
-    std::vector<Color> color;                // #F; empty if the mesh has no face colours
-    Vec3 center = Vec3::Zero();              // model coordinates of the mesh's origin
+    std::optional<atlas::ChartMap> charts;    // from chart_id and seam_edges, if the mesh has them
+    std::optional<CornerUv> uv;               // wedge texture coordinates, if the mesh has them
+    const std::vector<Index>& source_face;    // #F: the host's number of each face, for results
+    const std::vector<Index>& source_vertex;  // #V: the host's number of each vertex; the parts of
+                                              // a vertex that the gate had to split share one
+    std::vector<std::uint8_t> selected;       // #F: 1 for selected faces; empty if none is
+    std::vector<Color> color;                 // #F; empty if the mesh has no face colours
+    Vec3 center = Vec3::Zero();               // model coordinates of the mesh's origin
+    std::vector<Index> chart_id;              // #F: as the host has them; empty if it has none
+    std::vector<Index> material;              // #F; empty if the host has none
+    std::vector<std::uint8_t> selected_edges; // 3 #F, symmetric; empty if none is
+    std::vector<std::uint8_t> selected_vertices; // #V; empty if none is
+    std::optional<CornerUv> uv_before; // that fit the textures, for filters that need them
+    std::vector<Index> page_before;    // #F: number of the texture
+    std::vector<plane::Image> textures;
 
     /// Between internal units and model coordinates.
     Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
@@ -103,6 +112,8 @@ struct FilterOutput {
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
+    std::optional<plane::Image> texture;
+    std::vector<std::uint8_t> untouched;        // #F of the mesh: 1 where all stays as it is
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
     std::function<void()> save;     // writes the filter's file, if it has one: comes last, because
@@ -124,7 +135,11 @@ struct FilterDeclaration {
     FilterCategory category = FilterCategory::remeshing;
     unsigned writes = writes_nothing;
     bool needs_uv = false;
-    bool shows_outside = false; // closed surfaces that are inside out are turned over
+    bool needs_selection = false; // of faces, edges or vertices, where no parameter names charts
+    bool shows_outside = false;   // closed surfaces that are inside out are turned over
+    bool needs_texture = false;   // and the coordinates that fit them
+    bool on_part = false;         // takes `selected_only` (declare/part.h)
+    bool keeps = false;           // takes `keep`
     std::vector<Parameter> parameters;
     std::vector<ResultField> results;
     Command command;
@@ -146,6 +161,13 @@ struct HostMesh {
     std::vector<std::array<Vec2, 3>> wedge_uv;
     std::vector<std::uint8_t> face_selected; // 1 for selected faces
     std::vector<Color> face_color;
+    std::vector<std::uint8_t> edge_selected;   // of each face: bits 1, 2, 4, as seam_edges
+    std::vector<std::uint8_t> vertex_selected; // #V: 1 for selected vertices
+    std::vector<Index> face_material;
+    // For filters that need textures: the images, and what fits them.
+    std::vector<std::array<Vec2, 3>> uv_before;
+    std::vector<Index> page_before;
+    std::vector<plane::Image> textures;
 };
 
 /// How the host's own faces are split. All that a host keeps for its faces and vertices is carried
@@ -172,8 +194,12 @@ struct HostResult {
     std::vector<double> face_quality;
     std::vector<Color> face_color;
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    // Empty, or 1 for the host's own faces that must stay as they are: their coordinates, quality
+    // and colours here mean nothing, and only their seams may have changed.
+    std::vector<std::uint8_t> untouched;
     std::vector<Vec3> points; // for all vertices or empty
     std::optional<LayerMesh> layer;
+    std::optional<plane::Image> texture;
     std::optional<HostRefinement> refinement;
     ResultValues values;
     std::vector<std::string> notes;

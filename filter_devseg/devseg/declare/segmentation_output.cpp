@@ -28,9 +28,8 @@ constexpr std::array<Color, 14> palette{{{{119, 170, 221}},
                                          {{153, 153, 221}},
                                          {{221, 221, 221}}}};
 
-} // namespace
-
-std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
+std::vector<Color> choose_colors(const Mesh& mesh, const atlas::ChartMap& charts,
+                                 const std::vector<std::optional<Color>>& given) {
     const std::size_t count = at(charts.count);
     std::vector<std::set<Index>> neighbours(count);
     std::vector<double> area(count, 0.0);
@@ -46,7 +45,13 @@ std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts)
                      [&](std::size_t a, std::size_t b) { return area[a] > area[b]; });
     std::vector<std::size_t> chosen(count, palette.size());
     std::array<std::size_t, palette.size()> uses{};
+    for (std::size_t c = 0; c < given.size(); ++c) // other colours than these are far enough
+        if (given[c])
+            chosen[c] = static_cast<std::size_t>(
+                std::find(palette.begin(), palette.end(), *given[c]) - palette.begin());
     for (const std::size_t c : order) {
+        if (c < given.size() && given[c])
+            continue;
         std::array<bool, palette.size()> taken{};
         for (const Index n : neighbours[c])
             if (chosen[n] < palette.size())
@@ -60,13 +65,24 @@ std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts)
         ++uses[chosen[c]];
     }
     std::vector<Color> colors;
-    for (const std::size_t i : chosen)
-        colors.push_back(palette[i]);
+    for (std::size_t c = 0; c < count; ++c)
+        colors.push_back(c < given.size() && given[c] ? *given[c] : palette[chosen[c]]);
     return colors;
 }
 
+} // namespace
+
+std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
+    return choose_colors(mesh, charts, {});
+}
+
 std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts) {
-    const std::vector<Color> colors = chart_colors(mesh, charts);
+    return face_chart_colors(mesh, charts, {});
+}
+
+std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts,
+                                     const std::vector<std::optional<Color>>& given) {
+    const std::vector<Color> colors = choose_colors(mesh, charts, given);
     std::vector<Color> result;
     result.reserve(charts.chart.size());
     for (const Index c : charts.chart)

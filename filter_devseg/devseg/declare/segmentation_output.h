@@ -1,6 +1,7 @@
 // What segmentation filters leave on the mesh, with one colour for each chart.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "devseg/atlas/disks.h"
@@ -14,6 +15,10 @@ std::vector<Color> chart_colors(const Mesh& mesh, const atlas::ChartMap& charts)
 
 /// The same, spread to the faces (#F).
 std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts);
+
+/// The same beside charts that have colours (`given`, #charts).
+std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts,
+                                     const std::vector<std::optional<Color>>& given);
 
 /// Charts with their colours, and these values. `quality`: #F.
 FilterOutput chart_output(const Mesh& mesh, atlas::ChartMap charts, std::vector<double> quality,

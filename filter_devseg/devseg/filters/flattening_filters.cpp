@@ -158,6 +158,7 @@ FilterDeclaration flatten() {
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in rows and in model units, which takes no time.")
+        .on_part()
         .writes(writes_charts | writes_uv)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut first")
@@ -182,6 +183,7 @@ FilterDeclaration pack() {
                  "Turn charts to their best box and by quarter turns; off keeps the direction of "
                  "the texture.")
         .needs_uv()
+        .on_part()
         .writes(writes_uv)
         .result("charts_number", "charts that were packed")
         .runs(run_pack);

@@ -135,6 +135,7 @@ std::vector<FilterDeclaration> smooth_filters() {
                 "Seams of a chart stay on their edges where smooth ones bring its root mean "
                 "square stretch, which has no unit, above this bound. 0 = none, which saves the trial "
                 "flattenings.")
+            .on_part()
             .writes(writes_charts | writes_mesh)
             .result("charts_number", "charts, as many as before")
             .result("kept_charts_number", "charts whose seams stay because of the bound")

@@ -11,7 +11,8 @@ using Filters = std::vector<declare::FilterDeclaration>;
 // Each method declares its filters in its own folder.
 namespace dcharts {
 Filters filters();
-}
+Filters refinement_filters();
+} // namespace dcharts
 namespace t_flooding {
 Filters filters();
 }
@@ -24,6 +25,10 @@ Filters filters();
 namespace baselines {
 Filters filters();
 }
+namespace edit {
+Filters given_filters();
+Filters edit_filters();
+} // namespace edit
 
 namespace filters {
 
@@ -35,14 +40,17 @@ Filters flattening_filters();
 Filters pattern_filters();
 Filters sewn_preview_filters();
 Filters measure_filters();
+Filters texture_filters();
 
 const Filters& filter_table() {
     static const Filters table = [] {
         Filters all;
         for (Filters group :
-             {dcharts::filters(), chart_filters(), smooth_filters(), t_flooding::filters(),
-              plush::filters(), papercraft::filters(), baselines::filters(), deformation_filters(),
-              flattening_filters(), pattern_filters(), sewn_preview_filters(), measure_filters()})
+             {dcharts::filters(), edit::given_filters(), edit::edit_filters(),
+              dcharts::refinement_filters(), chart_filters(), smooth_filters(),
+              t_flooding::filters(), plush::filters(), papercraft::filters(), baselines::filters(),
+              deformation_filters(), flattening_filters(), pattern_filters(),
+              sewn_preview_filters(), measure_filters(), texture_filters()})
             std::move(group.begin(), group.end(), std::back_inserter(all));
         return all;
     }();

@@ -22,6 +22,63 @@ namespace {
 using checks::contains;
 using checks::number;
 
+// The faces on one side of the origin.
+void select_half(HostMesh& host) {
+    for (const Triangle& t : host.geometry.faces)
+        host.face_selected.push_back(host.geometry.points[t[0]].x() > 0.0 ? 1 : 0);
+}
+
+// A barrel in four charts and two colours, with a patch of faces selected across a seam, a line of
+// edges that ends inside a chart, and a vertex.
+HostMesh chosen_by_hand(double bulge) {
+    HostMesh host = checks::host_of(shapes::cylinder_tube(24, 12));
+    for (Vec3& p : host.geometry.points) {
+        const double up = std::abs(p.z() - host.geometry.points.front().z()) - 1.0;
+        p.head<2>() *= 1.0 + bulge * (1.0 - up * up);
+    }
+    const std::vector<Vec3>& points = host.geometry.points;
+    const auto angle = [](const Vec3& p) { return std::atan2(p.y(), p.x()); };
+    const double low = points.front().z();
+    for (const Triangle& t : host.geometry.faces) {
+        const Vec3 middle = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
+        const double height = std::abs(middle.z() - low);
+        const double wave = 0.2 * std::sin(9.0 * height); // borders are not as short as can be
+        host.chart_id.push_back(
+            std::floor((std::clamp(angle(middle) + wave, -pi, 3.1) + pi) / (0.5 * pi)));
+        host.seam_edges.push_back(0.0);
+        host.face_color.push_back(height < 1.0 ? Color{255, 0, 0} : Color{0, 0, 255});
+        host.face_selected.push_back(std::abs(angle(middle)) < 0.5 && height < 1.0 ? 1 : 0);
+        int bits = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 edge = 0.5 * (points[t[k]] + points[t[(k + 1) % 3]]);
+            if (std::abs(angle(edge) - 0.25 * pi) < 1e-6 && std::abs(edge.z() - low) > 1.1)
+                bits |= 1 << k;
+        }
+        host.edge_selected.push_back(static_cast<std::uint8_t>(bits));
+    }
+    for (const Vec3& p : points)
+        host.vertex_selected.push_back(std::abs(angle(p) - 0.25 * pi) < 1e-6 &&
+                                               std::abs(std::abs(p.z() - low) - 1.0) < 0.1
+                                           ? 1
+                                           : 0);
+    return host;
+}
+
+// A ball in two charts, with a face selected in each.
+HostMesh halves_of_a_ball() {
+    HostMesh host = checks::host_of(shapes::sphere(3));
+    std::array<int, 2> seen{};
+    for (const Triangle& t : host.geometry.faces) {
+        const double x = (host.geometry.points[t[0]] + host.geometry.points[t[1]]).x() +
+                         host.geometry.points[t[2]].x();
+        const std::size_t side = x > 0.0 ? 1 : 0;
+        host.chart_id.push_back(static_cast<double>(side));
+        host.face_selected.push_back(seen[side]++ == 30 ? 1 : 0);
+        host.edge_selected.push_back(7);
+    }
+    return host;
+}
+
 // A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so
 // that it is packed at once.
 HostMesh prepared() {
@@ -32,7 +89,28 @@ HostMesh prepared() {
     for (std::array<Vec2, 3>& corners : host.wedge_uv)
         for (Vec2& p : corners)
             p = Eigen::Rotation2Dd(0.5) * p; // no box stands upright
+    select_half(host);
     return host;
+}
+
+// The same with a texture and the coordinates that fit it.
+HostMesh textured() {
+    HostMesh host = prepared();
+    host.wedge_uv = checks::run("Charts: Pack", host).wedge_uv;
+    plane::Image image{8, 8, {}};
+    for (int i = 0; i < 3 * 64; ++i)
+        image.rgb.push_back(static_cast<std::uint8_t>(i));
+    host.textures = {std::move(image)};
+    host.uv_before.assign(host.wedge_uv.size(), {Vec2(0.1, 0.1), Vec2(0.9, 0.2), Vec2(0.3, 0.8)});
+    host.page_before.assign(host.wedge_uv.size(), 0);
+    return host;
+}
+
+// With what is chosen, for filters that work on that.
+HostMesh prepared_for(const FilterDeclaration& filter) {
+    if (filter.needs_texture)
+        return textured();
+    return filter.needs_selection ? chosen_by_hand(0.1) : prepared();
 }
 
 HostResult run(const FilterDeclaration& filter, const HostMesh& host,
@@ -42,8 +120,8 @@ HostResult run(const FilterDeclaration& filter, const HostMesh& host,
 }
 
 TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         SCOPED_TRACE(filter.menu_name);
         const HostResult r = run(filter, host, {});
         EXPECT_EQ(r.refinement.has_value(), (filter.writes & writes_mesh) != 0);
@@ -68,6 +146,7 @@ TEST(DeclaredFilters, FiltersReturnAndWriteWhatTheyDeclare) {
         expect_written(writes_uv, r.wedge_uv.size());
         EXPECT_EQ(r.points.size(),
                   (filter.writes & writes_points) != 0 ? host.geometry.points.size() : 0U);
+        EXPECT_EQ(r.texture.has_value(), (filter.writes & writes_texture) != 0);
         EXPECT_EQ(r.layer.has_value(), (filter.writes & writes_layer) != 0);
     }
 }
@@ -96,12 +175,14 @@ bool same_refinement(const HostResult& a, const HostResult& b) {
 bool same(const HostResult& a, const HostResult& b) {
     return same_refinement(a, b) && a.chart_id == b.chart_id && a.seam_edges == b.seam_edges &&
            a.face_quality == b.face_quality && a.face_color == b.face_color &&
-           a.wedge_uv == b.wedge_uv && a.points == b.points && same_layer(a, b);
+           a.wedge_uv == b.wedge_uv && a.texture.has_value() == b.texture.has_value() &&
+           (!a.texture || a.texture->rgb == b.texture->rgb) && a.points == b.points &&
+           same_layer(a, b);
 }
 
 TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         const HostResult a = run(filter, host, {});
         const HostResult b = run(filter, host, {});
         EXPECT_TRUE(same(a, b)) << filter.menu_name;
@@ -110,8 +191,8 @@ TEST(DeclaredFilters, TheSameInputGivesTheSameResult) {
 }
 
 TEST(DeclaredFilters, DefaultsAreTheDeclaredOnes) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         ParameterValues all;
         for (const Parameter& p : filter.parameters)
             all[p.name] = p.default_value;
@@ -169,6 +250,8 @@ HostResult run_or_refuse(const FilterDeclaration& filter, const HostMesh& host,
         return refused(error);
     } catch (const InvalidParameter& error) {
         return refused(error);
+    } catch (const InvalidMesh& error) { // nothing is selected
+        return refused(error);
     }
 }
 
@@ -213,9 +296,15 @@ bool changes_the_result(const FilterDeclaration& filter, const HostMesh& host, c
 
 TEST(DeclaredFilters, EveryParameterChangesTheResult) {
     // What one mesh does not have, such as two pieces of one shape, another one has.
-    const std::vector<HostMesh> hosts{prepared(), samples::unfinished().host(),
-                                      samples::nearly_equal().host(), cubes_and_a_finger(),
-                                      bumpy_body()};
+    const std::vector<HostMesh> hosts{prepared(),
+                                      samples::unfinished().host(),
+                                      samples::nearly_equal().host(),
+                                      cubes_and_a_finger(),
+                                      bumpy_body(),
+                                      chosen_by_hand(0.1),
+                                      chosen_by_hand(0.0),
+                                      halves_of_a_ball(),
+                                      textured()};
     for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
@@ -266,6 +355,8 @@ TEST(DeclaredFilters, AllJoinBordersThatLieOnEachOtherUnlessToldNotTo) {
     for (const FilterDeclaration& filter : filters::filter_table()) {
         SCOPED_TRACE(filter.menu_name);
         ASSERT_EQ(filter.parameters.back().name, "weld");
+        if (filter.needs_selection || filter.needs_texture)
+            continue; // there is none
         const auto joined = [&](const ParameterValues& values) {
             const HostResult r = run_or_refuse(filter, host, values);
             return std::any_of(r.notes.begin(), r.notes.end(), [](const std::string& note) {
@@ -288,11 +379,13 @@ TEST(DeclaredFilters, WhatIsNotJoinedStaysASeamForTheNextFilter) {
 }
 
 TEST(DeclaredFilters, NumbersOutOfRangeAreRefusedByName) {
-    const HostMesh host = prepared();
+    const HostMesh usual = prepared();
+    const HostMesh chosen = chosen_by_hand(0.1);
     for (const FilterDeclaration& filter : filters::filter_table())
         for (const Parameter& p : filter.parameters) {
             if (p.kind != ParameterKind::integer && p.kind != ParameterKind::real)
                 continue;
+            const HostMesh& host = filter.needs_selection ? chosen : usual;
             SCOPED_TRACE(filter.menu_name + ", " + p.name);
             const auto refused = [&](const ParameterValue& value) {
                 const std::string text = checks::error_of<InvalidParameter>([&] {
@@ -330,6 +423,8 @@ TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
     HostMesh host;
     host.geometry = shapes::sphere(1);
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        if (filter.needs_selection)
+            continue;
         if (!filter.needs_uv) {
             EXPECT_NO_THROW(run(filter, host, {})) << filter.menu_name;
             continue;
@@ -340,9 +435,21 @@ TEST(DeclaredFilters, FiltersOnTextureCoordinatesAskForThem) {
     }
 }
 
-TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
-    const HostMesh host = prepared();
+TEST(DeclaredFilters, FiltersOnSelectionsAskForThem) {
+    HostMesh host;
+    host.geometry = shapes::sphere(1);
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        if (!filter.needs_selection)
+            continue;
+        const std::string text = checks::error_of<InvalidMesh>([&] { run(filter, host, {}); });
+        EXPECT_TRUE(contains(text, "expected selected")) << filter.menu_name;
+        EXPECT_TRUE(contains(text, "found none"));
+    }
+}
+
+TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
+    for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         int calls = 0;
         Progress progress([&](double, const char*) { return ++calls < 1; });
         try {
@@ -355,8 +462,8 @@ TEST(DeclaredFilters, EveryFilterCanBeCancelled) {
 }
 
 TEST(DeclaredFilters, ProgressNeverGoesBackAndPhasesHaveNames) {
-    const HostMesh host = prepared();
     for (const FilterDeclaration& filter : filters::filter_table()) {
+        const HostMesh host = prepared_for(filter);
         double last = 0.0;
         Progress progress([&](double fraction, const char* phase) {
             EXPECT_GE(fraction, last);

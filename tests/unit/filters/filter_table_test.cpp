@@ -32,10 +32,12 @@ TEST(FilterTable, NamesAreUniqueAndInTheHostsForms) {
         EXPECT_TRUE(python.insert(filter.python_name).second);
         EXPECT_EQ(filter.menu_name.find('&'), std::string::npos); // a shortcut key in menus
         EXPECT_TRUE(std::regex_match(
-            filter.menu_name, std::regex("(Segmentation|Charts|Pattern): ([A-Z]|t-).*[a-zA-Z]")));
+            filter.menu_name,
+            std::regex("(Segmentation|Charts|Pattern|Texture): ([A-Z]|t-).*[a-zA-Z]")));
         EXPECT_TRUE(is_snake_case(filter.python_name));
-        EXPECT_TRUE(std::regex_search(filter.python_name,
-                                      std::regex("^(compute|apply|meshing|generate|get|export)_")));
+        EXPECT_TRUE(std::regex_search(
+            filter.python_name,
+            std::regex("^(compute|apply|meshing|generate|get|export|transfer)_")));
         EXPECT_TRUE(filter.run != nullptr);
     }
 }

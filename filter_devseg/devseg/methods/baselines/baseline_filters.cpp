@@ -45,6 +45,8 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
         .integer(&O::random_seed, "Random seed",
                  "0 starts at the face farthest from the centre; other numbers at a random face. "
                  "The same number always gives the same charts.")
+        .on_part()
+        .keeps()
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "charts, each a disk")
         .result("cut_length", "length of the cuts inside of charts, model units")

@@ -142,6 +142,8 @@ std::vector<FilterDeclaration> filters() {
                 "0 starts at the face farthest from the centre; other numbers at a random face. "
                 "The same number always gives the same charts.")
             .command("dcharts")
+            .on_part()
+            .keeps()
             .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("hole_charts_number", "charts that were added where no other fitted")

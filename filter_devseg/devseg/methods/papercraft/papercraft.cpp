@@ -247,6 +247,8 @@ std::vector<FilterDeclaration> filters() {
                      "0 takes angles as they are; other numbers vary them a little, for other "
                      "charts. The same number always gives the same charts.")
             .command("papercraft", "symmetric-dirichlet", "papercraft", true)
+            .on_part()
+            .keeps()
             .writes(writes_charts | writes_quality | writes_color)
             .result("charts_number", "charts, each a disk")
             .result("initial_charts_number", "charts of the initial segmentation")

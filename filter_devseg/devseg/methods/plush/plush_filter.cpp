@@ -134,6 +134,8 @@ FilterDeclaration plush() {
                  "0 takes the least natural seams away first; other numbers change that order a "
                  "little at random. The same number always gives the same seams.")
         .command("plush", "lpfb")
+        .on_part()
+        .keeps()
         .writes(writes_charts | writes_quality | writes_color)
         .result("charts_number", "patches, each a disk")
         .result("darts_number", "seams that end inside a patch")

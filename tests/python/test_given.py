@@ -1,0 +1,289 @@
+"""Charts and seams that the user has, on the command line and in the host."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshes
+from devseg import host, ply
+from devseg.cli import main
+from devseg.given import components
+
+
+def obj_with_islands(path: Path, mesh: meshes.Mesh, island: np.ndarray) -> Path:
+    """An OBJ file with a flat map of each island, each at a scale of its own."""
+    vertices, faces = mesh
+    rows = ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in vertices]
+    corners = []
+    for face, number in zip(faces, island, strict=True):
+        words = []
+        for v in face:
+            x, y, z = vertices[v]
+            angle = np.arctan2(z, x)
+            turn = np.remainder(angle - number * np.pi / 2 + np.pi / 2, 2 * np.pi) - np.pi / 2
+            corners.append(f"vt {10 * number + (1 + number) * turn:.17g} {(1 + number) * y:.17g}")
+            words.append(f"{v + 1}/{len(corners)}")
+        rows.append("f " + " ".join(words))
+    path.write_text("\n".join([*rows[: len(vertices)], *corners, *rows[len(vertices) :]]) + "\n")
+    return path
+
+
+def quarters(mesh: meshes.Mesh) -> np.ndarray:
+    middle = mesh[0][mesh[1]].mean(axis=1)
+    return (np.arctan2(middle[:, 2], middle[:, 0]) % (2 * np.pi) // (np.pi / 2)).astype(int)
+
+
+def ran(*arguments: str | Path, out: Path) -> dict[str, Any]:
+    assert main(["run", *map(str, arguments), "-o", str(out), "--no-picture"]) == 0
+    return json.loads((out / f"{Path(arguments[0]).stem}.json").read_text())
+
+
+def saved(file: Path) -> np.ndarray:
+    rows = ply._face_rows(file)
+    assert rows is not None
+    return rows
+
+
+def same_parts(a: np.ndarray, b: np.ndarray) -> bool:
+    pairs = np.unique(np.stack([a, b]), axis=1).shape[1]
+    return pairs == len(np.unique(a)) == len(np.unique(b))
+
+
+def test_islands_of_the_file_are_the_pieces_at_their_true_size(tmp_path: Path) -> None:
+    mesh = meshes.cylinder()
+    file = obj_with_islands(tmp_path / "tube.obj", mesh, quarters(mesh))
+    result = ran(file, "--charts-from", "uv", out=tmp_path / "out")
+    assert result["charts_from"] == "uv" and result["method"] is None
+    flat = result["parametrization"]
+    assert flat["charts_number"] == 4
+    assert flat["l2_stretch"] == pytest.approx(1, abs=1e-6)
+    assert same_parts(saved(tmp_path / "out" / "tube.ply")["chart_id"], quarters(mesh))
+    svg = (tmp_path / "out" / "tube.svg").read_text()
+    assert all(f"P0{i}" in svg for i in range(1, 5)) and "P05" not in svg
+
+
+def test_kept_seams_stay_and_more_may_come(tmp_path: Path) -> None:
+    mesh = meshes.sphere()
+    file = obj_with_islands(tmp_path / "ball.obj", mesh, quarters(mesh))
+    for source in ((), ("--charts-from", "uv")):
+        result = ran(file, "--keep-seams", *source, "--charts", "12", out=tmp_path / "out")
+        assert result["method"] == "dcharts"
+        charts = saved(tmp_path / "out" / "ball.ply")["chart_id"]
+        for chart in np.unique(charts):
+            assert len(np.unique(quarters(mesh)[charts == chart])) == 1
+    plain = meshes.write_obj(tmp_path / "plain.obj", *mesh)
+    assert main(["run", str(plain), "-o", str(tmp_path / "o"), "--keep-seams"]) == 1
+    assert not (tmp_path / "o").exists()
+
+
+def test_numbers_of_a_file_are_charts_and_the_rest_is_segmented(tmp_path: Path) -> None:
+    mesh = meshes.sphere()
+    file = meshes.write_obj(tmp_path / "ball.obj", *mesh)
+    numbers = tmp_path / "charts.txt"
+    numbers.write_text("\n".join(str(7 * q) for q in quarters(mesh)))
+    result = ran(file, "--charts-from", str(numbers), out=tmp_path / "out")
+    assert result["parametrization"]["charts_number"] == 4
+    assert same_parts(saved(tmp_path / "out" / "ball.ply")["chart_id"], quarters(mesh))
+
+    some = np.where(quarters(mesh) < 2, quarters(mesh), -1)
+    numbers.write_text(" ".join(map(str, some)))
+    result = ran(file, "--charts-from", str(numbers), "--charts", "4", out=tmp_path / "out")
+    charts = saved(tmp_path / "out" / "ball.ply")["chart_id"]
+    assert result["method"] == "dcharts"
+    np.testing.assert_array_equal(charts[some >= 0], some[some >= 0])
+    assert len(np.unique(charts[some < 0])) > 1 and charts.min() == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "found"), [("1 2 3", "3 words"), ("x " * 12, "whole numbers"), (None, "a file")]
+)
+def test_other_files_are_refused(
+    text: str | None, found: str, tmp_path: Path, fails: Callable[..., str]
+) -> None:
+    file = meshes.write_obj(tmp_path / "cube.obj", *meshes.cube())
+    numbers = tmp_path / "numbers.txt"
+    if text is not None:
+        numbers.write_text(text)
+    error = fails("run", file, "-o", tmp_path / "out", "--charts-from", numbers)
+    assert found in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_components_and_materials(tmp_path: Path) -> None:
+    two = meshes.joined(meshes.cylinder(), meshes.cube(), (5, 0, 0))
+    file = meshes.write_obj(tmp_path / "two.obj", *two)
+    result = ran(file, "--charts-from", "components", out=tmp_path / "out")
+    assert result["parametrization"]["charts_number"] == 2
+    tube = ran(file, "--component", "1", "--charts", "1", out=tmp_path / "out")
+    cube = ran(file, "--component", "2", "--charts", "1", out=tmp_path / "out")
+    assert (tube["mesh"]["faces"], cube["mesh"]["faces"]) == (1152, 12)
+
+    mesh = meshes.cylinder()
+    lines = meshes.write_obj(tmp_path / "tube.obj", *mesh).read_text().splitlines()
+    half = len(mesh[0]) + len(mesh[1]) // 2
+    lines[half:half] = ["usemtl red"]
+    lines[len(mesh[0]) : len(mesh[0])] = ["usemtl blue"]
+    (tmp_path / "tube.obj").write_text("\n".join(lines) + "\n")
+    result = ran(tmp_path / "tube.obj", "--charts-from", "materials", out=tmp_path / "out")
+    assert result["parametrization"]["charts_number"] == 2
+    charts = saved(tmp_path / "out" / "tube.ply")["chart_id"]
+    assert same_parts(charts, np.arange(len(mesh[1])) >= len(mesh[1]) // 2)
+
+
+def test_component_beyond_their_number(tmp_path: Path, fails: Callable[..., str]) -> None:
+    file = meshes.write_obj(tmp_path / "cube.obj", *meshes.cube())
+    error = fails("run", file, "-o", tmp_path / "out", "--component", "2")
+    assert "--component from 1 to 1" in error
+
+
+def test_components_are_found_in_any_order() -> None:
+    vertices, faces = meshes.joined(meshes.cube(), meshes.cylinder(), (5, 0, 0))
+    shuffled = np.random.default_rng(3).permutation(len(faces))
+    found = components(vertices, faces[shuffled])
+    np.testing.assert_array_equal(found, (faces[shuffled].min(axis=1) < 8).astype(int))
+
+
+@pytest.fixture
+def tube(tmp_path: Path) -> Path:
+    """A tube in four pieces, as `devseg run` writes it."""
+    mesh = meshes.cylinder()
+    file = obj_with_islands(tmp_path / "tube.obj", mesh, quarters(mesh))
+    ran(file, "--charts-from", "uv", out=tmp_path / "four")
+    return tmp_path / "four" / "tube.ply"
+
+
+def edited(tube: Path, *arguments: str) -> np.ndarray:
+    out = tube.parent / "edited.ply"
+    assert main(["edit", str(tube), "-o", str(out), *arguments]) == 0
+    return saved(out)
+
+
+def test_edit_joins_splits_and_removes_by_the_numbers_of_the_pattern(tube: Path) -> None:
+    before = saved(tube)["chart_id"]
+    charts = edited(tube, "--join", "1,2")["chart_id"]
+    assert same_parts(charts, np.where(before == 1, 0, before))
+    charts = edited(tube, "--split", "4")["chart_id"]
+    assert len(np.unique(charts)) == 5
+    assert len(np.unique(charts[before == 3])) == 2
+    for seam in "1234":
+        assert len(np.unique(edited(tube, "--remove-seam", seam)["chart_id"])) == 3
+    # Numbers mean the same in all steps.
+    charts = edited(tube, "--join", "1,2", "--join", "3,4", "--split", "3")["chart_id"]
+    assert len(np.unique(charts)) == 3
+    assert len(np.unique(charts[before < 2])) == 1
+
+
+def test_edited_file_is_edited_again(tube: Path) -> None:
+    edited(tube, "--join", "1,2")
+    again = tube.parent / "edited.ply"
+    out = tube.parent / "again.ply"
+    assert main(["edit", str(again), "-o", str(out), "--join", "1,2,3"]) == 0
+    assert len(np.unique(saved(out)["chart_id"])) == 1
+
+
+def test_edit_refuses_with_the_stretch(tmp_path: Path, fails: Callable[..., str]) -> None:
+    mesh = meshes.sphere()
+    file = obj_with_islands(tmp_path / "ball.obj", mesh, quarters(mesh))
+    ran(file, "--charts-from", "uv", out=tmp_path / "four")
+    ball = tmp_path / "four" / "ball.ply"
+    out = tmp_path / "out.ply"
+    error = fails("edit", ball, "-o", out, "--join", "1,2,3,4")
+    assert "L2 stretch of 1." in error and "--force" in error and not out.exists()
+    assert "from 1 to 4" in fails("edit", ball, "-o", out, "--join", "1,9")
+    assert "--join" in fails("edit", ball, "-o", out, "--join", "1,b")
+    assert main(["edit", str(ball), "-o", str(out), "--join", "1,2,3,4", "--force"]) == 0
+    plain = meshes.write_obj(tmp_path / "plain.obj", *mesh)
+    assert "texture coordinates" in fails("edit", plain, "-o", tmp_path / "p.ply", "--split", "1")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["edit", "a.ply"], ["edit", "a.ply", "-o", "b.ply"], ["edit", "a.ply", "-o", "b.obj"]],
+)
+def test_wrong_usage_of_edit(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(arguments)
+    assert stopped.value.code == 2
+
+
+@pytest.fixture
+def ball(meshset: Callable[[meshes.Mesh], Any]) -> Any:
+    meshes_ = meshset(meshes.sphere())
+    meshes_.compute_segmentation_dcharts_per_face(charts_number=6)
+    meshes_.compute_texcoord_parametrization_charts_per_wedge()
+    return meshes_
+
+
+def state(mesh: Any) -> list[np.ndarray]:
+    return [
+        mesh.face_custom_scalar_attribute_array("chart_id"),
+        mesh.wedge_tex_coord_matrix().reshape(-1, 6),
+        mesh.face_color_matrix(),
+        mesh.face_scalar_array(),
+    ]
+
+
+def test_host_changes_nothing_outside_of_the_selection(ball: Any, pymeshlab: ModuleType) -> None:
+    ball.compute_selection_by_condition_per_face(condselect="y0 > 0.2")
+    selected = ball.current_mesh().face_selection_array()
+    for name in (
+        "compute_segmentation_variational_shape_approximation_per_face",
+        "compute_segmentation_dcharts_per_face",
+        "compute_charts_refinement_per_face",
+        "compute_texcoord_parametrization_charts_per_wedge",
+        "apply_texcoord_chart_packing_per_wedge",
+    ):
+        before = state(ball.current_mesh())
+        getattr(ball, name)(selected_only=True)
+        after = state(ball.current_mesh())
+        for old, new in zip(before, after, strict=True):
+            np.testing.assert_array_equal(old[~selected], new[~selected], name)
+    ball.set_selection_none()
+    ball.set_verbosity(True)  # a silent host goes on swallowing what is printed after a failure
+    with host.captured(), pytest.raises(pymeshlab.PyMeshLabException, match="expected selected"):
+        ball.compute_segmentation_dcharts_per_face(selected_only=True)
+    ball.set_verbosity(False)
+
+
+def test_host_reads_selected_edges_faces_and_vertices(
+    meshset: Callable[[meshes.Mesh], Any],
+) -> None:
+    cube = meshset(meshes.cube())
+    cube.compute_selection_crease_per_edge(angledegneg=-30, angledegpos=30)
+    made = cube.compute_charts_from_selected_edges_per_face()
+    assert made["charts_number"] == 6
+    cube.compute_selection_by_condition_per_face(condselect="(chart_id == 0) || (chart_id == 2)")
+    joined = cube.apply_charts_join_selected()
+    assert joined["charts_number"] == 5 and joined["l2_stretch"] == pytest.approx(1)
+    split = cube.apply_charts_split_selected(along_selection=False)
+    assert split["charts_number"] == 6
+
+
+def test_host_cuts_the_mesh_open_and_merging_closes_it(ball: Any) -> None:
+    before = ball.current_mesh()
+    vertices, faces = before.vertex_number(), before.face_number()
+    charts = before.face_custom_scalar_attribute_array("chart_id")
+    made = ball.meshing_cut_along_seams()
+    cut = ball.current_mesh()
+    assert cut.vertex_number() == vertices + made["new_vertices_number"]
+    assert cut.face_number() == faces
+    np.testing.assert_array_equal(cut.face_custom_scalar_attribute_array("chart_id"), charts)
+    corners = cut.vertex_matrix()[cut.face_matrix()]
+    # Vertices of the cut mesh have one texture coordinate each.
+    uv = cut.wedge_tex_coord_matrix().reshape(-1, 3, 2)
+    places: dict[int, set[tuple[float, float]]] = {}
+    for face, of_face in zip(cut.face_matrix(), uv, strict=True):
+        for v, p in zip(face, of_face, strict=True):
+            places.setdefault(int(v), set()).add((float(p[0]), float(p[1])))
+    assert max(len(found) for found in places.values()) == 1
+    ball.meshing_merge_close_vertices()
+    merged = ball.current_mesh()
+    assert merged.vertex_number() == vertices
+    np.testing.assert_allclose(merged.vertex_matrix()[merged.face_matrix()], corners, atol=1e-9)
