@@ -73,9 +73,9 @@ std::optional<std::vector<Vec2>> restore_lengths(std::vector<Vec2> points,
                                                  const std::vector<double>& lengths,
                                                  const Progress& progress);
 
-/// The map near `uv` (#v) with boundary edges of their lengths on the surface, around holes too: the
-/// boundary's displacement is harmonic inside. It may have flips. Nothing where there is no such
-/// boundary.
+/// The map near `uv` (#v) with boundary edges of their lengths on the surface, around holes too:
+/// the boundary's displacement is harmonic inside. It may have flips. Nothing where there is no
+/// such boundary.
 std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& uv,
                                                       const Progress& progress);
