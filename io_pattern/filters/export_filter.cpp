@@ -51,7 +51,7 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
             "preset Sewing).")
         .real(&O::hem_allowance_mm, {"hem_allowance_mm", -1.0, 1e4}, "Hem allowance (mm)",
               "Width of the allowance along open borders of the model in millimetres. 0 = none, "
-              "-1 = as along seams.")
+              "-1 = as along seams, and none around holes.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "

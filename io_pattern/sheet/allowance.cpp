@@ -44,11 +44,11 @@ struct WidePoint {
     double width;
 };
 
-std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceWidths& widths) {
+std::vector<WidePoint> distinct(const pattern::PiecePath& path, double seams, double hems) {
     std::vector<WidePoint> ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
         const bool is_hem = i < path.edges.size() && path.edges[i].seam < 0;
-        const WidePoint next{path.points[i], is_hem ? widths.hems : widths.seams};
+        const WidePoint next{path.points[i], is_hem ? hems : seams};
         if (!ring.empty() && next.point == ring.back().point)
             ring.back() = next;
         else
@@ -256,7 +256,8 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
     const double grid = (piece.box.sizes().maxCoeff() + 2.0 * miter_limit * width) / grid_size;
     ClipperLib::Clipper clipper;
     for (Index i = 0; i < piece.path_count(); ++i) {
-        const std::vector<WidePoint> ring = distinct(piece.path(i), widths);
+        const double hems = i == 0 ? widths.hems : widths.hole_hems;
+        const std::vector<WidePoint> ring = distinct(piece.path(i), widths.seams, hems);
         ClipperLib::Path path;
         if (ring.size() < 3)
             continue;

@@ -12,15 +12,20 @@ namespace devseg::sheet {
 /// straight; or rounded. Concave corners are always trimmed to where the two sides meet.
 enum class CornerStyle { miter, bevel, round };
 
-/// Widths in mm along seams and along hems, the open borders of the model.
+/// Widths in mm along seams and along hems, the open borders of the model: those around holes, such
+/// as drilled ones, may have none.
 struct AllowanceWidths {
-    AllowanceWidths(double everywhere) : seams(everywhere), hems(everywhere) {}
-    AllowanceWidths(double along_seams, double along_hems) : seams(along_seams), hems(along_hems) {}
+    AllowanceWidths(double everywhere) : AllowanceWidths(everywhere, everywhere) {}
+    AllowanceWidths(double along_seams, double along_hems)
+        : AllowanceWidths(along_seams, along_hems, along_hems) {}
+    AllowanceWidths(double along_seams, double along_hems, double around_holes)
+        : seams(along_seams), hems(along_hems), hole_hems(around_holes) {}
 
     double largest() const { return seams > hems ? seams : hems; }
 
     double seams;
     double hems;
+    double hole_hems;
 };
 
 /// The cut lines of the piece, outer one first: closed, counterclockwise around the piece and

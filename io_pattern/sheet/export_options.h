@@ -25,7 +25,7 @@ struct ExportOptions : pattern::PatternOptions {
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;
     double seam_allowance_mm = 0.0;
-    double hem_allowance_mm = -1.0; // along open borders; below 0: as along seams
+    double hem_allowance_mm = -1.0; // along open borders; below 0: as along seams, holes none
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
@@ -56,7 +56,9 @@ struct ExportOptions : pattern::PatternOptions {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
     AllowanceWidths allowance() const {
-        return {seam_allowance_mm, hem_allowance_mm < 0.0 ? seam_allowance_mm : hem_allowance_mm};
+        if (hem_allowance_mm < 0.0)
+            return {seam_allowance_mm, seam_allowance_mm, 0.0};
+        return {seam_allowance_mm, hem_allowance_mm};
     }
 };
 

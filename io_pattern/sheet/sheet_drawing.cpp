@@ -85,19 +85,45 @@ void add_lines(const std::vector<std::vector<Vec2>>& lines, bool closed, const S
         layer.paths.push_back(std::move(path));
 }
 
-// The same for closed lines that may be curves.
+// The same for closed lines that may be curves. Holes come before the outline: what a laser has cut
+// loose lies still no more.
 void add_rings(const std::vector<std::vector<Vec2>>& rings,
                const std::vector<std::vector<pattern::OutlineCurve>>& curves,
                const SheetPiece& piece, const char* kind, writers::DrawingLayer& layer) {
     writers::DrawingPath path{piece.name + kind, {}, piece.name};
-    for (std::size_t i = 0; i < rings.size(); ++i) {
+    const auto add = [&](std::size_t i) {
         path.parts.push_back({rings[i], true});
         if (i < curves.size())
             for (const pattern::OutlineCurve& curve : curves[i])
                 path.parts.back().curves.push_back({curve.control, curve.is_line});
-    }
+    };
+    for (std::size_t i = 1; i < rings.size(); ++i)
+        add(i);
+    if (!rings.empty())
+        add(0);
     if (!path.parts.empty())
         layer.paths.push_back(std::move(path));
+}
+
+// Positions in the layout, those that lie in a hole of another piece before that piece: once the
+// hole is cut, they would fall out with what was in it.
+std::vector<std::size_t> cutting_order(const std::vector<SheetPiece>& pieces) {
+    std::vector<Eigen::AlignedBox2d> boxes;
+    for (const SheetPiece& piece : pieces)
+        boxes.push_back(piece.box());
+    std::vector<int> depth(pieces.size(), 0);
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        order.push_back(i);
+        for (std::size_t j = 0; j < pieces.size(); ++j)
+            if (j != i && pieces[j].cut.size() > 1 && pieces[j].sheet == pieces[i].sheet &&
+                boxes[j].contains(boxes[i]) &&
+                plane::is_inside(pieces[j].cut.front(), pieces[i].cut.front().front()))
+                ++depth[i];
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return depth[a] > depth[b]; });
+    return order;
 }
 
 void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
@@ -179,10 +205,11 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
     writers::DrawingLayer numbers{"numbers", "Seam numbers", "#000000", {}, {}, {}};
     writers::DrawingLayer text{"text", "Text", "#000000", {}, {}, {}};
     writers::DrawingLayer engrave{"engrave", "Engrave", "#0000ff", {}, {}, {}};
-    for (SheetPiece piece : layout.pieces) {
+    for (const std::size_t i : cutting_order(layout.pieces)) {
+        SheetPiece piece = layout.pieces[i];
         piece.move({1.0, 0.0, plan.sheets[piece.sheet]});
-        add_rings(piece.cut, piece.cut_curves, piece, "-cut", cut);
         add_lines(piece.slits, false, piece, "-slit", piece.has_allowance() ? sew : cut);
+        add_rings(piece.cut, piece.cut_curves, piece, "-cut", cut);
         add_rings(piece.sew, piece.sew_curves, piece, "-sew", sew);
         add_lines(piece.mountains, false, piece, "-mountain", mountain);
         add_lines(piece.valleys, false, piece, "-valley", valley);

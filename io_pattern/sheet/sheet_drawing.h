@@ -8,7 +8,8 @@
 
 namespace devseg::sheet {
 
-/// Layers: "cut" (one path for each piece, outline and holes; slits are paths of their own),
+/// Layers: "cut" (one path for each piece, holes before the outline; slits are paths of their own,
+/// before it),
 /// "mountain", "valley", "sew", "notch", "grain", "numbers" and "text" as the options want them;
 /// "scale" with the frames of the sheets and check squares of 50 mm and 2 inches. A laser gets
 /// "cut", "engrave" and "scale". Sheets lie side by side.

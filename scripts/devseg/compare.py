@@ -32,6 +32,7 @@ CHARTS = 20
 ROWS = (
     ("segmentation", "charts_number", "charts"),
     ("segmentation", "disk_charts_number", "disks"),
+    ("segmentation", "holed_charts_number", "disks with flat holes"),
     ("segmentation", "gauss_area_std", "Gauss area, standard deviation"),
     ("segmentation", "gauss_area_mean", "Gauss area, mean"),
     ("segmentation", "crease_share", "creases on borders, share"),

@@ -35,7 +35,8 @@ std::optional<declare::HostResult> attempt(const declare::FilterDeclaration& fil
                                            const declare::HostMesh& host,
                                            const declare::ParameterValues& values, bool may_refuse);
 
-/// Charts 0 … n − 1, each connected and a disk; both sides of a seam know of it.
+/// Charts 0 … n − 1, each connected and sound: a disk, or one with flat holes; both sides of a seam
+/// know of it.
 void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result);
 /// Finite, no face flipped or on another one; in the unit square if `packed`; and the suite's own
 /// measures agree.

@@ -69,7 +69,10 @@ def problems_of_result(meshset: Any, name: str, results: dict[str, Any]) -> list
         for key in ("flipped_faces_number", "overlapping_faces_number"):
             if measures[key] != 0:
                 problems.append(f"{key} = {measures[key]}")
-        if measures["disk_charts_number"] != measures["charts_number"]:
+        if (
+            measures["disk_charts_number"] + measures["holed_charts_number"]
+            != measures["charts_number"]
+        ):
             problems.append("a chart is no disk")
     return problems
 

@@ -77,3 +77,48 @@ def three_fins() -> Mesh:
     """Three triangles on one edge: no manifold, no orientation."""
     vertices = np.array([[0, 0, 0], [0, 1, 0], [1, 0, 0], [-1, 0, 0.5], [-1, 0, -0.5]], dtype=float)
     return vertices, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]])
+
+
+def sheet(mask: list[str]) -> Mesh:
+    """Unit squares in the plane where the mask has a '#'."""
+    cells = [(x, y) for y, row in enumerate(mask) for x, cell in enumerate(row) if cell == "#"]
+    quads = [[(x, y, 0), (x + 1, y, 0), (x + 1, y + 1, 0), (x, y + 1, 0)] for x, y in cells]
+    return _of_quads(quads)
+
+
+def slab(mask: list[str], thickness: float) -> Mesh:
+    """The same as a plate, closed all around; holes go through it."""
+    cells = {(x, y) for y, row in enumerate(mask) for x, cell in enumerate(row) if cell == "#"}
+    quads = []
+    for x, y in sorted(cells):
+        ring = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)]
+        quads.append([(*p, thickness) for p in ring])
+        quads.append([(*p, 0) for p in reversed(ring)])
+        sides = [(x, y - 1), (x + 1, y), (x, y + 1), (x - 1, y)]
+        for i, beside in enumerate(sides):
+            a, b = ring[i], ring[(i + 1) % 4]
+            if beside not in cells:
+                quads.append([(*a, 0), (*b, 0), (*b, thickness), (*a, thickness)])
+    return _of_quads(quads)
+
+
+def _of_quads(quads: list[list[tuple[float, float, float]]]) -> Mesh:
+    points = sorted({tuple(map(float, p)) for quad in quads for p in quad})
+    number = {p: i for i, p in enumerate(points)}
+    corners = [[number[tuple(map(float, p))] for p in quad] for quad in quads]
+    faces = [triangle for a, b, c, d in corners for triangle in ([a, b, c], [a, c, d])]
+    return np.array(points), np.array(faces)
+
+
+def washer(inner: float, outer: float, height: float, around: int = 48) -> Mesh:
+    """A ring of rectangular profile about the y axis, closed."""
+    profile = [(inner, 0.0), (outer, 0.0), (outer, height), (inner, height)]
+    angles = 2 * np.pi * np.arange(around) / around
+    points = [(r * np.cos(a), y, -r * np.sin(a)) for a in angles for r, y in profile]
+    faces = []
+    for i in range(around):
+        for k in range(4):
+            a, b = 4 * i + k, 4 * i + (k + 1) % 4
+            c, d = 4 * ((i + 1) % around) + (k + 1) % 4, 4 * ((i + 1) % around) + k
+            faces += [[a, c, b], [a, d, c]]
+    return np.array(points), np.array(faces)

@@ -181,7 +181,13 @@ def polygons(layer: Layer) -> dict[str, Polygon]:
     rings: dict[str, list[np.ndarray]] = {}
     for part in layer.rings:
         rings.setdefault(part.name, []).append(part.points)
-    return {name: Polygon(first, rest) for name, (first, *rest) in rings.items()}
+    return {name: _polygon(parts) for name, parts in rings.items()}
+
+
+def _polygon(rings: list[np.ndarray]) -> Polygon:
+    """The largest ring with the others as its holes."""
+    *holes, outline = sorted(rings, key=lambda ring: Polygon(ring).area)
+    return Polygon(outline, holes)
 
 
 def overlap_of_itself(ring: Part) -> float:

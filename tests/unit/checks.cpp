@@ -63,7 +63,8 @@ Disk::Disk(const mesh::RawMesh& raw, const std::function<bool(const Vec3& middle
     const atlas::ChartMap whole =
         atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), seam, false);
     Progress progress;
-    charts = atlas::cut_charts_to_disks(mesh, whole, progress).charts;
+    charts = atlas::cut_charts_to_disks(mesh, whole, {false, {}, atlas::HoleRule::none()}, progress)
+                 .charts;
     surface = atlas::extract_charts(mesh, charts).at(0);
     problem = flatten::make_flattening_problem(mesh, surface);
 }
@@ -155,6 +156,17 @@ Topology topology(const Mesh& mesh, const atlas::ChartMap& charts, Index chart) 
         loops.insert(borders.find(h));
     return {static_cast<Index>(vertices.size()) - edges_twice / 2 + faces,
             static_cast<Index>(loops.size())};
+}
+
+testing::AssertionResult is_sound(const Mesh& mesh, const atlas::ChartMap& charts, Index chart) {
+    const Topology found = topology(mesh, charts, chart);
+    if (found.euler == 1 && found.loops == 1)
+        return testing::AssertionSuccess();
+    if (found.loops > 1 && found.euler == 2 - found.loops &&
+        atlas::is_sound(mesh, atlas::extract_charts(mesh, charts).at(at(chart))))
+        return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "chart " << chart << ": V - E + F = " << found.euler
+                                       << ", " << found.loops << " loops";
 }
 
 std::array<double, 2> stretches(const flatten::FlatteningProblem& problem,

@@ -20,7 +20,7 @@ Mesh gated(const mesh::RawMesh& raw);
 atlas::ChartMap components(const Mesh& mesh);
 atlas::ChartMap components_cut_to_disks(const Mesh& mesh);
 
-/// A mesh that is one chart, opened to a disk where it is none.
+/// A mesh that is one chart, opened to a disk where it is none; holes are not kept.
 struct Disk {
     explicit Disk(const mesh::RawMesh& raw);
     /// The edges whose middle (internal units) fulfils `cut` are cut first.
@@ -46,6 +46,9 @@ struct Topology {
     Index loops = 0;
 };
 Topology topology(const Mesh& mesh, const atlas::ChartMap& charts, Index chart);
+/// Whether the chart is a disk by these numbers, or a disk with holes that atlas/holes.h calls
+/// flat.
+testing::AssertionResult is_sound(const Mesh& mesh, const atlas::ChartMap& charts, Index chart);
 
 /// Singular values of the map on face f, larger first, from lengths alone.
 std::array<double, 2> stretches(const flatten::FlatteningProblem& problem,

@@ -36,6 +36,10 @@ double value(const declare::HostResult& result, const std::string& name) {
     return 0.0;
 }
 
+double sound_charts(const declare::HostResult& measures) {
+    return value(measures, "disk_charts_number") + value(measures, "holed_charts_number");
+}
+
 declare::HostMesh host_of(const mesh::RawMesh& raw) {
     declare::HostMesh host;
     host.geometry = raw;

@@ -14,6 +14,8 @@ namespace devseg::checks {
 declare::HostResult run(const std::string& menu_name, const declare::HostMesh& host,
                         const declare::ParameterValues& values = {});
 double value(const declare::HostResult& result, const std::string& name);
+/// Of the measures of charts: disks, and those with flat holes.
+double sound_charts(const declare::HostResult& measures);
 double number(const declare::ParameterValue& value);
 
 declare::HostMesh host_of(const mesh::RawMesh& raw);

@@ -9,13 +9,28 @@ namespace devseg::atlas {
 
 namespace {
 
-constexpr double least_crease_factor = 0.1;
+struct Tuning {
+    double least_crease_factor = 0.1;
+    // What an edge between two faces of one plane (normals within 1e-3 rad) costs to cut, over one
+    // on a fold.
+    double through_flat = 10.0;
+    double flat_cosine = 1.0 - 0.5e-6;
+};
+constexpr Tuning tuning;
+
+double cosine_at(const Mesh& mesh, HalfEdge h) {
+    return mesh.face_normals[face_of(h)].dot(mesh.face_normals[mesh.across(h)]);
+}
 
 } // namespace
 
 double crease_factor(const Mesh& mesh, HalfEdge h) {
-    const double cosine = mesh.face_normals[face_of(h)].dot(mesh.face_normals[mesh.across(h)]);
-    return std::max(least_crease_factor, cosine);
+    return std::max(tuning.least_crease_factor, cosine_at(mesh, h));
+}
+
+double cut_cost(const Mesh& mesh, HalfEdge h) {
+    return mesh.edge_length(h) *
+           (cosine_at(mesh, h) >= tuning.flat_cosine ? tuning.through_flat : 1.0);
 }
 
 std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
@@ -42,7 +57,7 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
         }
         for (const HalfEdge e : edges[v]) {
             const HalfEdge h = s.mesh_half_edge(e);
-            paths.reach(s.target(e), distance + crease_factor(mesh, h) * mesh.edge_length(h), e);
+            paths.reach(s.target(e), distance + crease_factor(mesh, h) * cut_cost(mesh, h), e);
         }
         return true;
     });

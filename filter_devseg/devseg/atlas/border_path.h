@@ -9,8 +9,13 @@ namespace devseg::atlas {
 /// a cut is not seen and does not cost shape.
 double crease_factor(const Mesh& mesh, HalfEdge half_edge);
 
+/// What it costs to cut an edge inside a chart: its length, and ten times that between two faces of
+/// one plane, which a person would cut around.
+double cut_cost(const Mesh& mesh, HalfEdge half_edge);
+
 /// The half-edges of the shortest path within the faces from a vertex to their border or to a cut;
-/// creases count less. Empty where the vertex is on the border, or not among the faces.
+/// creases count less, and edges within a plane more. Empty where the vertex is on the border, or
+/// not among the faces.
 std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
                                   const std::vector<std::uint8_t>& seam, Vertex vertex);
 

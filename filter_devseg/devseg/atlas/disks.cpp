@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "devseg/atlas/border_path.h"
 #include "devseg/atlas/handle_cutter.h"
 #include "devseg/atlas/join_loops.h"
 #include "devseg/graph/shortest_paths.h"
@@ -12,26 +13,29 @@ namespace devseg::atlas {
 
 namespace {
 
-// Shortest paths along edges to the only boundary loop, or to a root where there is none. The last
-// step is the half-edge from the vertex that leads nearer.
+// Shortest paths along edges to the boundary, or to a root where there is none. The last step is
+// the half-edge from the vertex that leads nearer.
 using PathForest = graph::ShortestPaths<>;
 
-double edge_length(const Mesh& mesh, const ChartSurface& s, HalfEdge h) {
-    return mesh.edge_length(s.mesh_half_edge(h));
+enum class Measure { length, cost };
+
+double measure(const Mesh& mesh, const ChartSurface& s, HalfEdge h, Measure by) {
+    const HalfEdge edge = s.mesh_half_edge(h);
+    return by == Measure::cost ? cut_cost(mesh, edge) : mesh.edge_length(edge);
 }
 
 PathForest grow_paths(const Mesh& mesh, const ChartSurface& s, const Buckets<HalfEdge>& edges,
-                      Index root, const Progress& progress) {
+                      Index root, Measure by, const Progress& progress) {
     PathForest forest(s.vertex.size());
     if (s.loops.empty())
         forest.add_source(root);
-    else
-        for (const HalfEdge h : s.loops.front())
+    for (const std::vector<Index>& loop : s.loops)
+        for (const HalfEdge h : loop)
             forest.add_source(s.origin(h));
     forest.run(
         [&](Vertex v, double distance) {
             for (const HalfEdge e : edges[v])
-                forest.reach(s.target(e), distance + edge_length(mesh, s, e), s.twin[e]);
+                forest.reach(s.target(e), distance + measure(mesh, s, e, by), s.twin[e]);
         },
         progress);
     return forest;
@@ -43,20 +47,21 @@ public:
            const Progress& progress)
         : mesh_(mesh), s_(surface), seam_(seam), progress_(progress) {}
 
-    // For charts with several boundary loops. Returns the length of the cuts, as all of these.
-    double join() { return cut(join_loops(mesh_, s_, progress_)); }
+    void join(const std::vector<std::uint8_t>& kept) {
+        cut(join_loops(mesh_, s_, kept, progress_));
+    }
 
-    double cut(const std::vector<Index>& half_edges) {
+    void cut(const std::vector<Index>& half_edges) {
         for (const HalfEdge h : half_edges)
             cut_edge(h);
-        return length_;
     }
 
     void cut_path(const PathForest& forest, Vertex v) {
         for (; forest.step[v] >= 0; v = s_.target(forest.step[v]))
             cut_edge(forest.step[v]);
     }
-    double length() const { return length_; }
+    double length() const { return length_; } // of the new cuts
+    double cost() const { return cost_; }
 
     static Index farthest(const PathForest& forest) {
         return static_cast<Index>(std::max_element(forest.distance.begin(), forest.distance.end()) -
@@ -64,9 +69,9 @@ public:
     }
 
     // For charts with at most one loop.
-    double cut_handles() {
+    void cut_handles() {
         const Buckets<HalfEdge> edges = inner_half_edges(s_);
-        const PathForest forest = grow_paths(mesh_, s_, edges, 0, progress_);
+        const PathForest forest = grow_paths(mesh_, s_, edges, 0, Measure::cost, progress_);
         for (const HalfEdge h : handle_edges(forest)) {
             cut_edge(h);
             cut_path(forest, s_.origin(h));
@@ -76,32 +81,35 @@ public:
             if (any_cut_)
                 drop_stem(edges, 0);
             else
-                cut_sphere(edges, forest);
+                cut_sphere(edges);
         }
-        return length_;
     }
 
     // A boundary of two edges encloses nothing in the plane: cut one more edge, to an inner vertex.
-    double lengthen() {
+    void lengthen() {
         std::vector<std::uint8_t> on_boundary(s_.vertex.size(), 0);
         for (const HalfEdge h : s_.loops.front())
             on_boundary[s_.origin(h)] = 1;
         Index shortest = -1;
         for (const HalfEdge h : s_.all_half_edges())
             if (on_boundary[s_.origin(h)] != 0 && on_boundary[s_.target(h)] == 0 &&
-                (shortest < 0 || edge_length(mesh_, s_, h) < edge_length(mesh_, s_, shortest)))
+                (shortest < 0 || length_of(h) < length_of(shortest)))
                 shortest = h;
         if (shortest >= 0)
             cut_edge(shortest);
-        return length_;
     }
 
 private:
+    double length_of(HalfEdge h) const { return measure(mesh_, s_, h, Measure::length); }
+    double cost_of(HalfEdge h) const { return measure(mesh_, s_, h, Measure::cost); }
+
     void cut_edge(HalfEdge h) {
         const HalfEdge a = s_.mesh_half_edge(h);
         const HalfEdge b = s_.mesh_half_edge(s_.twin[h]);
-        if (seam_[a] == 0)
-            length_ += mesh_.edge_length(a);
+        if (seam_[a] == 0) {
+            length_ += length_of(h);
+            cost_ += cost_of(h);
+        }
         seam_[a] = seam_[b] = 1;
         any_cut_ = true;
     }
@@ -119,7 +127,8 @@ private:
                 }
             if (count != 1)
                 return;
-            length_ -= edge_length(mesh_, s_, only);
+            length_ -= length_of(only);
+            cost_ -= cost_of(only);
             seam_[s_.mesh_half_edge(only)] = 0;
             seam_[s_.mesh_half_edge(s_.twin[only])] = 0;
             v = s_.target(only);
@@ -140,9 +149,8 @@ private:
             const HalfEdge opposite = s_.twin[h];
             if (opposite < h || in_forest(forest, h) || in_forest(forest, opposite))
                 continue;
-            duals.push_back({forest.distance[s_.origin(h)] + forest.distance[s_.target(h)] +
-                                 edge_length(mesh_, s_, h),
-                             h});
+            duals.push_back(
+                {forest.distance[s_.origin(h)] + forest.distance[s_.target(h)] + cost_of(h), h});
         }
         std::stable_sort(duals.begin(), duals.end(),
                          [](const Dual& a, const Dual& b) { return a.cycle > b.cycle; });
@@ -165,10 +173,13 @@ private:
     }
 
     // No boundary and no handle: a slit between two vertices that are far from each other.
-    void cut_sphere(const Buckets<HalfEdge>& edges, const PathForest& forest) {
-        const Index far = farthest(forest);
-        const PathForest from_far = grow_paths(mesh_, s_, edges, far, progress_);
-        cut_path(from_far, farthest(from_far));
+    void cut_sphere(const Buckets<HalfEdge>& edges) {
+        const auto paths = [&](Index root, Measure by) {
+            return grow_paths(mesh_, s_, edges, root, by, progress_);
+        };
+        const Index from = farthest(paths(0, Measure::length));
+        const Index to = farthest(paths(from, Measure::length));
+        cut_path(paths(from, Measure::cost), to);
     }
 
     const Mesh& mesh_;
@@ -176,6 +187,7 @@ private:
     std::vector<std::uint8_t>& seam_;
     const Progress& progress_;
     double length_ = 0.0;
+    double cost_ = 0.0;
     bool any_cut_ = false;
 };
 
@@ -184,56 +196,85 @@ struct Opening {
     std::vector<std::uint8_t> seam; // 3 #F
     ChartSurface surface;           // may have a boundary of two edges
     double length = 0.0;
+    double cost = 0.0;
 };
 
-void join(const Mesh& mesh, Opening& opening, const Progress& progress) {
-    if (opening.surface.loops.size() < 2)
-        return;
-    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).join();
+template <class Cut>
+void open(const Mesh& mesh, Opening& opening, const Progress& progress, Cut cut) {
+    Cutter cutter(mesh, opening.surface, opening.seam, progress);
+    cut(cutter);
+    opening.length += cutter.length();
+    opening.cost += cutter.cost();
     opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+}
+
+void join(const Mesh& mesh, Opening& opening, const std::vector<std::uint8_t>& kept,
+          const Progress& progress) {
+    if (opening.surface.loops.size() > 1)
+        open(mesh, opening, progress, [&](Cutter& cutter) { cutter.join(kept); });
 }
 
 // [EHP04], once all loops are joined.
 void open_joined_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
-    join(mesh, opening, progress);
-    if (opening.surface.is_disk())
-        return;
-    opening.length += Cutter(mesh, opening.surface, opening.seam, progress).cut_handles();
-    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
+    join(mesh, opening, {}, progress);
+    if (!opening.surface.is_disk())
+        open(mesh, opening, progress, [](Cutter& cutter) { cutter.cut_handles(); });
 }
 
 // [YGZS05]: a loop through each handle, then the loops are joined.
 void open_handles_first(const Mesh& mesh, Opening& opening, const Progress& progress) {
-    opening.length += Cutter(mesh, opening.surface, opening.seam, progress)
-                          .cut(cut_handles(mesh, opening.surface, progress));
-    opening.surface = extract_surface(mesh, std::move(opening.surface.face), opening.seam);
-    join(mesh, opening, progress);
+    open(mesh, opening, progress,
+         [&](Cutter& cutter) { cutter.cut(cut_handles(mesh, opening.surface, progress)); });
+    join(mesh, opening, {}, progress);
 }
 
 bool has_handles(const ChartSurface& surface) {
     return surface.euler_characteristic() + static_cast<Index>(surface.loops.size()) < 2;
 }
 
+// The cheapest way to make the chart sound.
+Opening best_opening(const Mesh& mesh, const ChartSurface& surface,
+                     const std::vector<std::uint8_t>& seam, const HoleRule& holes,
+                     const Progress& progress) {
+    const Opening closed{seam, surface};
+    Opening best = closed;
+    const bool handles = has_handles(surface);
+    const std::vector<std::uint8_t> flat = flat_holes(mesh, surface, holes);
+    if (!handles && std::find(flat.begin(), flat.end(), 1) != flat.end()) {
+        join(mesh, best, flat, progress);
+        if (is_sound(mesh, best.surface, holes))
+            return best;
+        best = closed;
+    }
+    open_joined_first(mesh, best, progress);
+    if (handles) {
+        Opening other = closed;
+        open_handles_first(mesh, other, progress);
+        if (other.surface.is_disk() && other.cost < best.cost)
+            best = std::move(other);
+    }
+    return best;
+}
+
+bool is_too_short(const ChartSurface& surface) {
+    return surface.is_disk() && surface.loops.front().size() < 3;
+}
+
 } // namespace
 
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
-                         const Progress& progress, double* cut_length) {
+                         const Progress& progress, double* cut_length, const HoleRule& holes) {
     double length = 0.0;
-    if (!surface.is_disk()) {
-        Opening best{seam, surface, 0.0};
-        open_joined_first(mesh, best, progress);
-        if (has_handles(surface)) {
-            Opening other{seam, surface, 0.0};
-            open_handles_first(mesh, other, progress);
-            if (other.surface.is_disk() && other.length < best.length)
-                best = std::move(other);
-        }
+    if (!is_sound(mesh, surface, holes)) {
+        Opening best = best_opening(mesh, surface, seam, holes, progress);
         seam = std::move(best.seam);
         surface = std::move(best.surface);
         length += best.length;
     }
-    if (surface.loops.front().size() < 3) {
-        length += Cutter(mesh, surface, seam, progress).lengthen();
+    if (is_too_short(surface)) {
+        Cutter cutter(mesh, surface, seam, progress);
+        cutter.lengthen();
+        length += cutter.length();
         surface = extract_surface(mesh, std::move(surface.face), seam);
     }
     if (cut_length != nullptr)
@@ -244,8 +285,17 @@ ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
                   const TipRule& rule, double& cut_length, const Progress& progress) {
     const Buckets<HalfEdge> edges = inner_half_edges(disk);
-    const PathForest forest = grow_paths(mesh, disk, edges, 0, progress);
-    const std::vector<Index> tips = find_tips(mesh, disk, forest.distance, rule, progress);
+    const PathForest by_length = grow_paths(mesh, disk, edges, 0, Measure::length, progress);
+    const std::vector<Index> tips = find_tips(mesh, disk, by_length.distance, rule, progress);
+    if (tips.empty())
+        return 0;
+    // A cut that ends at a hole would leave it a contour that does not lie flat.
+    if (disk.loops.size() > 1) {
+        const ChartSurface open =
+            cut_to_disk(mesh, disk, seam, progress, &cut_length, HoleRule::none());
+        return cut_to_tips(mesh, open, seam, rule, cut_length, progress);
+    }
+    const PathForest forest = grow_paths(mesh, disk, edges, 0, Measure::cost, progress);
     Cutter cutter(mesh, disk, seam, progress);
     for (const Index tip : tips)
         cutter.cut_path(forest, tip);
@@ -262,9 +312,9 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
     for (std::size_t c = 0; c < surfaces.size(); ++c) {
         progress.update(static_cast<double>(c) / static_cast<double>(surfaces.size()));
         const double before = result.cut_length;
-        if (!surfaces[c].is_disk() || surfaces[c].loops.front().size() < 3)
+        if (!is_sound(mesh, surfaces[c], options.holes) || is_too_short(surfaces[c]))
             surfaces[c] = cut_to_disk(mesh, std::move(surfaces[c]), result.charts.seam, progress,
-                                      &result.cut_length);
+                                      &result.cut_length, options.holes);
         if (options.cut_tips)
             result.cut_tips += cut_to_tips(mesh, surfaces[c], result.charts.seam, options.tip_rule,
                                            result.cut_length, progress);
@@ -274,7 +324,7 @@ DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const Dis
 }
 
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress) {
-    return cut_charts_to_disks(mesh, charts, {false, {}}, progress);
+    return cut_charts_to_disks(mesh, charts, {false, {}, {}}, progress);
 }
 
 } // namespace devseg::atlas

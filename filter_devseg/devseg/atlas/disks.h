@@ -1,4 +1,4 @@
-// Cutting charts open until each is a topological disk.
+// Cutting charts open until each is a disk, or a disk with holes that lie flat with it.
 //
 // References
 //   [EHP04] J. Erickson, S. Har-Peled: Optimally Cutting a Surface into a Disk. Discrete &
@@ -10,6 +10,7 @@
 #pragma once
 
 #include "devseg/atlas/charts.h"
+#include "devseg/atlas/holes.h"
 #include "devseg/atlas/tips.h"
 #include "devseg/base/progress.h"
 
@@ -18,6 +19,7 @@ namespace devseg::atlas {
 struct DiskOptions {
     bool cut_tips = true; // cut up to tips as well
     TipRule tip_rule;     // what counts as a tip
+    HoleRule holes = {};  // which holes get no slit
 };
 
 struct DiskCuts {
@@ -27,24 +29,27 @@ struct DiskCuts {
     double cut_length = 0.0; // total length of the new cuts, internal units
 };
 
-/// Cuts one chart: marks the new seams in `seam` (3 #F) and returns the chart as a disk.
-/// `cut_length`, if given, is increased by the length of the new cuts.
+/// Cuts one chart that is not sound (see holes.h): marks the new seams in `seam` (3 #F) and returns
+/// the chart as a disk, or as a disk with flat holes. `cut_length`, if given, is increased by the
+/// length of the new cuts.
 ChartSurface cut_to_disk(const Mesh& mesh, ChartSurface surface, std::vector<std::uint8_t>& seam,
-                         const Progress& progress, double* cut_length = nullptr);
+                         const Progress& progress, double* cut_length = nullptr,
+                         const HoleRule& holes = {});
 
 /// Cuts a chart that is a disk open along shortest paths from its boundary to its tips (see
 /// tips.h). Marks the seams, adds their length to `cut_length` and returns their number.
 Index cut_to_tips(const Mesh& mesh, const ChartSurface& disk, std::vector<std::uint8_t>& seam,
                   const TipRule& rule, double& cut_length, const Progress& progress);
 
-/// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop):
-/// shortest paths between boundary loops, short cycles through handles, and for a sphere a path
-/// between two far vertices. For charts with handles the shorter one of two constructions is
-/// taken: loops joined first and handles by [EHP04], or handles first by [YGZS05].
+/// Adds seams inside the charts until each chart is a disk (V − E + F = 1, one boundary loop) or
+/// has flat holes beside its rim: shortest paths between the other boundary loops, short cycles
+/// through handles, and for a sphere a path between two far vertices. For charts with handles the
+/// cheaper one of two constructions is taken: loops joined first and handles by [EHP04], or handles
+/// first by [YGZS05]; both join all loops, and so do charts that are cut up to tips.
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, const DiskOptions& options,
                              Progress& progress);
 
-/// The same without cuts to tips: charts that are disks are left as they are.
+/// The same without cuts to tips: charts that are sound are left as they are.
 DiskCuts cut_charts_to_disks(const Mesh& mesh, const ChartMap& charts, Progress& progress);
 
 } // namespace devseg::atlas

@@ -4,6 +4,8 @@
 #include <queue>
 #include <tuple>
 
+#include "devseg/atlas/border_path.h"
+
 namespace devseg::atlas {
 
 namespace {
@@ -19,7 +21,7 @@ public:
     Wavefronts(const Mesh& mesh, const ChartSurface& surface) : s_(surface) {
         for (const HalfEdge h : surface.all_half_edges()) // the boundary is open already
             length_.push_back(surface.twin[h] < 0 ? 0.0
-                                                  : mesh.edge_length(surface.mesh_half_edge(h)));
+                                                  : cut_cost(mesh, surface.mesh_half_edge(h)));
         next_.resize(length_.size());
         previous_.resize(length_.size());
         loop_of_.assign(length_.size(), -1);

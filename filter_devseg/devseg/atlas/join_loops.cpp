@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "devseg/atlas/border_path.h"
 #include "devseg/graph/shortest_paths.h"
 
 namespace devseg::atlas {
@@ -23,31 +24,40 @@ double loop_length(const Mesh& mesh, const ChartSurface& surface, const std::vec
 
 namespace {
 
-struct Tuning {
-    // What an edge between two faces of one plane (normals within 1e-3 rad) costs to cut, over one
-    // on a fold: a person would cut around a flat face.
-    double through_flat = 10.0;
-    double flat_cosine = 1.0 - 0.5e-6;
-};
-constexpr Tuning tuning;
-
 class LoopJoiner {
 public:
-    LoopJoiner(const Mesh& mesh, const ChartSurface& surface)
-        : mesh_(mesh), s_(surface), edges_(inner_half_edges(surface)),
-          paths_(surface.vertex.size()), open_loop_(surface.vertex.size(), -1) {
+    LoopJoiner(const Mesh& mesh, const ChartSurface& surface, std::vector<std::uint8_t> kept)
+        : mesh_(mesh), s_(surface), kept_(std::move(kept)), edges_(inner_half_edges(surface)),
+          paths_(surface.vertex.size()), open_loop_(surface.vertex.size(), -1),
+          along_hole_(surface.vertex.size(), -1) {
+        kept_.resize(s_.loops.size(), 0);
         for (std::size_t l = 0; l < s_.loops.size(); ++l)
-            for (const HalfEdge h : s_.loops[l])
-                open_loop_[s_.origin(h)] = static_cast<Index>(l);
+            for (const HalfEdge h : s_.loops[l]) {
+                if (kept_[l] != 0)
+                    along_hole_[s_.target(h)] = h;
+                else
+                    open_loop_[s_.origin(h)] = static_cast<Index>(l);
+            }
     }
 
     std::vector<Index> run(const Progress& progress) {
         std::size_t longest = 0;
-        for (std::size_t l = 1; l < s_.loops.size(); ++l)
-            if (loop_length(mesh_, s_, s_.loops[l]) > loop_length(mesh_, s_, s_.loops[longest]))
+        double length = -1.0;
+        std::ptrdiff_t open = 0;
+        for (std::size_t l = 0; l < s_.loops.size(); ++l) {
+            if (kept_[l] != 0)
+                continue;
+            ++open;
+            const double own = loop_length(mesh_, s_, s_.loops[l]);
+            if (own > length) {
                 longest = l;
+                length = own;
+            }
+        }
+        if (open < 2)
+            return {};
         absorb_loop(static_cast<Index>(longest));
-        std::size_t open = s_.loops.size() - 1;
+        --open;
         paths_.run(
             [&](Vertex v, double distance) {
                 if (open_loop_[v] >= 0) {
@@ -56,8 +66,12 @@ public:
                     absorb_loop(loop);
                     return --open > 0;
                 }
+                // Along the contour of a hole nothing has to be cut.
+                if (along_hole_[v] >= 0)
+                    paths_.reach(s_.origin(along_hole_[v]), distance, along_hole_[v]);
                 for (const HalfEdge e : edges_[v])
-                    paths_.reach(s_.target(e), distance + cost(s_.mesh_half_edge(e)), s_.twin[e]);
+                    paths_.reach(s_.target(e), distance + cut_cost(mesh_, s_.mesh_half_edge(e)),
+                                 s_.twin[e]);
                 return true;
             },
             progress);
@@ -65,12 +79,6 @@ public:
     }
 
 private:
-    double cost(HalfEdge h) const {
-        const double cosine =
-            mesh_.face_normals[face_of(h)].dot(mesh_.face_normals[mesh_.across(h)]);
-        return mesh_.edge_length(h) * (cosine >= tuning.flat_cosine ? tuning.through_flat : 1.0);
-    }
-
     void absorb_loop(Index loop) {
         for (const HalfEdge h : s_.loops[loop]) {
             open_loop_[s_.origin(h)] = -1;
@@ -81,7 +89,8 @@ private:
     void absorb_path(Vertex v) {
         while (paths_.step[v] >= 0) {
             const HalfEdge h = paths_.step[v];
-            cut_.push_back(h);
+            if (s_.twin[h] >= 0)
+                cut_.push_back(h);
             paths_.add_source(v);
             v = s_.target(h);
         }
@@ -89,17 +98,19 @@ private:
 
     const Mesh& mesh_;
     const ChartSurface& s_;
+    std::vector<std::uint8_t> kept_; // #loops
     Buckets<HalfEdge> edges_;
-    graph::ShortestPaths<> paths_; // to what is joined; steps leave the vertex, towards it
-    std::vector<Index> open_loop_; // #v: loop of the vertex that is not joined yet, −1 = none
+    graph::ShortestPaths<> paths_;     // to what is joined; steps leave the vertex, towards it
+    std::vector<Index> open_loop_;     // #v: loop of the vertex that is not joined yet, −1 = none
+    std::vector<HalfEdge> along_hole_; // #v: the half-edge into it along a kept loop, −1 = none
     std::vector<Index> cut_;
 };
 
 } // namespace
 
 std::vector<Index> join_loops(const Mesh& mesh, const ChartSurface& surface,
-                              const Progress& progress) {
-    return LoopJoiner(mesh, surface).run(progress);
+                              const std::vector<std::uint8_t>& kept, const Progress& progress) {
+    return LoopJoiner(mesh, surface, kept).run(progress);
 }
 
 } // namespace devseg::atlas

@@ -27,6 +27,13 @@ struct ClosedSlits {
 ClosedSlits close_slits(const Mesh& mesh, const std::vector<double>& cost, double threshold,
                         std::vector<std::uint8_t>& seam);
 
+/// Takes marks off slits that end on loops at both ends, the longest first, where the chart is
+/// sound without them (see holes.h): they only led to holes that lie flat. The sum of `cost` over
+/// the vertices that come inside, times the slit's length, is at most `threshold`, as above.
+/// Returns the number of closed edges.
+Index close_slits_to_holes(const Mesh& mesh, const std::vector<double>& cost, double threshold,
+                           ChartMap& charts);
+
 /// Cut edges at each vertex (#V); the mesh's own boundary does not count.
 std::vector<Index> cut_edges_at_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& seam);
 

@@ -12,7 +12,8 @@ namespace {
 constexpr const char* disks_help =
     "Cuts every chart open until it is a disk, which is what flattening needs: by shortest paths "
     "between its boundary loops, along short cycles through its handles, and by a slit if the "
-    "chart is closed. Tips that no flattening maps well, such as those of fingers and horns, are "
+    "chart is closed. Holes that lie flat need no slit: they stay holes. Cuts go around flat faces "
+    "where they can. Tips that no flattening maps well, such as those of fingers and horns, are "
     "cut open as well.<br>"
     "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
     "coordinates, and without those each connected component of the mesh is a chart. The cuts are "
@@ -62,7 +63,7 @@ FilterDeclaration disks() {
                  "Cut charts open up to tips as well: to vertices at least as far from the border "
                  "as the border is long, and to the ends of horns.")
         .writes(writes_charts)
-        .result("charts_number", "charts, each a disk")
+        .result("charts_number", "charts, each a disk but for flat holes")
         .result("cut_charts_number", "charts that were cut")
         .result("cut_tips_number", "cuts up to tips")
         .result("cut_length", "length of the new cuts, model units")

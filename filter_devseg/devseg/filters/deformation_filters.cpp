@@ -18,7 +18,7 @@ constexpr const char* deform_help =
     "over or collapses. 'Charts: Flatten' then unfolds the charts without any stretch.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>, whichever "
     "method made them; without them from the texture coordinates, and without those each connected "
-    "component of the mesh is a chart. Charts that are not disks are cut first. Where the tolerance "
+    "component of the mesh is a chart. Charts that are not disks are cut first; holes that lie flat exactly stay. Where the tolerance "
     "is not reached the mesh stays as it is, unless the best state is asked for.<br>"
     "See:<br><i>Kuniko Takahashi, Tomohiro Tachi, Yasushi Yamaguchi</i><br>"
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
@@ -39,14 +39,25 @@ std::vector<Index> shared_points(const std::vector<Index>& source_vertex) {
     return point_of;
 }
 
+// Only holes around which the charts unfold exactly stay without a slit.
+atlas::DiskCuts cut_for_paper(const Mesh& mesh, const atlas::ChartMap& charts, Progress& progress) {
+    return atlas::cut_charts_to_disks(mesh, charts, {false, {}, atlas::HoleRule::exact()},
+                                      progress);
+}
+
 FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& options,
                         Progress& progress) {
     auto cutting = progress.part("cutting charts to disks", 0.02);
-    const atlas::DiskCuts cuts =
-        atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
-    auto deforming = progress.part(0.98);
+    const atlas::DiskCuts cuts = cut_for_paper(input.mesh, find_charts(input), cutting);
+    auto deforming = progress.part(0.96);
     develop::DeformResult result = develop::deform_to_developable(
         input.mesh, cuts.charts, shared_points(input.source_vertex), options, deforming);
+    // What was moved beside a hole may have opened it.
+    Mesh moved = input.mesh;
+    moved.points = result.points;
+    mesh::compute_face_geometry(moved);
+    auto opening = progress.part("cutting charts to disks", 0.02);
+    result.charts = cut_for_paper(moved, result.charts, opening).charts;
     FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {
@@ -64,7 +75,7 @@ FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& 
     };
     if (cuts.cut_charts > 0)
         output.notes.push_back(std::to_string(cuts.cut_charts) +
-                               " charts were no disks and were cut open first");
+                               " charts had to be cut open to disks first");
     if (result.added_slits > 0)
         output.notes.push_back(std::to_string(result.added_slits) +
                                " slits were cut to vertices that could not be made developable");
@@ -95,7 +106,7 @@ std::vector<FilterDeclaration> deformation_filters() {
                      "Where the tolerance is not reached, take the best state instead of leaving "
                      "the mesh as it is.")
             .writes(writes_charts | writes_points)
-            .result("charts_number", "charts, each a disk")
+            .result("charts_number", "charts, each a disk but for flat holes")
             .result("inner_vertices_number", "vertices inside of charts, whose angles count")
             .result("initial_residual", "largest difference of an inner vertex from 360 degrees "
                                         "before, radians")

@@ -97,7 +97,7 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     };
     if (cuts.cut_charts > 0)
         output.notes.push_back(std::to_string(cuts.cut_charts) +
-                               " charts were no disks and were cut open first");
+                               " charts had to be cut open to disks first");
     if (mended > 0)
         output.notes.push_back(std::to_string(mended) + " charts had flipped faces and were "
                                                         "flattened with Symmetric Dirichlet");
@@ -161,7 +161,7 @@ FilterDeclaration flatten() {
         .on_part()
         .writes(writes_charts | writes_uv)
         .result("charts_number", "charts")
-        .result("cut_charts_number", "charts that were no disks and were cut first")
+        .result("cut_charts_number", "charts that had to be cut to disks first")
         .result("overlap_cuts_number", "cuts between parts of a chart that lay on each other")
         .result("reattached_parts_number", "small parts that were hinged to another chart then")
         .result("developed_charts_number", "charts that are exactly developable and were unfolded")

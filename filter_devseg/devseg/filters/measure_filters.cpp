@@ -54,6 +54,7 @@ FilterOutput run_segmentation(const FilterInput& input, const NoOptions&, Progre
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
+        {"holed_charts_number", m.holed_charts_number},
         {"gauss_area_std", m.gauss_area_std},
         {"gauss_area_mean", m.gauss_area_mean},
         {"crease_share", m.crease_share},
@@ -74,6 +75,7 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
     output.values = {
         {"charts_number", m.charts_number},
         {"disk_charts_number", m.disk_charts_number},
+        {"holed_charts_number", m.holed_charts_number},
         {"l2_stretch", m.l2_stretch},
         {"linf_stretch", m.linf_stretch},
         {"l2_shear", m.l2_shear},
@@ -105,8 +107,8 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
 
 FilterOutput run_circle_maps(const FilterInput& input, const NoOptions&, Progress& progress) {
     auto cutting = progress.part("cutting charts to disks", 0.1);
-    const atlas::DiskCuts cuts =
-        atlas::cut_charts_to_disks(input.mesh, find_charts(input), cutting);
+    const atlas::DiskCuts cuts = atlas::cut_charts_to_disks(
+        input.mesh, find_charts(input), {false, {}, atlas::HoleRule::none()}, cutting);
     auto mapping = progress.part("mapping charts to discs", 0.9);
     std::vector<double> stretch = metrics::circle_map_stretch(input.mesh, cuts.charts, mapping);
     double mean = 0.0;
@@ -132,6 +134,8 @@ FilterDeclaration segmentation_measures() {
                               FilterCategory::measure, segmentation_help)
         .result("charts_number", "charts")
         .result("disk_charts_number", "charts that are disks once cut along the seams")
+        .result("holed_charts_number", "charts that are disks but for holes that lie flat with "
+                                       "them: as sound as disks")
         .result("gauss_area_std", "standard deviation of the charts' Gauss areas, steradians")
         .result("gauss_area_mean", "mean of the charts' Gauss areas, steradians")
         .result("crease_share", "share of the length of creases (45 degrees) that is cut, 0 to 1")
@@ -149,6 +153,8 @@ FilterDeclaration parametrization_measures() {
         .needs_uv()
         .result("charts_number", "charts, as the texture coordinates show them")
         .result("disk_charts_number", "charts that are disks")
+        .result("holed_charts_number", "charts that are disks but for holes that lie flat with "
+                                       "them: as sound as disks")
         .result("l2_stretch", "root mean square stretch, 1 for an isometry, no unit")
         .result("linf_stretch", "largest stretch in any direction at any face, no unit")
         .result("l2_shear", "root mean square change of the triangles' angles, radians")

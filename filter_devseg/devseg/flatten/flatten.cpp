@@ -145,7 +145,7 @@ private:
         std::vector<std::uint8_t> seam = result_.charts.seam;
         FlatChart joined;
         joined.surface = atlas::join_surfaces(mesh_, small.surface, large.surface, seam);
-        if (!joined.surface.is_disk())
+        if (!atlas::is_sound(mesh_, joined.surface))
             return false;
         // What can be folded of paper stays so.
         if ((small.developed || large.developed) &&
@@ -178,17 +178,22 @@ private:
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
         joined.surface = atlas::extract_surface(mesh_, std::move(faces), seam);
-        const FlatteningProblem problem = make_flattening_problem(mesh_, joined.surface);
-        if (!develop(mesh_, problem, joined) ||
-            !overlapping_pairs(joined.surface, joined.uv,
-                               plane::layout_tolerance(problem.model_size))
-                 .empty()) {
+        if (!atlas::is_sound(mesh_, joined.surface) || !lies_flat(joined)) {
             seam[h] = seam[twin] = 1;
             return false;
         }
         joined.cut_off = flat(other).cut_off;
         replace(part, other, std::move(joined));
         return true;
+    }
+
+    // Exactly, and not on itself.
+    bool lies_flat(FlatChart& chart) const {
+        const FlatteningProblem problem = make_flattening_problem(mesh_, chart.surface);
+        return develop(mesh_, problem, chart) &&
+               overlapping_pairs(chart.surface, chart.uv,
+                                 plane::layout_tolerance(problem.model_size))
+                   .empty();
     }
 
     void replace(Index part, Index other, FlatChart joined) {

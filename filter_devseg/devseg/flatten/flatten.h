@@ -31,8 +31,9 @@ struct FlattenResult {
     int reattached = 0; // parts that were hinged to another chart after that
 };
 
-/// Flattens every chart; all must be disks. Parts of a chart that overlap in the plane are pushed
-/// apart where the method is symmetric Dirichlet and that changes the shape little, and
+/// Flattens every chart; all must be sound (see atlas/holes.h). Holes stay,
+/// unless the method finds no map around them. Parts of a chart that overlap in the plane
+/// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
 /// else cut apart along a short path; what is then too small to be a chart goes to a neighbour
 /// whose map has room for it. Charts that are exactly developable are unfolded, whatever the
 /// method: only cut apart, never pushed, and small parts are hinged to another chart. The result

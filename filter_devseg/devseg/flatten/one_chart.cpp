@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "devseg/atlas/join_loops.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/multilevel.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -172,6 +173,8 @@ private:
     // Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those
     // of the nearest isometric map, whatever the areas.
     std::optional<Map> length_preserving() const {
+        if (!problem_.holes.empty())
+            return length_preserving_around_holes();
         if (auto sewn = sewing_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_))
             return Map{std::move(sewn->uv)};
         auto map = isometric();
@@ -184,6 +187,18 @@ private:
         if (!near)
             return std::nullopt;
         return Map{std::move(near->uv), map->converged};
+    }
+
+    // LPFB closes one boundary. Holes that lie flat nearly keep their lengths anyway: the nearest
+    // isometric map gets them back.
+    std::optional<Map> length_preserving_around_holes() const {
+        const auto map = isometric();
+        if (!map)
+            return std::nullopt;
+        auto uv = restore_seam_lengths(problem_, map->uv, progress_);
+        if (!uv || count_flips(problem_, *uv) > 0)
+            return std::nullopt;
+        return Map{std::move(*uv), map->converged};
     }
 
     const Mesh& mesh_;
@@ -226,7 +241,7 @@ std::vector<HalfEdge> halve(const Mesh& mesh, const ChartSurface& surface) {
     return cut_between(mesh, surface, pairs);
 }
 
-// An isometric map of a disk is no longer than half of its boundary.
+// An isometric map is no longer than half of its boundary.
 bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     double boundary = 0.0;
     for (const double length : problem.boundary_edge)
@@ -237,16 +252,24 @@ bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) 
 
 } // namespace
 
+std::vector<HalfEdge> open_holes(const Mesh& mesh, const ChartSurface& surface,
+                                 const Progress& progress) {
+    std::vector<HalfEdge> cut;
+    for (const HalfEdge h : atlas::join_loops(mesh, surface, {}, progress))
+        cut.push_back(surface.mesh_half_edge(h));
+    return cut;
+}
+
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
     auto development = unfold(problem);
     if (!development)
         return false;
     chart.uv = std::move(*development);
     scale_to_area(problem, chart.uv);
-    // Slits are opened only where the chart would not be seen as a disk by readers that take a
-    // tenth of the gap for rounding.
+    // Slits are opened only where readers that take a tenth of the gap for rounding would see other
+    // loops.
     const double gap = slit_gap * problem.model_size;
-    if (closed_slits_hide_disk(mesh, chart.surface, 0.1 * gap, chart.uv))
+    if (closed_slits_hide_loops(mesh, chart.surface, 0.1 * gap, chart.uv))
         open_closed_slits(mesh, chart.surface, gap, chart.uv);
     chart.developed = true;
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
@@ -260,14 +283,18 @@ std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatCh
     const double tolerance = plane::layout_tolerance(problem.model_size);
     if (develop(mesh, problem, chart)) // stays as it is: its parts are not pushed apart
         return cut_between(mesh, surface, overlapping_pairs(surface, chart.uv, tolerance));
+    const bool has_holes = !problem.holes.empty();
     const ChartFlattening flattening(mesh, surface, problem, progress);
     auto map = flattening.map(method);
+    if (!map && has_holes && method == FlattenMethod::lpfb)
+        return open_holes(mesh, surface, progress);
     if (!map && method != FlattenMethod::symmetric_dirichlet) {
         chart.mended = true;
         map = flattening.map(FlattenMethod::symmetric_dirichlet);
     }
     if (!map || (surface.face_count() > 1 && is_blown_up(problem, map->uv)))
-        return halve(mesh, surface); // the halves are easier
+        return has_holes ? open_holes(mesh, surface, progress)
+                         : halve(mesh, surface); // the halves are easier
     chart.uv = std::move(map->uv);
     chart.converged = map->converged;
     const auto finish = [&] {

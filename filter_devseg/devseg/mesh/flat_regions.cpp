@@ -69,11 +69,34 @@ FaceComponents flat_regions(const Mesh& mesh) {
     return regions;
 }
 
-void keep_regions_whole(const Mesh& mesh, double share, std::vector<Index>& label) {
-    const FaceComponents regions = flat_regions(mesh);
+namespace {
+
+std::vector<double> areas_of(const Mesh& mesh, const FaceComponents& regions) {
     std::vector<double> area(at(regions.count), 0.0);
     for (const Face f : mesh.all_faces())
         area[regions.label[f]] += mesh.face_areas[f];
+    return area;
+}
+
+} // namespace
+
+std::vector<std::uint8_t> within_flat_regions(const Mesh& mesh, double share) {
+    const FaceComponents regions = flat_regions(mesh);
+    const std::vector<double> area = areas_of(mesh, regions);
+    std::vector<std::uint8_t> within(mesh.twin.size(), 0);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index region = regions.label[face_of(h)];
+        within[h] = mesh.twin[h] >= 0 && regions.label[mesh.across(h)] == region &&
+                            area[region] >= share * mesh.total_area
+                        ? 1
+                        : 0;
+    }
+    return within;
+}
+
+void keep_regions_whole(const Mesh& mesh, double share, std::vector<Index>& label) {
+    const FaceComponents regions = flat_regions(mesh);
+    const std::vector<double> area = areas_of(mesh, regions);
     std::vector<std::map<Index, double>> shares(at(regions.count)); // by label
     for (const Face f : mesh.all_faces())
         if (area[regions.label[f]] >= share * mesh.total_area)

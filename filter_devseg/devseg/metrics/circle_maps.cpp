@@ -7,6 +7,7 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/energy/harmonic.h"
+#include "devseg/flatten/energy/map_tools.h"
 
 namespace devseg::metrics {
 
@@ -62,6 +63,7 @@ std::vector<double> circle_map_stretch(const Mesh& mesh, const atlas::ChartMap& 
         static_cast<int>(surfaces.size()),
         [&](int c) {
             const FlatteningProblem problem = flatten::make_flattening_problem(mesh, surfaces[c]);
+            flatten::expect_no_holes(problem);
             result[c] = stretch(problem, circle_map(problem));
         },
         progress);

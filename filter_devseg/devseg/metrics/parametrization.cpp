@@ -8,6 +8,7 @@
 
 #include <Eigen/LU>
 
+#include "devseg/atlas/holes.h"
 #include "devseg/metrics/segmentation.h"
 #include "devseg/plane/overlap.h"
 #include "devseg/plane/plane.h"
@@ -140,7 +141,10 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
     result.charts_number = charts.count;
     result.charts.resize(at(charts.count));
     for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts))
-        result.disk_charts_number += surface.is_disk() ? 1 : 0;
+        if (surface.is_disk())
+            ++result.disk_charts_number;
+        else if (atlas::is_sound(mesh, surface))
+            ++result.holed_charts_number;
 
     Sums all;
     std::vector<Sums> own(at(charts.count));

@@ -45,9 +45,10 @@ struct ChartMeasures {
 struct ParametrizationMeasures {
     Index charts_number = 0;
     Index disk_charts_number = 0;
-    double l2_stretch = 0.0;   // √(Σ A (Γ² + γ²)/2 / Σ A) [SSGH01]; 1 for an isometry
-    double linf_stretch = 0.0; // max Γ [SSGH01], over faces that are not flipped
-    double l2_shear = 0.0;     // root mean square change of the triangles' angles, radians
+    Index holed_charts_number = 0; // disks but for holes that lie flat with them
+    double l2_stretch = 0.0;       // √(Σ A (Γ² + γ²)/2 / Σ A) [SSGH01]; 1 for an isometry
+    double linf_stretch = 0.0;     // max Γ [SSGH01], over faces that are not flipped
+    double l2_shear = 0.0;         // root mean square change of the triangles' angles, radians
     double symmetric_dirichlet_energy = 0.0; // Σ A (Γ² + γ² + Γ⁻² + γ⁻²)/4 / Σ A
     double max_area_change = 0.0;            // max |1 − area in the plane / area on the surface|
     Index flipped_faces_number = 0;     // oriented against most of their chart, or without area

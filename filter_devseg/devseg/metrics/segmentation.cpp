@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "devseg/atlas/holes.h"
 #include "devseg/metrics/conic_proxy.h"
 #include "devseg/metrics/gauss_area.h"
 
@@ -32,7 +33,10 @@ SegmentationMeasures measure_segmentation(const Mesh& mesh, const atlas::ChartMa
     result.charts_number = charts.count;
     result.seam_length = seam_length(mesh, charts);
     for (const atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
-        result.disk_charts_number += surface.is_disk() ? 1 : 0;
+        if (surface.is_disk())
+            ++result.disk_charts_number;
+        else if (atlas::is_sound(mesh, surface))
+            ++result.holed_charts_number;
         NormalMoments moments;
         for (const Face f : surface.face)
             moments.add(mesh.face_areas[f], mesh.face_normals[f]);

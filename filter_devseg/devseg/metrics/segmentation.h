@@ -12,6 +12,7 @@ namespace devseg::metrics {
 struct SegmentationMeasures {
     Index charts_number = 0;
     Index disk_charts_number = 0;   // V − E + F = 1 and one boundary loop, darts cut open
+    Index holed_charts_number = 0;  // disks but for holes that lie flat with them
     double gauss_area_std = 0.0;    // standard deviation of the charts' Gauss areas [YGZS05,
                                     // equation 3], creases from 45 degrees on, steradians
     double gauss_area_mean = 0.0;   // their mean, steradians

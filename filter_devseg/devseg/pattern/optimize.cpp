@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "devseg/atlas/holes.h"
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/distortion.h"
 #include "devseg/flatten/energy/map_tools.h"
@@ -64,7 +65,7 @@ bool keeps_lengths(const Mesh& mesh, const FlatLayout& layout, const CornerUv& u
 }
 
 double energy_of(const Mesh& mesh, const flatten::FlatChart& chart) {
-    if (!chart.surface.is_disk())
+    if (!atlas::is_sound(mesh, chart.surface))
         return 1.0;
     const flatten::FlatteningProblem problem =
         flatten::make_flattening_problem(mesh, chart.surface);
@@ -143,7 +144,7 @@ private:
         both.surface = atlas::join_surfaces(mesh_, small.surface, neighbour.surface, seam);
         const double limit =
             std::max(energy_of(mesh_, small), energy_of(mesh_, neighbour)) + energy_increase;
-        if (!both.surface.is_disk() ||
+        if (!atlas::is_sound(mesh_, both.surface) ||
             !flatten_whole(mesh_, method_, both, [&] { return go_on(); }) ||
             energy_of(mesh_, both) > limit)
             return false;

@@ -23,7 +23,8 @@ constexpr double allowance = 1.3;
 
 DiskCuts cut(const Mesh& mesh) {
     Progress progress;
-    return cut_charts_to_disks(mesh, checks::components(mesh), progress);
+    return cut_charts_to_disks(mesh, checks::components(mesh), {false, {}, HoleRule::none()},
+                               progress);
 }
 
 // Lengths of the model, whatever the internal unit.

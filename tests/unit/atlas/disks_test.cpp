@@ -13,33 +13,36 @@
 namespace devseg::atlas {
 namespace {
 
-DiskCuts cut(const Mesh& mesh, const ChartMap& charts) {
+DiskCuts cut(const Mesh& mesh, const ChartMap& charts, const HoleRule& holes = {}) {
     Progress progress;
-    return cut_charts_to_disks(mesh, charts, progress);
+    return cut_charts_to_disks(mesh, charts, {false, {}, holes}, progress);
 }
 
 DiskCuts cut(const Mesh& mesh) {
     return cut(mesh, checks::components(mesh));
 }
 
-void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts) {
+bool is_disk(const checks::Topology& t) {
+    return t.euler == 1 && t.loops == 1;
+}
+
+void expect_cuts(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts, bool keeps_holes) {
     EXPECT_TRUE(checks::is_valid(mesh, cuts.charts));
     EXPECT_EQ(cuts.charts.chart, before.chart); // no chart falls apart
     EXPECT_EQ(cuts.charts.count, before.count);
     const std::vector<ChartSurface> surfaces = extract_charts(mesh, before);
-    Index not_disks = 0;
+    Index open = 0; // charts that have to be cut
     for (Index c = 0; c < before.count; ++c) {
-        const checks::Topology t = checks::topology(mesh, cuts.charts, c);
-        EXPECT_EQ(t.euler, 1);
-        EXPECT_EQ(t.loops, 1);
-        const checks::Topology old = checks::topology(mesh, before, c);
-        not_disks += old.euler != 1 || old.loops != 1 ? 1 : 0;
+        EXPECT_TRUE(checks::is_sound(mesh, cuts.charts, c));
+        EXPECT_TRUE(keeps_holes || is_disk(checks::topology(mesh, cuts.charts, c)));
+        const bool was_disk = is_disk(checks::topology(mesh, before, c));
+        open += keeps_holes ? !checks::is_sound(mesh, before, c) : !was_disk;
         // A disk whose boundary has two edges only is lengthened.
-        not_disks += old.euler == 1 && old.loops == 1 && surfaces[c].loops[0].size() < 3;
+        open += was_disk && surfaces[c].loops[0].size() < 3;
     }
-    EXPECT_EQ(cuts.cut_charts, not_disks);
+    EXPECT_EQ(cuts.cut_charts, open);
     for (const ChartSurface& surface : extract_charts(mesh, cuts.charts)) {
-        EXPECT_TRUE(surface.is_disk());
+        EXPECT_TRUE(is_sound(mesh, surface));
         EXPECT_GE(surface.loops.at(0).size(), 3U);
     }
     // Old seams stay, and the length is that of the new ones.
@@ -50,6 +53,12 @@ void expect_disks(const Mesh& mesh, const ChartMap& before, const DiskCuts& cuts
             length += 0.5 * mesh.edge_length(h);
     }
     EXPECT_NEAR(cuts.cut_length, length, 1e-9 * (1.0 + length));
+}
+
+// With holes kept, and without.
+void expect_disks(const Mesh& mesh, const ChartMap& charts) {
+    expect_cuts(mesh, charts, cut(mesh, charts), true);
+    expect_cuts(mesh, charts, cut(mesh, charts, HoleRule::none()), false);
 }
 
 TEST(CutToDisks, EveryShapeBecomesADisk) {
@@ -76,7 +85,7 @@ TEST(CutToDisks, EveryShapeBecomesADisk) {
         for (const double noise : {0.0, 0.03}) {
             const Mesh mesh = checks::gated(shapes::with_noise(all[i], noise, 5));
             const ChartMap charts = checks::components(mesh);
-            expect_disks(mesh, charts, cut(mesh, charts));
+            expect_disks(mesh, charts);
         }
     }
 }
@@ -90,7 +99,7 @@ TEST(CutToDisks, HolesThatTouchAndNest) {
         for (const mesh::RawMesh& raw : {shapes::plate(mask), shapes::slab(mask)}) {
             const Mesh mesh = checks::gated(raw);
             const ChartMap charts = checks::components(mesh);
-            expect_disks(mesh, charts, cut(mesh, charts));
+            expect_disks(mesh, charts);
         }
     }
 }
@@ -109,7 +118,7 @@ TEST(CutToDisks, RandomChartsOnRandomSurfaces) {
             labels.push_back(static_cast<Index>(std::floor(3.0 * centre.x() + centre.z())));
         const ChartMap charts = make_chart_map(mesh, labels, {}, false);
         SCOPED_TRACE("seed " + std::to_string(seed));
-        expect_disks(mesh, charts, cut(mesh, charts));
+        expect_disks(mesh, charts);
     }
 }
 
@@ -145,7 +154,7 @@ TEST(CutToDisks, CutsThroughHandlesHaveNoLooseEnds) {
             const Mesh mesh = checks::gated(raw);
             const ChartMap charts = checks::components(mesh);
             const DiskCuts cuts = cut(mesh, charts);
-            expect_disks(mesh, charts, cuts);
+            expect_cuts(mesh, charts, cuts, true);
             std::vector<int> ends(mesh.points.size(), 0);
             for (const HalfEdge h : mesh.all_half_edges())
                 ends[mesh.origin(h)] += cuts.charts.seam[h];
@@ -159,7 +168,7 @@ TEST(CutToDisks, FacesWithoutLengthDoNotStopIt) {
         raw.points[i] = raw.points[20]; // a region of edges without length
     const Mesh mesh = checks::gated(raw);
     const ChartMap charts = checks::components(mesh);
-    expect_disks(mesh, charts, cut(mesh, charts));
+    expect_disks(mesh, charts);
 }
 
 TEST(CutToDisks, DisksAreUntouched) {

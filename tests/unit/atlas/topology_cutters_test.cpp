@@ -61,7 +61,7 @@ TEST(Tips, AFingerIsCutOnceItIsLongerThanItsRim) {
             EXPECT_GE(cuts.cut_length * mesh.unit_length, length);
             EXPECT_LE(cuts.cut_length * mesh.unit_length, length + 2.0); // over the round end
         }
-        EXPECT_EQ(cut(mesh, DiskOptions{false, {}}).cut_tips, 0);
+        EXPECT_EQ(cut(mesh, DiskOptions{false, {}, {}}).cut_tips, 0);
         const checks::Topology t = checks::topology(mesh, cuts.charts, 0);
         EXPECT_EQ(t.euler, 1);
         EXPECT_EQ(t.loops, 1);
@@ -91,7 +91,7 @@ TEST(Tips, HornsOnWideChartsAreCut) {
 TEST(CircleMaps, ADiscKeepsItsShape) {
     const Mesh mesh = checks::gated(shapes::annulus(64, 8, 0.02, 1.0));
     Progress progress;
-    const DiskCuts cuts = cut(mesh, DiskOptions{false, {}});
+    const DiskCuts cuts = cut(mesh, DiskOptions{false, {}, HoleRule::none()});
     EXPECT_EQ(cuts.cut_charts, 1);
     const Mesh disc = checks::gated(shapes::cone(96, 12, 1.0, 0.0));
     const std::vector<double> flat =

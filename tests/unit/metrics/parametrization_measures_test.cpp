@@ -260,7 +260,7 @@ TEST(ParametrizationMeasures, AnUnrolledPrism) {
     EXPECT_NEAR(m.packing_efficiency, 1.0, 1e-9);
 }
 
-TEST(ParametrizationMeasures, AnAnnulusIsNoDisk) {
+TEST(ParametrizationMeasures, AFlatAnnulusIsADiskWithAHole) {
     const mesh::RawMesh raw = shapes::annulus(20, 2, 1.0, 2.0);
     CornerUv uv;
     for (const Triangle& t : raw.faces)
@@ -269,6 +269,7 @@ TEST(ParametrizationMeasures, AnAnnulusIsNoDisk) {
     const ParametrizationMeasures m = measure_parametrization(checks::gated(raw), uv);
     EXPECT_EQ(m.charts_number, 1);
     EXPECT_EQ(m.disk_charts_number, 0);
+    EXPECT_EQ(m.holed_charts_number, 1);
     expect_isometric(m);
 }
 

@@ -89,6 +89,11 @@ TEST(SegmentationMeasures, DartsAreCutOpenAndCounted) {
     EXPECT_EQ(m.disk_charts_number, 1);
     EXPECT_NEAR(m.seam_length, 2.0, 1e-9);
     EXPECT_EQ(measure_segmentation(mesh, checks::components(mesh)).disk_charts_number, 0);
+    EXPECT_EQ(measure_segmentation(mesh, checks::components(mesh)).holed_charts_number, 0);
+    const Mesh ring = checks::gated(shapes::annulus(16, 2, 1.0, 2.0));
+    const SegmentationMeasures flat = measure_segmentation(ring, checks::components(ring));
+    EXPECT_EQ(flat.disk_charts_number, 0);
+    EXPECT_EQ(flat.holed_charts_number, 1);
 }
 
 TEST(SegmentationMeasures, TheLargestErrorIsThatOfTheWorstFace) {

@@ -24,6 +24,9 @@ HarmonicMap::HarmonicMap(const FlatteningProblem& problem, std::vector<Vec2>& uv
     : problem_(problem), slot_(uv.size(), 0) {
     for (const Vertex v : problem.boundary)
         slot_[v] = -1;
+    for (const std::vector<Index>& hole : problem.holes)
+        for (const Vertex v : hole)
+            slot_[v] = -1;
     for (Index& s : slot_)
         if (s >= 0)
             s = unknowns_++;

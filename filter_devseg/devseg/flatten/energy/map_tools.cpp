@@ -7,6 +7,12 @@
 
 namespace devseg::flatten {
 
+void expect_no_holes(const FlatteningProblem& problem) {
+    if (!problem.holes.empty())
+        throw NumericalFailure("expected a chart without holes, found one with " +
+                               std::to_string(problem.holes.size()));
+}
+
 bool is_positive(const std::vector<Triangle>& faces, const std::vector<Vec2>& uv, Face f) {
     const Triangle& t = faces[f];
     return orientation(uv[t[0]], uv[t[1]], uv[t[2]]) > 0.0;

@@ -29,6 +29,9 @@ auto attempt(Find find) -> decltype(find()) {
     }
 }
 
+/// Throws NumericalFailure for charts with holes: for methods that place one boundary first.
+void expect_no_holes(const FlatteningProblem& problem);
+
 /// Jacobian of the map from the rest triangle of face f to the plane.
 inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
                                 std::size_t f) {

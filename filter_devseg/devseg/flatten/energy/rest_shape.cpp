@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "devseg/atlas/holes.h"
 #include "devseg/base/errors.h"
 
 namespace devseg::flatten {
@@ -55,8 +56,9 @@ RestTriangle make_rest_triangle(std::array<double, 3> length, double floor) {
 }
 
 FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSurface& surface) {
-    if (!surface.is_disk())
-        throw NumericalFailure("expected a chart that is a disk, found one with " +
+    if (!atlas::is_sound(mesh, surface))
+        throw NumericalFailure("expected a chart that is a disk, or one with flat holes, found one "
+                               "with " +
                                std::to_string(surface.loops.size()) +
                                " boundary loops; apply 'Charts: Cut to Disks' first");
     FlatteningProblem problem;
@@ -64,9 +66,15 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     problem.faces = surface.faces;
     problem.twin = surface.twin;
     problem.model_size = std::sqrt(mesh.model_area());
-    for (const HalfEdge h : surface.loops.front()) {
-        problem.boundary.push_back(surface.origin(h));
-        problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));
+    const std::vector<std::uint8_t> is_hole = atlas::flat_holes(mesh, surface);
+    for (std::size_t l = 0; l < surface.loops.size(); ++l) {
+        std::vector<Index>& ring =
+            is_hole[l] != 0 ? problem.holes.emplace_back() : problem.boundary;
+        for (const HalfEdge h : surface.loops[l]) {
+            ring.push_back(surface.origin(h));
+            if (is_hole[l] == 0)
+                problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));
+        }
     }
     double longest = 0.0;
     for (const HalfEdge h : surface.all_half_edges())

@@ -15,13 +15,14 @@ namespace devseg::flatten {
 /// A chart that is ready to be flattened. Positions are in internal units of the mesh.
 struct FlatteningProblem {
     Index vertex_count = 0;
-    std::vector<Triangle> faces;          // #f local vertices
-    std::vector<HalfEdge> twin;           // 3 #f: the opposite half-edge, −1 on the boundary
-    std::vector<Index> boundary;          // vertices of the only boundary loop, counterclockwise
-    std::vector<double> boundary_edge;    // length of the edge from boundary[i] to boundary[i + 1]
-    std::vector<Eigen::Matrix2d> edges;   // #f: columns are the edges 0→1 and 0→2 of the face
-    std::vector<Eigen::Matrix2d> inverse; // #f: the inverse of `edges`
-    std::vector<double> area;             // #f
+    std::vector<Triangle> faces;           // #f local vertices
+    std::vector<HalfEdge> twin;            // 3 #f: the opposite half-edge, −1 on the boundary
+    std::vector<Index> boundary;           // vertices of the rim, counterclockwise
+    std::vector<double> boundary_edge;     // length of the edge from boundary[i] to boundary[i + 1]
+    std::vector<std::vector<Index>> holes; // vertices of each other boundary loop, clockwise
+    std::vector<Eigen::Matrix2d> edges;    // #f: columns are the edges 0→1 and 0→2 of the face
+    std::vector<Eigen::Matrix2d> inverse;  // #f: the inverse of `edges`
+    std::vector<double> area;              // #f
     std::vector<std::array<double, 3>> cotangent; // #f: of the angle opposite to edge k → k + 1
     std::vector<double> given_area;               // #f: on the mesh, before needles are widened
     double total_area = 0.0;
@@ -44,7 +45,8 @@ struct RestTriangle {
 /// are widened, and none is shorter than `floor` times a small factor.
 RestTriangle make_rest_triangle(std::array<double, 3> length, double floor);
 
-/// Throws NumericalFailure unless the surface is a disk. Triangles that are too thin to have a
+/// Throws NumericalFailure unless the surface is sound (see atlas/holes.h): a disk, or a disk with
+/// holes that lie flat. Triangles that are too thin to have a
 /// shape of their own in double precision are given the least extra width that makes them solid
 /// (all three lengths grow by the same amount, as in intrinsic mollification), so that every
 /// energy and angle stays finite.

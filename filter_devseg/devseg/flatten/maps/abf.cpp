@@ -91,6 +91,9 @@ AngleSystem::AngleSystem(const FlatteningProblem& problem, const AbfOptions& opt
     inner_.assign(at(problem.vertex_count), 0);
     for (const Vertex v : problem.boundary)
         inner_[v] = -1;
+    for (const std::vector<Index>& hole : problem.holes)
+        for (const Vertex v : hole)
+            inner_[v] = -1;
     for (Index& number : inner_)
         if (number >= 0)
             number = inner_count_++;

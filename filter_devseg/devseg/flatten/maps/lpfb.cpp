@@ -165,6 +165,7 @@ std::vector<double> boundary_angles(const FlatteningProblem& problem,
 
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const std::vector<double>& targets,
                         const LpfbOptions& options, const Progress& progress) {
+    expect_no_holes(problem);
     LpfbResult result;
     result.boundary = close_boundary(problem.boundary_edge, targets, options, progress);
     result.uv.assign(at(problem.vertex_count), Vec2::Zero());
@@ -234,26 +235,57 @@ std::optional<std::vector<Vec2>> restore_lengths(std::vector<Vec2> points,
     return std::nullopt;
 }
 
+namespace {
+
+// Length of the boundary edge that leaves each vertex (#v); 0 inside.
+std::vector<double> boundary_lengths(const FlatteningProblem& problem) {
+    std::vector<double> length(at(problem.vertex_count), 0.0);
+    for (HalfEdge h = 0; h < static_cast<Index>(problem.twin.size()); ++h) {
+        const Face f = face_of(h);
+        if (problem.twin[h] < 0)
+            length[problem.faces[f][corner_of(h)]] =
+                (problem.corner(f, corner_of(Mesh::next(h))) - problem.corner(f, corner_of(h)))
+                    .norm();
+    }
+    for (std::size_t i = 0; i < problem.boundary.size(); ++i)
+        length[problem.boundary[i]] = problem.boundary_edge[i];
+    return length;
+}
+
+} // namespace
+
 std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& uv,
                                                       const Progress& progress) {
-    std::vector<Vec2> boundary;
-    for (const Vertex v : problem.boundary)
-        boundary.push_back(uv[v]);
-    const auto restored = restore_lengths(boundary, problem.boundary_edge, progress);
-    if (!restored)
-        return std::nullopt;
-    std::vector<Vec2> moves(uv.size(), Vec2::Zero());
-    for (std::size_t i = 0; i < boundary.size(); ++i)
-        moves[problem.boundary[i]] = (*restored)[i] - boundary[i];
+    std::vector<Vec2> placed = uv; // on the boundary
+    std::vector<std::vector<Index>> rings = problem.holes;
+    rings.push_back(problem.boundary);
+    const std::vector<double> length = boundary_lengths(problem);
+    for (const std::vector<Index>& ring : rings) {
+        std::vector<Vec2> points;
+        std::vector<double> lengths;
+        for (const Vertex v : ring) {
+            points.push_back(uv[v]);
+            lengths.push_back(length[v]);
+        }
+        const auto restored = restore_lengths(std::move(points), lengths, progress);
+        if (!restored)
+            return std::nullopt;
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            placed[ring[i]] = (*restored)[i];
+    }
+    std::vector<Vec2> moves;
+    for (std::size_t v = 0; v < uv.size(); ++v)
+        moves.push_back(placed[v] - uv[v]);
     HarmonicMap(problem, moves,
                 [](double cotangent) { return std::max(tuning.least_inner_weight, cotangent); });
     std::vector<Vec2> result = uv;
     for (std::size_t v = 0; v < result.size(); ++v)
         result[v] += moves[v];
     // Exactly, not through the rounding of a difference.
-    for (std::size_t i = 0; i < boundary.size(); ++i)
-        result[problem.boundary[i]] = (*restored)[i];
+    for (const std::vector<Index>& ring : rings)
+        for (const Vertex v : ring)
+            result[v] = placed[v];
     return result;
 }
 

@@ -57,7 +57,7 @@ std::vector<double> boundary_angles(const FlatteningProblem& problem,
 
 /// LPFB: the boundary from its lengths and its angles on the surface, inner vertices in balance.
 /// Neither scale nor boundary are changed afterwards: the area may differ from the chart's own.
-/// Throws NumericalFailure, Cancelled.
+/// Throws NumericalFailure, for charts with holes too, and Cancelled.
 LpfbResult flatten_lpfb(const FlatteningProblem& problem, const LpfbOptions& options,
                         const Progress& progress);
 
@@ -73,8 +73,9 @@ std::optional<std::vector<Vec2>> restore_lengths(std::vector<Vec2> points,
                                                  const std::vector<double>& lengths,
                                                  const Progress& progress);
 
-/// The map near `uv` (#v) with boundary edges of their lengths on the surface: the boundary's
-/// displacement is harmonic inside. It may have flips. Nothing where there is no such boundary.
+/// The map near `uv` (#v) with boundary edges of their lengths on the surface, around holes too:
+/// the boundary's displacement is harmonic inside. It may have flips. Nothing where there is no
+/// such boundary.
 std::optional<std::vector<Vec2>> restore_seam_lengths(const FlatteningProblem& problem,
                                                       const std::vector<Vec2>& uv,
                                                       const Progress& progress);

@@ -130,6 +130,7 @@ std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult 
 std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
                                   const atlas::ChartSurface& surface, double tolerance,
                                   const SewingMapOptions& options, const Progress& progress) {
+    expect_no_holes(problem);
     const auto is_enough = [&](const std::optional<LpfbMap>& map) {
         return map && map->area_change <= options.enough &&
                map->l2_stretch <= options.enough_stretch;

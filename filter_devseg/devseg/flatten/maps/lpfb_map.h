@@ -43,7 +43,7 @@ std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double 
 /// areas change less. The inside is the harmonic one where that is nearly an isometry; else it is
 /// moved towards one, and then so that areas change evenly. Nothing where neither keeps [Wan08]'s
 /// conditions: no flips, the area changes by at most 10 %, the L2 stretch is at most 2, and no
-/// parts overlap by more than `tolerance`.
+/// parts overlap by more than `tolerance`. Throws NumericalFailure for charts with holes.
 std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
                                   const atlas::ChartSurface& surface, double tolerance,
                                   const SewingMapOptions& options, const Progress& progress);

@@ -67,14 +67,19 @@ std::vector<Vec2> flatten_lscm(const FlatteningProblem& problem) {
             }
         }
     // The signed area is ½ Σ over boundary edges of u_i v_j − u_j v_i.
-    for (std::size_t b = 0; b < problem.boundary.size(); ++b) {
-        const Index i = problem.boundary[b];
-        const Index j = problem.boundary[(b + 1) % problem.boundary.size()];
-        couple(i, 0, j, 1, -0.5);
-        couple(j, 1, i, 0, -0.5);
-        couple(j, 0, i, 1, 0.5);
-        couple(i, 1, j, 0, 0.5);
-    }
+    const auto add_area = [&](const std::vector<Index>& ring) {
+        for (std::size_t b = 0; b < ring.size(); ++b) {
+            const Index i = ring[b];
+            const Index j = ring[(b + 1) % ring.size()];
+            couple(i, 0, j, 1, -0.5);
+            couple(j, 1, i, 0, -0.5);
+            couple(j, 0, i, 1, 0.5);
+            couple(i, 1, j, 0, 0.5);
+        }
+    };
+    add_area(problem.boundary);
+    for (const std::vector<Index>& hole : problem.holes)
+        add_area(hole);
     if (unknowns > 0) {
         Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
         matrix.setFromTriplets(entries.begin(), entries.end());

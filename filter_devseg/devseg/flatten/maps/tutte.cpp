@@ -45,6 +45,7 @@ std::vector<Vec2> place_boundary(const FlatteningProblem& problem) {
 } // namespace
 
 std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem) {
+    expect_no_holes(problem);
     const std::vector<Vec2> circle = place_boundary(problem);
     std::vector<Vec2> uv = circle;
     HarmonicMap(problem, uv, [](double cotangent) {

@@ -11,6 +11,7 @@ namespace devseg::flatten {
 /// vertex at a positively weighted mean of its neighbours, so that no face flips in exact
 /// arithmetic. Weights are cotangents, bounded from below and above; where rounding flips a face,
 /// equal weights are tried as well. The caller checks the result with count_flips.
+/// Throws NumericalFailure for charts with holes.
 std::vector<Vec2> flatten_tutte(const FlatteningProblem& problem);
 
 /// The least squares conformal map, or Tutte's embedding where that has flips. Throws

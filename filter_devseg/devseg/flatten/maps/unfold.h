@@ -8,10 +8,10 @@
 
 namespace devseg::flatten {
 
-/// Lays the faces of a disk into the plane one by one, each beside one that lies there already, as
-/// paper unfolds. Returns the positions (#v, internal units) where that is an isometry: every edge
-/// keeps its length to within `tolerance` times the root of the chart's area, and no face is turned
-/// over. Nothing for charts that are not developable.
+/// Lays the faces of a chart into the plane one by one, each beside one that lies there already, as
+/// paper unfolds. Around holes the sheet must close. Returns the positions (#v, internal units)
+/// where that is an isometry: every edge keeps its length to within `tolerance` times the root of
+/// the chart's area, and no face is turned over. Nothing for charts that are not developable.
 std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double tolerance = 1e-6);
 
 } // namespace devseg::flatten

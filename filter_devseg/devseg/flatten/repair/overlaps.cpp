@@ -312,7 +312,7 @@ bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
                                    const Pairs& pairs, const Progress& progress) {
     // In a disk, the least border between two connected sets of faces is one path from boundary to
-    // boundary: the cut makes two disks.
+    // boundary: the cut makes two disks. Around holes it may be several.
     graph::MinCut cut(two_sides(surface, pairs));
     for (const HalfEdge h : surface.all_half_edges())
         if (surface.twin[h] > h)

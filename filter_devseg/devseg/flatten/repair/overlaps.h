@@ -20,7 +20,8 @@ using Pairs = std::vector<std::pair<Index, Index>>;
 
 /// Whether the boundary of a map without flips crosses itself: exact orientation tests of boundary
 /// edges against boundary edges over a grid. A map of a disk without flips whose boundary does not
-/// cross itself is one-to-one.
+/// cross itself is one-to-one. So is that of a disk with holes: its boundary turns by 2π (2 − n) in
+/// all, so one of the n loops runs around the others, which turn the other way, one beside another.
 bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv);
 
 /// Pairs of faces that overlap by more than `tolerance` (a length in the plane); empty when the

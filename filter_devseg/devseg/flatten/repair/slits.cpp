@@ -76,8 +76,8 @@ void open_closed_slits(const Mesh& mesh, const atlas::ChartSurface& surface, dou
     }
 }
 
-bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
-                            const std::vector<Vec2>& uv) {
+bool closed_slits_hide_loops(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
+                             const std::vector<Vec2>& uv) {
     std::vector<Index> same(surface.vertex.size());
     std::iota(same.begin(), same.end(), 0);
     const auto find = [&](Vertex v) {
@@ -87,7 +87,7 @@ bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface
     };
     const auto meet = [&](Vertex v, Index w) { return v == w || (uv[v] - uv[w]).norm() < gap; };
     // Every closed edge is one edge less; the vertices that it joins are fewer as well, by as many
-    // as it takes for the chart to stay a disk, or not.
+    // as it takes for the chart to keep its loops, or not.
     Index euler = surface.euler_characteristic();
     for (const auto& [h, g] : slit_sides(mesh, surface)) {
         if (!meet(surface.origin(h), surface.target(g)) ||
@@ -102,7 +102,7 @@ bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface
             same[a] = b;
         }
     }
-    return euler != 1;
+    return euler != surface.euler_characteristic();
 }
 
 } // namespace devseg::flatten

@@ -15,14 +15,14 @@ constexpr double slit_gap = 5e-5;
 /// Where the two sides of a cut inside the chart are closer in the plane than `gap` (a length in
 /// the plane), as around a hole in a flat sheet, moves both inwards by half of it. Texture
 /// coordinates tell a cut only by a difference: without one, readers would see a chart with a hole
-/// instead of the disk that was flattened. A vertex stays where it is if moving it would flip a
+/// more than the one that was flattened. A vertex stays where it is if moving it would flip a
 /// face.
 void open_closed_slits(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
                        std::vector<Vec2>& uv);
 
-/// Whether a reader that takes points closer than `gap` for one would find something else than a
-/// disk: cuts between two holes, say, that close over their whole length.
-bool closed_slits_hide_disk(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
-                            const std::vector<Vec2>& uv);
+/// Whether a reader that takes points closer than `gap` for one would find other boundary loops
+/// than the surface has: where a cut between a hole and the rim closes over its whole length, say.
+bool closed_slits_hide_loops(const Mesh& mesh, const atlas::ChartSurface& surface, double gap,
+                             const std::vector<Vec2>& uv);
 
 } // namespace devseg::flatten

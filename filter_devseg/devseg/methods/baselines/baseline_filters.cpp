@@ -16,7 +16,7 @@ constexpr const char* vsa_help =
     "worst one.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the squared difference "
-    "of the normals as face quality and a colour for each chart. Every chart is cut to a disk.<br>"
+    "of the normals as face quality and a colour for each chart. Every chart is cut to a disk but for flat holes.<br>"
     "See:<br><i>David Cohen-Steiner, Pierre Alliez, Mathieu Desbrun</i><br>"
     "<b>\"Variational Shape Approximation\"</b><br>"
     "ACM Transactions on Graphics 23(3), 2004, doi:10.1145/1015706.1015817";
@@ -48,7 +48,7 @@ Declare<O> baseline(const char* menu_name, const char* python_name, const char* 
         .on_part()
         .keeps()
         .writes(writes_charts | writes_quality | writes_color)
-        .result("charts_number", "charts, each a disk")
+        .result("charts_number", "charts, each a disk but for flat holes")
         .result("cut_length", "length of the cuts inside of charts, model units")
         .result("seam_length", "length of all cut edges, model units")
         .result("rounds_number", "rounds of growing charts")

@@ -36,7 +36,7 @@ constexpr const char* help =
     "where it is large.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the fitting error as "
-    "face quality and a colour for each chart. Every chart is cut to a disk.<br>"
+    "face quality and a colour for each chart. Every chart is cut to a disk but for flat holes.<br>"
     "See:<br><i>Dan Julius, Vladislav Kraevoy, Alla Sheffer</i><br>"
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
@@ -145,7 +145,7 @@ std::vector<FilterDeclaration> filters() {
             .on_part()
             .keeps()
             .writes(writes_charts | writes_quality | writes_color)
-            .result("charts_number", "charts, each a disk")
+            .result("charts_number", "charts, each a disk but for flat holes")
             .result("hole_charts_number", "charts that were added where no other fitted")
             .result("joined_charts_number", "joins of two charts")
             .result("darts_number", "cuts inside charts, to spots of high stretch")

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <random>
 
+#include "devseg/atlas/disks.h"
+#include "devseg/atlas/flat_cuts.h"
 #include "devseg/atlas/slit_closing.h"
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
@@ -27,6 +29,7 @@ struct Tuning {
     int most_halvings = 12;       // of the growth threshold
     Index share_of_surplus = 8;   // of the charts that are too many, one in so many goes
     double seed_variation = 0.25; // of the costs, with random seeds
+    double flat = 1e-5;           // radians: what rounding leaves of defects on flat faces
 };
 constexpr Tuning tuning;
 
@@ -176,11 +179,15 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
         grown = growth.grow(seeds, selecting);
     }
 
-    const auto closing = progress.part("closing slits", 0.03);
-    atlas::ChartMap charts = growth::adopt_orphans(mesh, grown);
+    auto closing = progress.part("closing slits", 0.03);
+    atlas::ChartMap charts = atlas::keep_flat_faces_whole(mesh, growth::adopt_orphans(mesh, grown));
     result.closed_edges =
         atlas::close_slits(mesh, cost, options.slit_threshold * diagonal, charts.seam).closed_edges;
     result.charts = atlas::make_chart_map(mesh, charts.chart, charts.seam, false);
+    result.closed_edges += atlas::close_slits_to_holes(
+        mesh, cost, std::max(options.slit_threshold, tuning.flat) * diagonal, result.charts);
+    result.charts = atlas::cut_charts_to_disks(mesh, result.charts, closing).charts;
+    atlas::lead_around_flat_faces(mesh, cost, tuning.flat, result.charts, closing);
     result.slit_length = slit_length(mesh, result.charts);
     const std::vector<Index> valence = valences(mesh);
     result.defect_share.assign(mesh.faces.size(), 0.0);
@@ -203,7 +210,7 @@ constexpr const char* help =
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut, slits included), the same cuts as selected face-edges, the "
     "face's share of the angle defects of its vertices (radians) as face quality and a colour for "
-    "each chart. Every chart is a disk. Go on with 'Charts: Deform to Exact Developability'.<br>"
+    "each chart. Every chart is a disk but for flat holes. Go on with 'Charts: Deform to Exact Developability'.<br>"
     "See:<br><i>Kuniko Takahashi, Tomohiro Tachi, Yasushi Yamaguchi</i><br>"
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
     "Journal for Geometry and Graphics 19(1), 2015, pages 119-129";
@@ -250,7 +257,7 @@ std::vector<FilterDeclaration> filters() {
             .on_part()
             .keeps()
             .writes(writes_charts | writes_quality | writes_color)
-            .result("charts_number", "charts, each a disk")
+            .result("charts_number", "charts, each a disk but for flat holes")
             .result("initial_charts_number", "charts of the initial segmentation")
             .result("rounds_number", "rounds of removing charts and growing the others")
             .result("closed_edges_number", "edges of slits that were closed")

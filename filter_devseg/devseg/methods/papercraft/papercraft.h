@@ -26,7 +26,7 @@ struct PapercraftOptions {
 };
 
 struct PapercraftResult {
-    atlas::ChartMap charts;           // disks; slits are seams inside of charts
+    atlas::ChartMap charts;           // sound; slits are seams inside of charts
     std::vector<double> defect_share; // #F: angle defects of its vertices, each split among its
                                       // faces, radians
     Index initial_charts = 0;

@@ -36,15 +36,20 @@ public:
     Splitter(const Mesh& mesh, const SeamMarks& seam, const std::vector<Index>& faces)
         : mesh_(mesh), seam_(seam), faces_(faces) {}
 
-    // Edges that make it a disk.
+    // Edges that make it sound: holes that lie flat are opened where nothing else is.
     Line disk_cuts(const Progress& progress) const {
-        SeamMarks marks = seam_;
-        atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces_, marks), marks, progress);
         Line cuts;
-        for (const Face f : faces_)
-            for (const HalfEdge h : half_edges_of(f))
-                if (marks[h] != seam_[h])
-                    cuts.push_back(h);
+        for (const atlas::HoleRule& holes : {atlas::HoleRule::exact(), atlas::HoleRule::none()}) {
+            SeamMarks marks = seam_;
+            atlas::cut_to_disk(mesh_, atlas::extract_surface(mesh_, faces_, marks), marks, progress,
+                               nullptr, holes);
+            for (const Face f : faces_)
+                for (const HalfEdge h : half_edges_of(f))
+                    if (marks[h] != seam_[h])
+                        cuts.push_back(h);
+            if (!cuts.empty())
+                break;
+        }
         return cuts;
     }
 
@@ -238,7 +243,7 @@ bool add_local_seams(const SeamSetting& setting, std::vector<std::uint8_t> open,
                 try_patch(mesh, patch, seam, setting.tester.limits(), true, splitting);
             result.is_needed = !trial.accepted;
             const Splitter splitter(mesh, seam, patch);
-            if (!trial.is_disk) {
+            if (!trial.is_sound) {
                 result.cuts = splitter.disk_cuts(splitting);
                 return;
             }

@@ -170,7 +170,7 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
         const PatchTrial trial = try_patch(mesh, patch, marks, limits, false, progress);
         if (trial.accepted)
             continue;
-        if (!trial.is_disk || count >= tuning.most_cuts)
+        if (!trial.is_sound || count >= tuning.most_cuts)
             return std::nullopt;
         std::vector<Index> cut =
             cut_between_sheets(mesh, patch, marks, trial.area_change > 0.0, progress);

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "devseg/atlas/holes.h"
 #include "devseg/base/errors.h"
 #include "devseg/flatten/energy/area_balance.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/maps/lscm.h"
 #include "devseg/flatten/maps/tutte.h"
+#include "devseg/flatten/maps/unfold.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/repair/slits.h"
 #include "devseg/methods/plush/tuning.h"
@@ -56,6 +58,18 @@ bool lies_flat(const Mesh& mesh, const atlas::ChartSurface& surface,
            flatten::overlapping_pairs(surface, uv, plane::layout_tolerance(size)).empty();
 }
 
+// LPFB keeps one boundary; what unfolds exactly needs no LPFB.
+PatchTrial try_holes(const Mesh& mesh, const atlas::ChartSurface& surface) {
+    PatchTrial trial;
+    if (!atlas::is_sound(mesh, surface))
+        return trial;
+    const auto uv = flatten::unfold(flatten::make_flattening_problem(mesh, surface));
+    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
+    trial.accepted = trial.is_sound =
+        uv && flatten::overlapping_pairs(surface, *uv, tolerance).empty();
+    return trial;
+}
+
 } // namespace
 
 PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
@@ -63,9 +77,9 @@ PatchTrial try_patch(const Mesh& mesh, const std::vector<Index>& faces,
                      const Progress& progress) {
     const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, seam);
     PatchTrial trial;
-    trial.is_disk = surface.is_disk();
-    if (!trial.is_disk)
-        return trial;
+    if (!surface.is_disk())
+        return try_holes(mesh, surface);
+    trial.is_sound = true;
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
     const double bound = tuning.used_bound * limits.max_area_change;
     const double strictness = std::min(1.0, limits.max_area_change / tuning.usual_change);
@@ -96,7 +110,7 @@ PatchTrial conformal_change(const Mesh& mesh, const std::vector<Index>& faces,
                             const std::vector<std::uint8_t>& seam) {
     const atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, seam);
     PatchTrial trial;
-    if ((trial.is_disk = surface.is_disk())) {
+    if ((trial.is_sound = surface.is_disk())) {
         const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
         describe(surface, problem, any_map(problem), trial);
     }

@@ -19,7 +19,7 @@ namespace devseg::plush {
 
 struct PatchTrial {
     bool accepted = false;
-    bool is_disk = false;
+    bool is_sound = false;      // a disk, or one with holes that unfolds exactly
     double area_change = 0.0;   // largest of a face; only where the patch has a map
     std::vector<Index> face;    // of the mesh; with details only
     std::vector<double> change; // of each face: area in the plane / on the surface − 1
@@ -34,7 +34,7 @@ struct PatchLimits {
 };
 
 /// The map that 'Charts: Flatten' with LPFB makes of the faces, cut open along the marked edges
-/// (`seam`, 3 #F of the mesh, all edges to other faces marked): accepted if it is a disk, keeps
+/// (`seam`, 3 #F of the mesh, all edges to other faces marked): accepted if it is sound, keeps
 /// [Wan08]'s conditions, no face changes its area by more than the limit, and nothing overlaps.
 /// With `details` also the change of each face, for patches that are not accepted too; none where
 /// needles leave no map at all.

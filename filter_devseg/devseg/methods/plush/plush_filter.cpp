@@ -23,7 +23,7 @@ constexpr const char* plush_help =
     "the same seams. Some hundred thousand faces take minutes: simplify larger meshes first.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the change of area as "
-    "face quality and a colour for each patch. Every patch is a disk. Flatten them with "
+    "face quality and a colour for each patch. Every patch is a disk but for flat holes. Flatten them with "
     "'Charts: Flatten', method LPFB: both sides of every seam keep their length.<br>"
     "See:<br><i>Charlie C. L. Wang</i><br>"
     "<b>\"Computing Length-Preserved Free Boundary for Quasi-Developable Mesh Segmentation\"</b><br>"
@@ -137,7 +137,7 @@ FilterDeclaration plush() {
         .on_part()
         .keeps()
         .writes(writes_charts | writes_quality | writes_color)
-        .result("charts_number", "patches, each a disk")
+        .result("charts_number", "patches, each a disk but for flat holes")
         .result("darts_number", "seams that end inside a patch")
         .result("limbs_number", "limbs with a seam around their root, before seams were removed")
         .result("extrema_number", "tips and saddles that seams were laid between")

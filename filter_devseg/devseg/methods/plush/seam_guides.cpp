@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
@@ -179,6 +180,8 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
     double longest = 0.0;
     for (const HalfEdge h : mesh.all_half_edges())
         longest = std::max(longest, mesh.edge_length(h));
+    const std::vector<std::uint8_t> within_flat =
+        mesh::within_flat_regions(mesh, tuning.flat_region);
     SeamWeights result;
     for (const HalfEdge h : mesh.all_half_edges()) {
         const Index a = std::min(mesh.origin(h), mesh.target(h));
@@ -193,7 +196,8 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
         }
         const double curved = 1.0 / (1.0 + std::abs(curvature[a]) + std::abs(curvature[b]));
         result.stray.push_back(straying(along, shapes[h].bend));
-        result.weight.push_back(natural_factor(tuning.natural_seam, result.stray.back()) *
+        result.weight.push_back((within_flat[h] != 0 ? tuning.through_flat : 1.0) *
+                                natural_factor(tuning.natural_seam, result.stray.back()) *
                                 std::max(tuning.least_path_weight,
                                          std::pow(mesh.edge_length(h) / longest, options.geodesic) *
                                              std::pow(std::max(0.0, along), options.skeleton) *

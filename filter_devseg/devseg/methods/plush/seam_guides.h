@@ -32,9 +32,9 @@ struct SeamWeightOptions {
 };
 
 /// w = w_g^α w_s^β w_c^γ for each half-edge (3 #F): w_g the length over the longest edge, w_s low
-/// along the skeleton, w_c low where the mean curvature (#V) is high. 0 < w ≤ 1. Without a skeleton
-/// w_s is 1. Beyond [Plush], w is several times lower where seams look natural, which `straying`
-/// tells.
+/// along the skeleton, w_c low where the mean curvature (#V) is high. 0 < w ≤ 10. Without a
+/// skeleton w_s is 1. Beyond [Plush], w is several times lower where seams look natural, which
+/// `straying` tells, and ten times higher within large flat regions.
 struct SeamWeights {
     std::vector<double> weight; // 3 #F
     std::vector<double> stray;  // 3 #F, 0 … 1

@@ -73,6 +73,9 @@ struct Tuning {
     double natural_straight = 0.5;   // while seams are straightened
     double shared_seam = 0.25;       // factor of edges that are seams already
 
+    double flat_region = 0.01;  // of the surface: nobody sews across a flat face as large as that
+    double through_flat = 10.0; // factor of its edges
+
     // Trials.
     double used_bound = 0.98; // share of the bound: maps are rounded to 32 bits later
     double most_shear = 0.04; // L2 stretch above 1 that even areas may cost: 20 % in the mean; half

@@ -326,7 +326,7 @@ constexpr const char* help =
     "only inside of charts, so that borders follow them.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the Gauss area as face "
-    "quality and a colour for each chart. Every chart is cut to a disk.<br>"
+    "quality and a colour for each chart. Every chart is cut to a disk but for flat holes.<br>"
     "See:<br><i>Hitoshi Yamauchi, Stefan Gumhold, Rhaleb Zayer, Hans-Peter Seidel</i><br>"
     "<b>\"Mesh Segmentation Driven by Gaussian Curvature\"</b><br>"
     "The Visual Computer 21, 2005, doi:10.1007/s00371-005-0319-x";
@@ -391,7 +391,7 @@ std::vector<FilterDeclaration> filters() {
             .on_part()
             .keeps()
             .writes(writes_charts | writes_quality | writes_color)
-            .result("charts_number", "charts, each a disk")
+            .result("charts_number", "charts, each a disk but for flat holes")
             .result("cut_length", "length of the cuts inside of charts, model units")
             .result("seam_length", "length of all cut edges, model units")
             .result("chart_gauss_area", "Gauss area of each chart, steradians")

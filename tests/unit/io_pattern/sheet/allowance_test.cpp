@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "devseg/plane/plane.h"
+#include "sheet/export_options.h"
 
 namespace devseg::sheet {
 namespace {
@@ -86,6 +87,22 @@ TEST(Allowance, HolesShrinkAndSmallOnesClose) {
 }
 
 // The allowances of a dart's two sides meet: the cut line runs straight over it.
+TEST(Allowance, OpenHolesMayHaveNone) {
+    const Ring hole = {Vec2(10, 10), Vec2(10, 30), Vec2(30, 30), Vec2(30, 10)};
+    pattern::PatternPiece piece = piece_of(square, {hole});
+    piece.outer.edges.assign(4, {});
+    piece.holes.front().edges.assign(4, {});
+    const AllowanceWidths widths(5.0, 3.0, 0.0);
+    const std::vector<Ring> open = add_allowance(piece, widths, CornerStyle::miter);
+    ASSERT_EQ(open.size(), 2U);
+    EXPECT_NEAR(area(open[0]), 46.0 * 46.0, 1e-3);
+    EXPECT_NEAR(area(open[1]), -400.0, 1e-3);
+    // Its rim sewn to something, the allowance lies in the hole.
+    piece.holes.front().edges.assign(4, {0, 0});
+    EXPECT_NEAR(area(add_allowance(piece, widths, CornerStyle::miter)[1]), -100.0, 1e-3);
+    EXPECT_EQ(ExportOptions().allowance().hole_hems, 0.0);
+}
+
 TEST(Allowance, NarrowDartsAreCovered) {
     const Ring dart = {Vec2(0, 0),  Vec2(40, 0),  Vec2(40, 40), Vec2(22, 40),
                        Vec2(20, 5), Vec2(18, 40), Vec2(0, 40)};

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "devseg/base/errors.h"
+#include "devseg/plane/plane.h"
 #include "sheet/export_options.h"
 #include "sheet/layout.h"
 #include "sheet/page_nesting.h"
+#include "sheet/sheet_drawing.h"
 #include "unit/checks.h"
 
 namespace devseg::sheet {
@@ -115,6 +117,30 @@ TEST(PageNesting, IsTheSameInEveryRunAndCanBeCancelled) {
         EXPECT_EQ(a[i].cut, b[i].cut);
     Progress cancelled([](double, const char*) { return false; });
     EXPECT_THROW(nest_on_pages(pieces, small_page(), false, true, cancelled), Cancelled);
+}
+
+TEST(Drawing, HolesAreCutBeforeOutlinesAndWhatLiesInThemFirst) {
+    SheetPiece frame = rectangle(100, 100);
+    frame.name = "P01";
+    frame.cut.push_back({Vec2(20, 20), Vec2(20, 80), Vec2(80, 80), Vec2(80, 20)});
+    SheetPiece small = rectangle(30, 30);
+    small.name = "P02";
+    small.move({1.0, 0.0, Vec2(40, 40)});
+    SheetPiece beside = rectangle(30, 30);
+    beside.name = "P03";
+    beside.move({1.0, 0.0, Vec2(110, 0)});
+    PatternLayout layout;
+    layout.pieces = {frame, beside, small};
+    layout.sheets = {{Vec2(150, 100)}};
+    const writers::Drawing drawing = draw_sheets(layout, ExportOptions());
+    const std::vector<writers::DrawingPath>& cut = drawing.layers.front().paths;
+    ASSERT_EQ(cut.size(), 3U);
+    EXPECT_EQ(cut[0].id, "P02-cut");
+    EXPECT_EQ(cut[1].id, "P01-cut");
+    EXPECT_EQ(cut[2].id, "P03-cut");
+    ASSERT_EQ(cut[1].parts.size(), 2U);
+    EXPECT_LT(plane::signed_area(cut[1].parts[0].points), 0.0);
+    EXPECT_GT(plane::signed_area(cut[1].parts[1].points), 0.0);
 }
 
 TEST(PageSize, KnowsNamesAndSizes) {
