@@ -75,6 +75,10 @@ private:
         case FlattenMethod::arap:
             return rigid();
         case FlattenMethod::lpfb:
+            if (auto map = least_strain())
+                return map;
+            return length_preserving();
+        case FlattenMethod::lpfb_even_areas:
             return length_preserving();
         }
         return std::nullopt;
@@ -169,8 +173,17 @@ private:
         return uv;
     }
 
-    // Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those
-    // of the nearest isometric map, whatever the areas.
+    std::optional<Map> least_strain() const {
+        auto uv = attempt([&] {
+            return least_strain_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_);
+        });
+        if (!uv)
+            return std::nullopt;
+        return Map{std::move(*uv)};
+    }
+
+    // Keeps the lengths of boundary edges and evens out areas. Where no map for sewing is found,
+    // the angles are those of the nearest isometric map, whatever the areas.
     std::optional<Map> length_preserving() const {
         if (auto sewn = sewing_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_))
             return Map{std::move(sewn->uv)};

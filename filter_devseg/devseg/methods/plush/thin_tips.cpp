@@ -1,12 +1,14 @@
 #include "devseg/methods/plush/thin_tips.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
 
 #include "devseg/base/parallel.h"
 #include "devseg/graph/shortest_paths.h"
+#include "devseg/methods/plush/mend_patches.h"
 #include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
@@ -334,15 +336,21 @@ private:
         const std::vector<Index> degree = seam_degrees(mesh_, seam_);
         for (const Line* line : {&first, &second})
             if (length_of(mesh_, *line) < tuning.slides.back() * reach_ &&
-                degree[mesh_.target(line->back())] == 1 && replace(*line, {}))
+                degree[mesh_.target(line->back())] == 1 && replace(*line, {}, false))
                 return true;
+        std::vector<std::array<Line, 3>> roots;
         for (const double slide : tuning.slides) {
             const Line a = start_of(mesh_, first, slide * reach_);
             const Line b = start_of(mesh_, second, slide * reach_);
             const Line root = path_between(corner, a, b);
-            if (!root.empty() && (replace(a, root) || replace(b, root)))
-                return true;
+            if (!root.empty())
+                roots.push_back({a, b, root});
         }
+        // Rather far and without darts than near and with some.
+        for (const bool may_mend : {false, s_.tester.limits().by_strain()})
+            for (const auto& [a, b, root] : roots)
+                if (replace(a, root, may_mend) || replace(b, root, may_mend))
+                    return true;
         return false;
     }
 
@@ -392,24 +400,42 @@ private:
         return border == a.size() + b.size() + path.size();
     }
 
-    // Opens one line and closes another where that helps and patches stay developable.
-    bool replace(const Line& opened, const Line& closed) {
+    std::size_t count_corners(const SeamMarks& seam) const {
+        return find_acute_corners(mesh_, seam, s_.hard, reach_, tuning.acute).size();
+    }
+
+    // Opens one line and closes another where that helps and patches keep their limits, with a few
+    // darts if it may.
+    bool replace(const Line& opened, const Line& closed, bool may_mend) {
         if (any_marked(s_.hard, opened))
             return false;
         SeamMarks marks = seam_;
         mark(mesh_, opened, 0, marks);
         mark(mesh_, closed, 1, marks);
-        const auto count = [&](const SeamMarks& seam) {
-            return find_acute_corners(mesh_, seam, s_.hard, reach_, tuning.acute).size();
-        };
-        if (count(marks) >= count(seam_))
+        const std::size_t before = count_corners(seam_);
+        if (count_corners(marks) >= before)
             return false;
         ++tried_;
         progress_.check();
-        if (!s_.tester.accepts_all(patches_beside(mesh_, marks, {opened, closed}), marks,
-                                   progress_))
+        const auto patches = patches_beside(mesh_, marks, {opened, closed});
+        if (may_mend ? !mend(patches, marks) || count_corners(marks) >= before
+                     : !s_.tester.accepts_all(patches, marks, progress_))
             return false;
         seam_ = std::move(marks);
+        return true;
+    }
+
+    // By darts: no patch may be cut in two.
+    bool mend(const std::vector<Line>& patches, SeamMarks& marks) const {
+        for (const Line& patch : patches) {
+            const auto cuts = mend_patch(mesh_, s_.graph, s_.cut_cost, patch, marks,
+                                         s_.tester.limits(), progress_);
+            if (!cuts)
+                return false;
+            mark(mesh_, *cuts, 1, marks);
+            if (patches_of(mesh_, marks, patch).size() > 1)
+                return false;
+        }
         return true;
     }
 
