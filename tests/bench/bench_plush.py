@@ -160,8 +160,8 @@ def main() -> None:
     options = parser.parse_args()
     devseg.load_plugins()
     print(
-        "model patches darts area strain-99 largest mean symmetric of-box guided by-normals d-charts preview "
-        "waviness d-charts acute d-charts seconds processor",
+        "model patches darts area strain-99 largest mean symmetric of-box guided by-normals "
+        "d-charts preview waviness d-charts acute d-charts seconds processor",
         flush=True,
     )
     pictures = []

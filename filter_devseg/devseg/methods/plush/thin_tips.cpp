@@ -1,7 +1,6 @@
 #include "devseg/methods/plush/thin_tips.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -334,22 +333,22 @@ private:
         const Line& first = arms.all[arms.starting[corner.first]].half_edges;
         const Line& second = arms.all[arms.starting[corner.second]].half_edges;
         const std::vector<Index> degree = seam_degrees(mesh_, seam_);
+        std::vector<std::pair<Line, Line>> exchanges; // what opens, and what closes
         for (const Line* line : {&first, &second})
             if (length_of(mesh_, *line) < tuning.slides.back() * reach_ &&
-                degree[mesh_.target(line->back())] == 1 && replace(*line, {}, false))
-                return true;
-        std::vector<std::array<Line, 3>> roots;
+                degree[mesh_.target(line->back())] == 1)
+                exchanges.emplace_back(*line, Line{});
         for (const double slide : tuning.slides) {
             const Line a = start_of(mesh_, first, slide * reach_);
             const Line b = start_of(mesh_, second, slide * reach_);
             const Line root = path_between(corner, a, b);
             if (!root.empty())
-                roots.push_back({a, b, root});
+                exchanges.insert(exchanges.end(), {{a, root}, {b, root}});
         }
         // Rather far and without darts than near and with some.
         for (const bool may_mend : {false, s_.tester.limits().by_strain()})
-            for (const auto& [a, b, root] : roots)
-                if (replace(a, root, may_mend) || replace(b, root, may_mend))
+            for (const auto& [opened, closed] : exchanges)
+                if (replace(opened, closed, may_mend))
                     return true;
         return false;
     }
