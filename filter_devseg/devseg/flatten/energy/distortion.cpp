@@ -242,6 +242,10 @@ ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<s
           problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
+void ProjectedNewton::set_boundary_stiffness(double stiffness) {
+    state_->boundary_stiffness = stiffness;
+}
+
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
     const FlatteningProblem& problem = state_->problem;
     HessianMatrix& hessian = state_->hessian;

@@ -69,6 +69,9 @@ public:
                     FaceHessian face_hessian = {}, double boundary_stiffness = 0.0);
     ~ProjectedNewton();
 
+    /// Another stiffness, above 0 where it was.
+    void set_boundary_stiffness(double stiffness);
+
     /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
     Positions direction(const Positions& x, const Positions& gradient);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "devseg/flatten/energy/distortion.h"
 #include "devseg/flatten/energy/map_tools.h"
@@ -55,17 +56,18 @@ double quantile(const std::vector<double>& value, const std::vector<double>& wei
 // Σ A (exp(s (ψ − 1)) − 1) / s / Σ A, the mean of ψ − 1 for s = 0, and springs along the boundary.
 class SteepEnergy {
 public:
-    SteepEnergy(const FlatteningProblem& problem, double stiffness)
-        : problem_(problem), stiffness_(stiffness) {}
+    explicit SteepEnergy(const FlatteningProblem& problem) : problem_(problem) {}
 
-    void set_steepness(const Positions& x, double share) {
+    void begin(const Stage& stage, const Positions& x) {
+        stiffness_ = stage.stiffness;
         std::vector<double> excess;
         for (std::size_t f = 0; f < problem_.faces.size(); ++f)
             excess.push_back(density(jacobian(problem_, x, f)) - 1.0);
         const double most = quantile(excess, problem_.area, tuning.most_of_it);
         const double worst = *std::max_element(excess.begin(), excess.end());
-        steepness_ = share * std::min(tuning.exponent / std::max(most, tuning.least_excess),
-                                      tuning.worst_exponent / std::max(worst, tuning.least_excess));
+        steepness_ =
+            stage.share * std::min(tuning.exponent / std::max(most, tuning.least_excess),
+                                   tuning.worst_exponent / std::max(worst, tuning.least_excess));
     }
 
     double value(const Positions& x) const {
@@ -129,29 +131,45 @@ private:
     double steepness_ = 0.0;
 };
 
-// Returns the energy.
-double descend(const FlatteningProblem& problem, const Stage& stage,
-               const std::vector<std::uint8_t>& fixed, Positions& x, const Progress& progress) {
-    SteepEnergy energy(problem, stage.stiffness);
-    energy.set_steepness(x, stage.share);
-    ProjectedNewton newton(
-        problem, fixed, [&](std::size_t, const Eigen::Matrix2d& j) { return energy.hessian(j); },
-        stage.stiffness);
-    const auto value_at = [&](const Positions& y) { return energy.value(y); };
-    double value = value_at(x);
-    for (int i = 0; i < stage.newton_steps; ++i) {
-        progress.check();
-        Positions gradient = energy.gradient(x);
-        hold_fixed(fixed, gradient);
-        Positions d = newton.direction(x, gradient);
-        hold_fixed(fixed, d);
-        const double before = value;
-        line_search(problem, value_at, d, (gradient.array() * d.array()).sum(), x, value);
-        if (before - value < stage.gain * before)
-            break;
+class Descent {
+public:
+    Descent(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
+            const std::vector<Vec2>& start, double stiffness)
+        : problem_(problem), fixed_(std::move(fixed)), energy_(problem), x_(positions_of(start)),
+          newton_(
+              problem, fixed_,
+              [this](std::size_t, const Eigen::Matrix2d& j) { return energy_.hessian(j); },
+              stiffness) {}
+
+    // Returns the energy.
+    double run(const Stage& stage, const Progress& progress) {
+        energy_.begin(stage, x_);
+        newton_.set_boundary_stiffness(stage.stiffness);
+        const auto value_at = [&](const Positions& y) { return energy_.value(y); };
+        double value = value_at(x_);
+        for (int i = 0; i < stage.newton_steps; ++i) {
+            progress.check();
+            Positions gradient = energy_.gradient(x_);
+            hold_fixed(fixed_, gradient);
+            Positions d = newton_.direction(x_, gradient);
+            hold_fixed(fixed_, d);
+            const double before = value;
+            line_search(problem_, value_at, d, (gradient.array() * d.array()).sum(), x_, value);
+            if (before - value < stage.gain * before)
+                break;
+        }
+        return value;
     }
-    return value;
-}
+
+    std::vector<Vec2> uv() const { return points_of(x_); }
+
+private:
+    const FlatteningProblem& problem_;
+    const std::vector<std::uint8_t> fixed_;
+    SteepEnergy energy_;
+    Positions x_;
+    ProjectedNewton newton_; // finds the order of elimination once for all stages
+};
 
 } // namespace
 
@@ -186,22 +204,22 @@ std::vector<Vec2> least_strain(const FlatteningProblem& problem, const std::vect
     std::vector<std::uint8_t> fixed(uv.size(), 0);
     for (const Vertex v : problem.boundary)
         fixed[v] = 1;
-    Positions x = positions_of(uv);
+    Descent descent(problem, std::move(fixed), uv, 0.0);
     for (const Stage& stage : inside)
-        descend(problem, stage, fixed, x, progress);
-    return points_of(x);
+        descent.run(stage, progress);
+    return descent.uv();
 }
 
 std::vector<Vec2> least_strain_with_boundary(const FlatteningProblem& problem,
                                              const std::vector<Vec2>& uv, double give_up,
                                              const Progress& progress) {
-    Positions x = positions_of(uv);
+    Descent descent(problem, {}, uv, bending[0].stiffness);
     for (const Stage& stage : bending) {
-        const double energy = descend(problem, stage, {}, x, progress);
+        const double energy = descent.run(stage, progress);
         if (stage.share == 0.0 && energy > give_up)
             return {};
     }
-    return points_of(x);
+    return descent.uv();
 }
 
 } // namespace devseg::flatten
