@@ -291,7 +291,9 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
-    double share = is_model ? tuning.own_margin : by_strain ? tuning.far_strain : tuning.far_margin;
+    double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
+                   : is_model ? tuning.own_margin
+                              : tuning.far_margin;
     auto deciding = progress.part(0.5);
     SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
     // Where the model has two halves, they stay alike only as long as seams are decided on both.

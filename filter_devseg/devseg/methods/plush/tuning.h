@@ -106,10 +106,11 @@ struct Tuning {
     double least_leaning = 0.1; // of that, where the second surface is no finer than the first
     std::size_t path_edges = 6; // of a segment: longer paths could take a short cut
     // Of the bound: what is used of it on another surface than the model, on the model before seams
-    // are smoothed, and in each round of deciding again.
+    // are smoothed, by areas and by strain, and in each round of deciding again.
     double far_margin = 0.75;
-    double far_strain = 0.65; // where patches are judged by strain
+    double far_strain = 0.65;
     double own_margin = 0.95;
+    double own_strain = 0.9;
     double tighter = 0.88;
     int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
     int most_cuts = 4;          // that mend a patch
