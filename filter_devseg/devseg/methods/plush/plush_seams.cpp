@@ -34,16 +34,18 @@ struct Evidence {
 
 // Material borders are edges of the model: then seams are decided on the model itself. So they are
 // on small models without a mirror image: what is saved would be less than what transfer costs.
+// Trials by strain take longer.
 WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<MirrorPlane>& plane,
-                                    const SeamMarks& hard, Progress& progress) {
+                                    const SeamMarks& hard, bool by_strain, Progress& progress) {
     if (!hard.empty())
         return {mesh, {}};
     if (plane)
         if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
             return std::move(*surface);
-    if (mesh.face_count() <= tuning.large_model / 4)
+    const Index most = tuning.mirrored_faces * 3 / 2;
+    if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
-    return plain_working_surface(mesh, tuning.mirrored_faces * 3 / 2, progress);
+    return plain_working_surface(mesh, most, progress);
 }
 
 Evidence find_evidence(const WorkingSurface& surface, const PlushOptions& options,
@@ -405,7 +407,8 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     std::optional<MirrorPlane> plane;
     if (options.symmetric)
         plane = find_mirror_plane(framed, tuning.symmetric_within, finding);
-    const WorkingSurface surface = make_working_surface(framed, plane, hard, finding);
+    const WorkingSurface surface =
+        make_working_surface(framed, plane, hard, options.max_strain > 0.0, finding);
     result.is_symmetric = surface.is_symmetric();
     auto weighing = progress.part("finding the skeleton", 0.04);
     Evidence working = find_evidence(surface, options, std::move(skeleton), result, weighing);
