@@ -173,6 +173,12 @@ private:
 
 } // namespace
 
+void Strain::take_worse(const Strain& other) {
+    mean = std::max(mean, other.mean);
+    most_of_it = std::max(most_of_it, other.most_of_it);
+    worst = std::max(worst, other.worst);
+}
+
 std::vector<double> face_strains(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
     std::vector<double> strains;
     strains.reserve(problem.faces.size());

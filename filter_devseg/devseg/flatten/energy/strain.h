@@ -14,6 +14,9 @@ struct Strain {
     double mean = 0.0;       // over the area on the surface
     double most_of_it = 0.0; // what 99 % of the area keeps
     double worst = 0.0;      // of a face
+
+    /// The larger ones of both.
+    void take_worse(const Strain& other);
 };
 
 /// Of each face (#f): max(Γ − 1, 1 − γ), with Γ ≥ γ the singular values of the map from the plane

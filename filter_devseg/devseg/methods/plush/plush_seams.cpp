@@ -92,14 +92,6 @@ SeamGuides guides_of(const Evidence& evidence) {
     return guides;
 }
 
-// Of half-edges as parts of darts: their lengths, less where seams look natural.
-std::vector<double> dart_cost(const Evidence& evidence) {
-    std::vector<double> cost = edge_lengths(evidence.surface.mesh);
-    for (std::size_t h = 0; h < cost.size(); ++h)
-        cost[h] *= natural_factor(tuning.natural_dart, evidence.weights.stray[h]);
-    return cost;
-}
-
 // Of half-edges as parts of paths that cut patches, and of paths in place of seams.
 struct PathCosts {
     std::vector<double> cut;
@@ -107,13 +99,16 @@ struct PathCosts {
 };
 
 PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
+    if (options.max_strain > 0.0) {
+        const std::vector<double> cost =
+            natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
+        return {cost, cost};
+    }
     const std::vector<double>& weight = evidence.weights.weight;
-    std::vector<double> lengths = edge_lengths(evidence.surface.mesh);
-    const bool by_strain = options.max_strain > 0.0;
-    for (std::size_t h = 0; h < lengths.size(); ++h)
-        lengths[h] *= by_strain ? natural_factor(tuning.natural_cut, evidence.weights.stray[h])
-                                : natural_factor(tuning.natural_straight, weight[h]);
-    return {by_strain ? lengths : weight, lengths};
+    std::vector<double> straight = edge_lengths(evidence.surface.mesh);
+    for (std::size_t h = 0; h < straight.size(); ++h)
+        straight[h] *= natural_factor(tuning.natural_straight, weight[h]);
+    return {weight, straight};
 }
 
 // Of half-edges as parts of paths along seams of another surface: factors of their lengths.
@@ -257,7 +252,8 @@ SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamM
     const std::vector<double>& weight = evidence.weights.weight;
     PatchTester tester(surface, limits_of(options, 1.0, false));
     PatchTester search(surface, limits_of(options, 1.0, true));
-    const std::vector<double> cost = dart_cost(evidence);
+    const std::vector<double> cost =
+        natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
     const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
                               cost,    options.max_iterations};
     const SeamSetting searching{surface, evidence.graph,        hard, weight, search, search, cost,
@@ -305,10 +301,12 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part = mend_patches(model.mesh, on_model.graph, dart_cost(on_model),
-                            transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                           transfer_factors(on_model, options), transferring),
-                            limits_of(options, 1.0, false), transferring);
+        part =
+            mend_patches(model.mesh, on_model.graph,
+                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
+                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                        transfer_factors(on_model, options), transferring),
+                         limits_of(options, 1.0, false), transferring);
         if (!part.has_open_faces() || round == most_rounds)
             break;
         const OpenPart again = same_part(surface, seam, model.mesh, part);
@@ -386,10 +384,7 @@ void measure_patches(const Mesh& mesh, const SeamMarks& seam, const PlushOptions
         if (!trial.accepted)
             result.failed.push_back(c);
         result.max_area_change = std::max(result.max_area_change, trial.area_change);
-        result.strain.worst = std::max(result.strain.worst, trial.strain.worst);
-        result.strain.most_of_it = std::max(result.strain.most_of_it, trial.strain.most_of_it);
-        result.strain.mean = std::max(result.strain.mean, trial.strain.mean);
-        result.all_developable = result.all_developable && trial.accepted;
+        result.strain.take_worse(trial.strain);
         for (std::size_t i = 0; i < trial.change.size(); ++i)
             result.area_change[trial.face[i]] = std::abs(trial.change[i]);
     }
