@@ -67,4 +67,5 @@ FLATTENINGS = {
     "abf": "ABF++",
     "arap": "ARAP",
     "lpfb": "LPFB",
+    "lpfb-even-areas": "LPFB Even Areas",
 }

@@ -50,6 +50,7 @@ TABLE = {
         "filter": "compute_segmentation_plush_seams_per_face",
         "parameters": [
             "max_area_change",
+            "max_strain",
             "geodesic_weight",
             "skeleton_weight",
             "curvature_weight",

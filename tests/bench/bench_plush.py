@@ -1,6 +1,8 @@
-"""Plush seams on public models: patches, area change, symmetry, direction and the sewn preview.
+"""Plush seams on public models: patches, strain, symmetry, direction and the sewn preview.
 
-    bench_plush.py DATA/public [--picture FILE] [NAME...]
+    bench_plush.py DATA/public [--areas] [--picture FILE] [NAME...]
+
+With --areas: judged by areas alone (max_strain 0) and flattened with LPFB Even Areas.
 
 With a picture: each model, segmented by D-Charts into as many charts, and by Plush Toy Seams.
 
@@ -105,16 +107,16 @@ def processor_seconds() -> float:
     return usage.ru_utime + usage.ru_stime
 
 
-def measure(path: Path, name: str) -> Image.Image:
+def measure(path: Path, name: str, areas: bool) -> Image.Image:
     """Prints a row of the table; returns the model with D-Charts and with plush seams."""
     meshes = pymeshlab.MeshSet()
     meshes.load_new_mesh(str(path))
     start, used = time.perf_counter(), processor_seconds()
-    found = meshes.apply_filter(PLUSH)
+    found = meshes.apply_filter(PLUSH, **({"max_strain": 0.0} if areas else {}))
     seconds, used = time.perf_counter() - start, processor_seconds() - used
     mesh = meshes.current_mesh()
     points, faces, edges = mesh.vertex_matrix(), mesh.face_matrix(), seam_edges(mesh)
-    meshes.apply_filter(FLATTEN, method="LPFB")
+    meshes.apply_filter(FLATTEN, method="LPFB Even Areas" if areas else "LPFB")
     plush = mesh_data(mesh)
     measures = meshes.apply_filter("get_parametrization_measures")
     preview = meshes.apply_filter("generate_sewn_preview")
@@ -125,7 +127,8 @@ def measure(path: Path, name: str) -> Image.Image:
     meshes.apply_filter(FLATTEN)
     print(
         f"{name} {found['charts_number']} {found['darts_number']} "
-        f"{measures['max_area_change']:.3f} "
+        f"{measures['max_area_change']:.3f} {measures['strain_99']:.3f} "
+        f"{measures['largest_strain']:.2f} {measures['mean_strain']:.3f} "
         f"{found['mirrored_share']:.2f} {symmetric_share(points, edges):.2f} "
         f"{found['guided_share']:.2f} {guided_share(points, faces, edges):.2f} "
         f"{guided_share(points, faces, other_edges):.2f} "
@@ -153,17 +156,18 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("names", nargs="*", default=NAMES)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--areas", action="store_true")
     options = parser.parse_args()
     devseg.load_plugins()
     print(
-        "model patches darts area symmetric of-box guided by-normals d-charts preview "
-        "waviness d-charts acute d-charts seconds processor",
+        "model patches darts area strain-99 largest mean symmetric of-box guided by-normals "
+        "d-charts preview waviness d-charts acute d-charts seconds processor",
         flush=True,
     )
     pictures = []
     for name in options.names:
         path = next(p for p in sorted(options.folder.iterdir()) if p.name.startswith(name))
-        pictures.append(measure(path, name))
+        pictures.append(measure(path, name, options.areas))
     if options.picture is not None:
         in_columns(pictures, 2).quantize(128).save(options.picture, optimize=True)
 

@@ -14,7 +14,7 @@ import meshes
 from devseg.load import load_mesh
 
 FLATTEN = "compute_texcoord_parametrization_charts_per_wedge"
-METHODS = ["Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"]
+METHODS = ["Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB", "LPFB Even Areas"]
 
 # What the evaluator counts of them needs no allowance.
 VALID = ["zero_area_faces.ply", "needles_aspect_1e5.ply", "real_degtri.off", "single_triangle.obj"]

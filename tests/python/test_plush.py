@@ -36,21 +36,40 @@ def capsule(meshset: Callable) -> object:
     return meshset((np.array(vertices), np.array(faces)))
 
 
-def test_patches_keep_their_area_and_become_the_toy(meshset: Callable) -> None:
+def test_patches_keep_their_strain_and_become_the_toy(meshset: Callable) -> None:
     meshes = capsule(meshset)
     found = meshes.apply_filter(PLUSH)
+    assert found["strain_99"] <= 0.2
+    assert found["largest_strain"] <= 0.4
     assert found["all_developable"]
     assert 1 <= found["charts_number"] <= 8
     flat = meshes.apply_filter(FLATTEN, method="LPFB")
     assert flat["charts_number"] == found["charts_number"]
     assert flat["overlap_cuts_number"] == flat["mended_charts_number"] == 0
     measures = meshes.apply_filter("get_parametrization_measures")
-    assert measures["max_area_change"] <= 0.15
+    assert 0 < measures["strain_99"] <= 0.2
+    assert measures["strain_99"] <= measures["largest_strain"] <= 0.4
+    assert measures["mean_strain"] <= 0.06
+    assert max(abs(np.array(measures["seam_mismatch_percent"]))) < 0.2
     assert measures["flipped_faces_number"] == measures["overlapping_faces_number"] == 0
     assert measures["disk_charts_number"] == measures["charts_number"]
     preview = meshes.apply_filter("generate_sewn_preview")
     assert preview["mean_distance_share"] < 0.02
     assert meshes.mesh_number() == 2
+
+
+def test_without_strain_patches_keep_their_area(meshset: Callable) -> None:
+    meshes = capsule(meshset)
+    found = meshes.apply_filter(PLUSH, max_strain=0.0)
+    assert found["all_developable"]
+    assert found["strain_99"] == found["largest_strain"] == 0
+    meshes.apply_filter(FLATTEN, method="LPFB Even Areas")
+    even = meshes.apply_filter("get_parametrization_measures")
+    assert even["max_area_change"] <= 0.15
+    meshes.apply_filter(FLATTEN, method="LPFB")
+    least = meshes.apply_filter("get_parametrization_measures")
+    assert least["charts_number"] == even["charts_number"] == found["charts_number"]
+    assert least["strain_99"] <= even["strain_99"]
 
 
 def test_selected_faces_are_a_material(meshset: Callable) -> None:
@@ -83,4 +102,4 @@ def test_command_line_flattens_plush_with_lpfb(meshset: Callable, tmp_path: Path
     assert main(["run", str(file), "-o", str(out), "--method", "plush", "--formats", "ply"]) == 0
     result = json.loads((out / "toy.json").read_text())
     assert result["parameters"][FLATTEN]["method"] == 4  # LPFB
-    assert result["parametrization"]["max_area_change"] <= 0.15
+    assert result["parametrization"]["strain_99"] <= 0.2

@@ -29,7 +29,9 @@ constexpr const char* flatten_help =
     "a chart. Charts that are not disks are cut first. "
     "<b>Symmetric Dirichlet</b> keeps lengths as well as possible and never turns a face over; "
     "<b>ARAP</b> keeps lengths as well; <b>LSCM</b> and <b>ABF++</b> keep angles and change lengths "
-    "more; <b>LPFB</b> keeps the length of every boundary edge instead of the area, for sewing. "
+    "more; <b>LPFB</b> keeps the length of every boundary edge instead of the area, for sewing, and "
+    "strains the cloth inside as little as possible; <b>LPFB Even Areas</b> keeps the areas of faces "
+    "instead, whatever their shapes. "
     "Charts on which a method turns faces over are flattened with Symmetric Dirichlet, and counted. "
     "Charts that are exactly developable, such as those that 'Charts: Deform to Exact "
     "Developability' leaves, are unfolded without any stretch, whatever the method. "
@@ -149,12 +151,14 @@ FilterDeclaration flatten() {
     using O = FlattenOptions;
     return Declare<O>("Charts: Flatten", "compute_texcoord_parametrization_charts_per_wedge",
                       FilterCategory::texture, flatten_help)
-        .choice(&O::method, "method", "Method",
-                {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"},
-                "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
-                "change of angles, fast. ABF++: least change of angles, more even on curved "
-                "charts. ARAP: lengths, milder where they cannot be kept. LPFB: every boundary "
-                "edge keeps its length, so that both sides of a seam are equally long.")
+        .choice(
+            &O::method, "method", "Method",
+            {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB", "LPFB Even Areas"},
+            "Symmetric Dirichlet: least change of lengths, no face turned over. LSCM: least "
+            "change of angles, fast. ABF++: least change of angles, more even on curved "
+            "charts. ARAP: lengths, milder where they cannot be kept. LPFB: every boundary "
+            "edge keeps its length, so that both sides of a seam are equally long, with the least "
+            "strain inside. LPFB Even Areas: the same, with even areas inside.")
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in rows and in model units, which takes no time.")

@@ -81,6 +81,9 @@ FilterOutput run_parametrization(const FilterInput& input, const NoOptions&, Pro
         {"l2_shear", m.l2_shear},
         {"symmetric_dirichlet_energy", m.symmetric_dirichlet_energy},
         {"max_area_change", m.max_area_change},
+        {"strain_99", m.strain.most_of_it},
+        {"largest_strain", m.strain.worst},
+        {"mean_strain", m.strain.mean},
         {"flipped_faces_number", m.flipped_faces_number},
         {"overlapping_faces_number", m.overlapping_faces_number},
         {"seam_length", m.seam_length},
@@ -161,6 +164,11 @@ FilterDeclaration parametrization_measures() {
         .result("symmetric_dirichlet_energy", "mean of (s1² + s2² + 1/s1² + 1/s2²)/4 over the "
                                               "area, 1 for an isometry, no unit")
         .result("max_area_change", "largest |1 − flat area / area on the surface| of a face")
+        .result("strain_99",
+                "how much longer or shorter lines get at most on 99 % of the area, with "
+                "all charts at one scale, 0.05 = 5 %")
+        .result("largest_strain", "the same, of the worst face")
+        .result("mean_strain", "the same, the mean over the area")
         .result("flipped_faces_number", "faces turned over against their chart, or flat to a line")
         .result("overlapping_faces_number", "faces that lie on another face in the plane")
         .result("seam_length", "length of all cut edges, each counted once, model units")

@@ -9,7 +9,8 @@
 
 namespace devseg::flatten {
 
-enum class FlattenMethod { symmetric_dirichlet, lscm, abf, arap, lpfb };
+/// LPFB keeps the lengths of boundary edges: with the least strain inside, or with even areas.
+enum class FlattenMethod { symmetric_dirichlet, lscm, abf, arap, lpfb, lpfb_even_areas };
 
 /// One chart in the plane: positively oriented, no face flipped, with its own 3D area (LPFB: with
 /// the lengths of its boundary edges instead).

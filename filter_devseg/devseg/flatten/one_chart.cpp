@@ -76,6 +76,10 @@ private:
         case FlattenMethod::arap:
             return rigid();
         case FlattenMethod::lpfb:
+            if (auto map = problem_.holes.empty() ? least_strain() : std::nullopt)
+                return map;
+            return length_preserving();
+        case FlattenMethod::lpfb_even_areas:
             return length_preserving();
         }
         return std::nullopt;
@@ -170,8 +174,17 @@ private:
         return uv;
     }
 
-    // Keeps the lengths of boundary edges. Where no map for sewing is found, the angles are those
-    // of the nearest isometric map, whatever the areas.
+    std::optional<Map> least_strain() const {
+        auto uv = attempt([&] {
+            return least_strain_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_);
+        });
+        if (!uv)
+            return std::nullopt;
+        return Map{std::move(*uv)};
+    }
+
+    // Keeps the lengths of boundary edges and evens out areas. Where no map for sewing is found,
+    // the angles are those of the nearest isometric map, whatever the areas.
     std::optional<Map> length_preserving() const {
         if (!problem_.holes.empty())
             return length_preserving_around_holes();
@@ -286,7 +299,8 @@ std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatCh
     const bool has_holes = !problem.holes.empty();
     const ChartFlattening flattening(mesh, surface, problem, progress);
     auto map = flattening.map(method);
-    if (!map && has_holes && method == FlattenMethod::lpfb)
+    if (!map && has_holes &&
+        (method == FlattenMethod::lpfb || method == FlattenMethod::lpfb_even_areas))
         return open_holes(mesh, surface, progress);
     if (!map && method != FlattenMethod::symmetric_dirichlet) {
         chart.mended = true;

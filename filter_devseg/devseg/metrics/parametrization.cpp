@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/LU>
@@ -93,6 +94,29 @@ ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
     return areas;
 }
 
+// Of all faces with an area on both sides that are not flipped.
+class StrainSums {
+public:
+    StrainSums(const ChartAreas& areas)
+        : scale_(std::accumulate(areas.plane.begin(), areas.plane.end(), 0.0) /
+                 std::accumulate(areas.surface.begin(), areas.surface.end(), 0.0)) {}
+
+    void add(const Mesh& mesh, const CornerUv& uv, Face f) {
+        const auto [large, small] = singular_values(mesh, uv, f);
+        const double unit = std::sqrt(scale_);
+        strain_.push_back(std::max(large * unit - 1.0, 1.0 - small * unit));
+        area_.push_back(mesh.face_areas[f]);
+    }
+    flatten::Strain measure() const {
+        return strain_.empty() ? flatten::Strain() : flatten::measure_strain(strain_, area_);
+    }
+
+private:
+    double scale_ = 1.0; // areas in the plane over those on the surface
+    std::vector<double> strain_;
+    std::vector<double> area_;
+};
+
 // Sums over faces, for the whole layout and for one chart.
 struct Sums {
     double weight = 0.0;
@@ -146,6 +170,7 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         else if (atlas::is_sound(mesh, surface))
             ++result.holed_charts_number;
 
+    StrainSums strains(areas);
     Sums all;
     std::vector<Sums> own(at(charts.count));
     double covered = 0.0;
@@ -158,9 +183,13 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(plane::uv_area(uv, f));
         covered += flat;
-        if (has_area(mesh, f) && flat * scale > tuning.collapsed_face * mesh.face_areas[f])
+        if (has_area(mesh, f) && flat * scale > tuning.collapsed_face * mesh.face_areas[f]) {
             add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
+            if (!flipped)
+                strains.add(mesh, uv, f);
+        }
     }
+    result.strain = strains.measure();
     result.l2_stretch = all.l2_stretch();
     if (all.weight > 0.0) {
         result.symmetric_dirichlet_energy = all.energy / all.weight;

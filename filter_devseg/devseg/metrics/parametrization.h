@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "devseg/atlas/texture.h"
+#include "devseg/flatten/energy/strain.h"
 
 namespace devseg::metrics {
 
@@ -51,6 +52,9 @@ struct ParametrizationMeasures {
     double l2_shear = 0.0;         // root mean square change of the triangles' angles, radians
     double symmetric_dirichlet_energy = 0.0; // Σ A (Γ² + γ² + Γ⁻² + γ⁻²)/4 / Σ A
     double max_area_change = 0.0;            // max |1 − area in the plane / area on the surface|
+    // max(Γ − 1, 1 − γ), at the one scale at which the layout has the surface's area: what 99 % of
+    // the area keeps, the largest of a face, and the mean. Flipped faces have none.
+    flatten::Strain strain;
     Index flipped_faces_number = 0;     // oriented against most of their chart, or without area
     Index overlapping_faces_number = 0; // faces that lie on another face in the plane
     double seam_length = 0.0;           // of all cut edges, each counted once, model units

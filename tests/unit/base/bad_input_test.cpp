@@ -20,7 +20,8 @@ using checks::sound_charts;
 using checks::value;
 
 // In the order of the filter's parameter.
-constexpr const char* methods[] = {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB"};
+constexpr const char* methods[] = {"Symmetric Dirichlet", "LSCM", "ABF++", "ARAP", "LPFB",
+                                   "LPFB Even Areas"};
 
 declare::HostResult flatten(const mesh::RawMesh& raw, int method) {
     return run("Charts: Flatten", checks::host_of(raw), {{"method", method}});

@@ -163,7 +163,11 @@ void descend(const PartialProblem& region, const BalancedEnergy& energy, Positio
              const Progress& progress) {
     ProjectedNewton newton(
         region.problem, region.fixed,
-        [&](std::size_t f, double det) { return energy.curvature(region.problem, f, det); },
+        [&](std::size_t f, const Eigen::Matrix2d& j) -> Eigen::Matrix4d {
+            const Eigen::Vector4d cofactor(j(1, 1), -j(0, 1), -j(1, 0), j(0, 0)); // ∂ det / ∂ J
+            return projected_hessian(j) + energy.curvature(region.problem, f, j.determinant()) *
+                                              cofactor * cofactor.transpose();
+        },
         energy.boundary_stiffness);
     const auto value_at = [&](const Positions& y) { return energy.value(region.problem, y); };
     double value = value_at(x);

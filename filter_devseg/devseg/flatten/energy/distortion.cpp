@@ -137,16 +137,21 @@ double distortion(const FlatteningProblem& problem, const Positions& x) {
     return sum / (4.0 * problem.total_area);
 }
 
+Eigen::Vector4d density_gradient(const Eigen::Matrix2d& j) {
+    const double det = j.determinant();
+    Eigen::Matrix2d cofactor; // ∂ det / ∂ J
+    cofactor << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);
+    const Eigen::Matrix2d stress =
+        0.5 * ((1.0 + 1.0 / (det * det)) * j - (j.squaredNorm() / (det * det * det)) * cofactor);
+    return {stress(0, 0), stress(1, 0), stress(0, 1), stress(1, 1)};
+}
+
 Positions distortion_gradient(const FlatteningProblem& problem, const Positions& x) {
     Positions gradient = Positions::Zero(x.rows(), 2);
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian(problem, x, f);
-        const double det = j.determinant();
-        Eigen::Matrix2d cofactor; // ∂ det / ∂ J
-        cofactor << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);
-        const Eigen::Matrix2d stress =
-            (1.0 + 1.0 / (det * det)) * j - (j.squaredNorm() / (det * det * det)) * cofactor;
-        const Eigen::Matrix2d force = (problem.area[f] / (2.0 * problem.total_area)) * stress *
+        const Eigen::Vector4d stress = density_gradient(jacobian(problem, x, f));
+        const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
+                                      Eigen::Map<const Eigen::Matrix2d>(stress.data()) *
                                       problem.inverse[f].transpose();
         const Triangle& t = problem.faces[f];
         gradient.row(t[1]) += force.col(0).transpose();
@@ -225,17 +230,21 @@ bool line_search(const FlatteningProblem& problem,
 struct ProjectedNewton::State {
     const FlatteningProblem& problem;
     std::vector<std::uint8_t> fixed;
-    AreaCurvature area_curvature;
+    FaceHessian face_hessian;
     double boundary_stiffness = 0.0;
     HessianMatrix hessian;
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
 };
 
 ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
-                                 AreaCurvature area_curvature, double boundary_stiffness)
+                                 FaceHessian face_hessian, double boundary_stiffness)
     : state_(new State{
-          problem, std::move(fixed), std::move(area_curvature), boundary_stiffness, {}, {}}) {}
+          problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}}) {}
 ProjectedNewton::~ProjectedNewton() = default;
+
+void ProjectedNewton::set_boundary_stiffness(double stiffness) {
+    state_->boundary_stiffness = stiffness;
+}
 
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
     const FlatteningProblem& problem = state_->problem;
@@ -252,12 +261,8 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
         weight.row(2) = inverse.row(1);
         weight.row(0) = -inverse.row(0) - inverse.row(1);
         const Eigen::Matrix2d map = jacobian(problem, x, f);
-        Eigen::Matrix4d h = projected_hessian(map);
-        if (state_->area_curvature) {
-            const Eigen::Vector4d cofactor(map(1, 1), -map(0, 1), -map(1, 0),
-                                           map(0, 0)); // ∂ det / ∂ J
-            h += state_->area_curvature(f, map.determinant()) * cofactor * cofactor.transpose();
-        }
+        Eigen::Matrix4d h =
+            state_->face_hessian ? state_->face_hessian(f, map) : projected_hessian(map);
         h *= problem.area[f] / problem.total_area;
         const Triangle& t = problem.faces[f];
         for (int i = 0; i < 3; ++i)

@@ -51,19 +51,26 @@ bool line_search(const FlatteningProblem& problem,
                  const std::function<double(const Positions&)>& value, const Positions& d,
                  double slope, Positions& x, double& energy);
 
-/// Of a face, by its number and det J: the second derivative, at least 0, of a further term of its
-/// energy; as all of ψ it is weighted by the face's area.
-using AreaCurvature = std::function<double(std::size_t face, double det)>;
+/// Gradient of one face's density ψ with respect to J, column by column.
+Eigen::Vector4d density_gradient(const Eigen::Matrix2d& jacobian);
 
-/// Directions −H⁻¹ g for the symmetric Dirichlet energy, with H the sum of the faces' projected
-/// Hessians. Each direction costs a sparse factorization; the order of elimination is found once.
+/// Of a face, by its number and Jacobian: the Hessian of its density with respect to J (column by
+/// column), without negative eigenvalues; it is weighted by the face's area.
+using FaceHessian = std::function<Eigen::Matrix4d(std::size_t face, const Eigen::Matrix2d& j)>;
+
+/// Directions −H⁻¹ g for the symmetric Dirichlet energy, or another one, with H the sum of the
+/// faces' projected Hessians. Each direction costs a sparse factorization; the order of elimination
+/// is found once.
 class ProjectedNewton {
 public:
     /// Vertices that are marked in `fixed` (#v, may be empty) stay where they are.
     /// `boundary_stiffness` k adds k Σ (length − own length)² / Σ A over the boundary edges.
     ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
-                    AreaCurvature area_curvature = {}, double boundary_stiffness = 0.0);
+                    FaceHessian face_hessian = {}, double boundary_stiffness = 0.0);
     ~ProjectedNewton();
+
+    /// Another stiffness, above 0 where it was.
+    void set_boundary_stiffness(double stiffness);
 
     /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
     Positions direction(const Positions& x, const Positions& gradient);

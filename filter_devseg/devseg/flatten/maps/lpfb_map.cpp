@@ -5,6 +5,7 @@
 
 #include "devseg/flatten/energy/area_balance.h"
 #include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/energy/strain.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/maps/tutte.h"
@@ -142,6 +143,29 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
         return own;
     auto bent = attempt([&] { return bent_map(problem, surface, tolerance, options, progress); });
     return is_enough(bent) ? bent : smaller_change(std::move(own), std::move(bent));
+}
+
+std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& problem,
+                                                  const atlas::ChartSurface& surface,
+                                                  double tolerance, const SewingMapOptions& options,
+                                                  const Progress& progress) {
+    const std::vector<Vec2> isometric =
+        nearly_isometric_map(problem, options.give_up_energy, progress);
+    if (isometric.empty() ||
+        (options.give_up_overlap &&
+         overlapping_share(surface, isometric, tolerance) > *options.give_up_overlap))
+        return std::nullopt;
+    const std::vector<Vec2> bent =
+        least_strain_with_boundary(problem, isometric, options.give_up_excess, progress);
+    if (bent.empty())
+        return std::nullopt;
+    auto uv = restore_seam_lengths(problem, bent, progress);
+    if (!uv || count_flips(problem, *uv) > 0)
+        return std::nullopt;
+    *uv = least_strain(problem, *uv, progress);
+    if (!overlapping_pairs(surface, *uv, tolerance).empty())
+        return std::nullopt;
+    return uv;
 }
 
 } // namespace devseg::flatten

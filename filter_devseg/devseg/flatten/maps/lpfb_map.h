@@ -30,6 +30,8 @@ struct SewingMapOptions {
     // faces, above which the chart is given up. With a limit for overlaps it is also given up where
     // areas cannot be evened out without any.
     double give_up_energy = infinite;
+    // Of the map with the least strain: the mean of ψ − 1 above which the chart is given up.
+    double give_up_excess = infinite;
     std::optional<double> give_up_overlap;
 };
 
@@ -47,6 +49,15 @@ std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double 
 std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
                                   const atlas::ChartSurface& surface, double tolerance,
                                   const SewingMapOptions& options, const Progress& progress);
+
+/// The map for sewing with the least strain: from a nearly isometric map, the boundary bends while
+/// its edges stay nearly as long as they are on the surface; then they get exactly that length, and
+/// the inside follows. Nothing where faces flip, parts overlap by more than `tolerance`, or a limit
+/// of the options is exceeded.
+std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& problem,
+                                                  const atlas::ChartSurface& surface,
+                                                  double tolerance, const SewingMapOptions& options,
+                                                  const Progress& progress);
 
 /// An LPFB map without flips, with its inside moved as above; nothing where it has flips.
 std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,

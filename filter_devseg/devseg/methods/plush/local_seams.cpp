@@ -19,8 +19,11 @@ struct Split {
     Line cuts;
 };
 
-// How far the change of each face of a trial is from the usual one.
-std::vector<double> deviations(const PatchTrial& trial) {
+// How far each face of a trial is from what is good: its strain, or how far its change is from the
+// usual one.
+std::vector<double> deviations(const judge::ClothTrial& trial) {
+    if (!trial.strains.empty())
+        return trial.strains;
     std::vector<double> sorted = trial.change;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
@@ -55,7 +58,7 @@ public:
 
     // The half-edges around the faces that are nearer to the worst change than to the usual one and
     // hang together with the worst face.
-    Line isoline(const PatchTrial& trial) const {
+    Line isoline(const judge::ClothTrial& trial) const {
         if (trial.face.size() < 8)
             return {};
         const std::vector<double> deviation = deviations(trial);
@@ -89,7 +92,7 @@ public:
     }
 
     // From the worst spot to the nearest place on the border, and to the nearest on its far side.
-    Line path_through(const PatchTrial& trial, const SeamSetting& setting,
+    Line path_through(const judge::ClothTrial& trial, const SeamSetting& setting,
                       const Progress& progress) const {
         const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
         const std::vector<Index>& loop = surface.loops.front();
@@ -104,7 +107,7 @@ public:
         if (tip < 0)
             return {};
         const PathTree tree =
-            shortest_paths(setting.graph, setting.weight, {tip}, progress, may_enter, on_border);
+            shortest_paths(setting.graph, setting.cut_cost, {tip}, progress, may_enter, on_border);
         const auto usable = [&](Vertex v) {
             return is_inside(tree.half_edge[v], trial) && std::isfinite(tree.distance[v]);
         };
@@ -179,7 +182,7 @@ private:
             }
     }
 
-    bool is_inside(HalfEdge h, const PatchTrial& trial) const {
+    bool is_inside(HalfEdge h, const judge::ClothTrial& trial) const {
         const auto has = [&](HalfEdge side) {
             return side >= 0 &&
                    std::binary_search(trial.face.begin(), trial.face.end(), face_of(side));
@@ -187,7 +190,7 @@ private:
         return h >= 0 && (has(h) || has(mesh_.twin[h]));
     }
 
-    Vertex worst_inner_vertex(const PatchTrial& trial,
+    Vertex worst_inner_vertex(const judge::ClothTrial& trial,
                               const std::vector<std::uint8_t>& on_border) const {
         const std::vector<double> deviation = deviations(trial);
         std::vector<std::pair<double, std::size_t>> order;
@@ -239,8 +242,8 @@ bool add_local_seams(const SeamSetting& setting, std::vector<std::uint8_t> open,
         const auto split = [&](int i) {
             Split& result = splits[static_cast<std::size_t>(i)];
             const std::vector<Index>& patch = faces[static_cast<std::size_t>(i)];
-            const PatchTrial trial =
-                try_patch(mesh, patch, seam, setting.tester.limits(), true, splitting);
+            const judge::ClothTrial trial =
+                judge::try_cloth(mesh, patch, seam, setting.tester.limits(), true, splitting);
             result.is_needed = !trial.accepted;
             const Splitter splitter(mesh, seam, patch);
             if (!trial.is_sound) {
@@ -248,7 +251,7 @@ bool add_local_seams(const SeamSetting& setting, std::vector<std::uint8_t> open,
                 return;
             }
             const bool has_map = !trial.face.empty() && round < tuning.patient_rounds;
-            if (result.is_needed && has_map)
+            if (result.is_needed && has_map && !setting.tester.limits().by_strain())
                 result.cuts = splitter.isoline(trial);
             if (result.is_needed && has_map && result.cuts.empty())
                 result.cuts = splitter.path_through(trial, setting, splitting);

@@ -4,54 +4,16 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
-#include "devseg/flatten/energy/area_balance.h"
-#include "devseg/flatten/energy/map_tools.h"
-#include "devseg/flatten/maps/lpfb_map.h"
-#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/mesh/surface_search.h"
 #include "devseg/methods/plush/tuning.h"
-#include "devseg/plane/overlap.h"
 
 namespace devseg::plush {
 
 namespace {
 
-// Of a nearly isometric map; where the patch has a map, it does not lie on itself once its areas
-// are even.
-std::vector<std::pair<Index, Index>> overlaps(const Mesh& mesh, const atlas::ChartSurface& surface,
-                                              bool has_map, const Progress& progress) {
-    const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
-    const std::vector<Vec2> uv = flatten::nearly_isometric_map(problem, infinite, progress);
-    if (uv.empty())
-        return {};
-    const double tolerance = plane::layout_tolerance(std::sqrt(mesh.total_area));
-    auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
-    if (pairs.empty() && !has_map)
-        pairs = flatten::overlapping_pairs(
-            surface, flatten::balance_with_boundary(problem, uv, progress), tolerance);
-    return pairs;
-}
-
-// A cut in two between the sheets of a patch that lies on itself.
-std::vector<Index> cut_between_sheets(const Mesh& mesh, const std::vector<Index>& patch,
-                                      const SeamMarks& seam, bool has_map,
-                                      const Progress& progress) {
-    const atlas::ChartSurface surface = atlas::extract_surface(mesh, patch, seam);
-    std::vector<Index> cut;
-    try {
-        const auto pairs = overlaps(mesh, surface, has_map, progress);
-        if (!pairs.empty())
-            for (const HalfEdge h : flatten::separating_path(mesh, surface, pairs, progress))
-                cut.push_back(surface.mesh_half_edge(h));
-    } catch (const NumericalFailure&) { // needles: nothing to learn from
-    }
-    return cut;
-}
-
 // The inner vertex where the map shrinks most; −1 where nothing lies inside.
-Vertex shrunk_vertex(const Mesh& mesh, const PatchTrial& map,
+Vertex shrunk_vertex(const Mesh& mesh, const judge::ClothTrial& map,
                      const std::vector<std::uint8_t>& on_border) {
     std::vector<double> area(mesh.points.size(), 0.0);
     std::vector<double> flat_area(mesh.points.size(), 0.0);
@@ -80,7 +42,7 @@ std::vector<Index> find_dart(const Mesh& mesh, const VertexGraph& graph,
             if (is_border(mesh, seam, h))
                 on_border[mesh.origin(h)] = on_border[mesh.target(h)] = 1;
         }
-    const Vertex tip = shrunk_vertex(mesh, conformal_change(mesh, patch, seam), on_border);
+    const Vertex tip = shrunk_vertex(mesh, judge::conformal_change(mesh, patch, seam), on_border);
     if (tip < 0)
         return {};
     const PathTree tree = shortest_paths(graph, cost, {tip}, progress, inside, on_border);
@@ -160,20 +122,22 @@ std::vector<std::vector<Index>> common_borders(const Mesh& mesh, const SeamMarks
 std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph& graph,
                                              const std::vector<double>& cost,
                                              const std::vector<Index>& faces, const SeamMarks& seam,
-                                             const PatchLimits& limits, const Progress& progress) {
+                                             const judge::ClothLimits& limits,
+                                             const Progress& progress) {
     SeamMarks marks = seam;
     std::vector<Index> cuts;
     std::vector<std::vector<Index>> open{faces};
     for (int count = 0; !open.empty(); ++count) {
         const std::vector<Index> patch = open.back();
         open.pop_back();
-        const PatchTrial trial = try_patch(mesh, patch, marks, limits, false, progress);
+        const judge::ClothTrial trial =
+            judge::try_cloth(mesh, patch, marks, limits, false, progress);
         if (trial.accepted)
             continue;
         if (!trial.is_sound || count >= tuning.most_cuts)
             return std::nullopt;
         std::vector<Index> cut =
-            cut_between_sheets(mesh, patch, marks, trial.area_change > 0.0, progress);
+            judge::cut_between_sheets(mesh, patch, marks, trial.has_map, progress);
         if (cut.empty())
             cut = find_dart(mesh, graph, cost, patch, marks, progress);
         if (cut.empty())
@@ -195,7 +159,7 @@ bool OpenPart::is_inside(const Mesh& mesh, HalfEdge h) const {
 }
 
 OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
-                      SeamMarks seam, const PatchLimits& limits, Progress& progress) {
+                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress) {
     const std::vector<std::vector<Index>> faces = patches_of(mesh, seam);
     std::vector<std::optional<std::vector<Index>>> cuts(faces.size());
     parallel_for(

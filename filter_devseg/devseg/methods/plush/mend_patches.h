@@ -18,7 +18,8 @@ namespace devseg::plush {
 std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph& graph,
                                              const std::vector<double>& cost,
                                              const std::vector<Index>& faces, const SeamMarks& seam,
-                                             const PatchLimits& limits, const Progress& progress);
+                                             const judge::ClothLimits& limits,
+                                             const Progress& progress);
 
 /// A part of a surface where seams are still to be decided.
 struct OpenPart {
@@ -34,7 +35,7 @@ struct OpenPart {
 /// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the
 /// others theirs. `cost`: of paths, 3 #F.
 OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
-                      SeamMarks seam, const PatchLimits& limits, Progress& progress);
+                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress);
 
 /// Seams that are not inside the open part.
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);

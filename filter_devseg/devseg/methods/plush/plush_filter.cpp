@@ -18,8 +18,8 @@ constexpr const char* plush_help =
     "between the tips and saddles of the surface, loops around limbs along concave lines, and cuts "
     "through patches that do not lie flat; left and right are the same where the model is "
     "symmetric. Then seams are taken away, the least natural first, as long as every patch, "
-    "flattened with <b>LPFB</b>, changes the area of no face by more than a bound and does not lie "
-    "on itself. What stays of a seam inside a patch is a dart. Turned and scaled models get "
+    "flattened with <b>LPFB</b>, strains the cloth by no more than a bound and does not lie on "
+    "itself. What stays of a seam inside a patch is a dart. Turned and scaled models get "
     "the same seams. Some hundred thousand faces take minutes: simplify larger meshes first.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the change of area as "
@@ -68,6 +68,14 @@ std::vector<std::uint8_t> find_hard_seams(const FilterInput& input, MaterialBord
     return hard;
 }
 
+std::string note_on_failed(const std::vector<Index>& charts, bool by_strain) {
+    std::string names;
+    for (const Index c : charts)
+        names += (names.empty() ? "" : ", ") + std::to_string(c);
+    return "patches above " + std::string(by_strain ? "max_strain" : "max_area_change") +
+           " (chart_id): " + names + "; a larger bound or a cleaner mesh helps";
+}
+
 FilterOutput run_plush(const FilterInput& input, const Options& options, Progress& progress) {
     const Mesh& mesh = input.mesh;
     const std::vector<std::uint8_t> hard = find_hard_seams(input, options.material_borders);
@@ -84,6 +92,8 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
                            {"candidate_seams_number", seams.candidates},
                            {"trials_number", seams.trials},
                            {"largest_area_change", seams.max_area_change},
+                           {"largest_strain", seams.strain.worst},
+                           {"strain_99", seams.strain.most_of_it},
                            {"all_developable", seams.all_developable},
                            {"is_symmetric", seams.is_symmetric},
                            {"mirrored_share", seams.shares.mirrored},
@@ -92,8 +102,7 @@ FilterOutput run_plush(const FilterInput& input, const Options& options, Progres
     FilterOutput output = chart_output(mesh, std::move(seams.charts), std::move(seams.area_change),
                                        std::move(values));
     if (!seams.all_developable)
-        output.notes.push_back("some patches change their area by more than max_area_change; a "
-                               "larger bound or a cleaner mesh helps");
+        output.notes.push_back(note_on_failed(seams.failed, options.max_strain > 0.0));
     return output;
 }
 
@@ -103,7 +112,13 @@ FilterDeclaration plush() {
                       FilterCategory::remeshing, plush_help)
         .real(&O::max_area_change, "Largest change of area",
               "How much the area of a face may change when its patch is flattened, as a share: "
-              "0.15 = 15 %. Cotton takes 0.05 to 0.1, plush and fleece 0.15 to 0.2.")
+              "0.15 = 15 %. Counts where max_strain is 0: flatten with LPFB Even Areas then.")
+        .real(
+            &O::max_strain, "Largest strain",
+            "How much longer or shorter lines in the cloth may get when a patch is flattened, as a "
+            "share: 0.2 = 20 % on 99 % of each patch's area, and at most twice that anywhere. "
+            "Woven cotton takes 0.05, fleece and minky 0.1 to 0.2. 0: patches are judged by "
+            "max_area_change alone.")
         .real(&O::geodesic_weight, "Weight of short seams",
               "Exponent of the length of an edge in its weight, without unit. Larger values make "
               "straighter seams.")
@@ -145,7 +160,10 @@ FilterDeclaration plush() {
         .result("candidate_seams_number", "seams that there were before any was removed")
         .result("trials_number", "removals that were tried")
         .result("largest_area_change", "of a face in the accepted maps, as a share, no unit")
-        .result("all_developable", "whether all patches keep max_area_change")
+        .result("largest_strain", "of a face in the accepted maps, as a share, no unit; 0 where "
+                                  "patches are judged by areas")
+        .result("strain_99", "what 99 % of the area keeps, in the worst patch; 0 as above")
+        .result("all_developable", "whether all patches keep max_strain, or max_area_change")
         .result("is_symmetric", "whether the model was found to be symmetric")
         .result("mirrored_share", "of the seam length, that has its mirror image within 2 % of the "
                                   "model's diagonal; 0 without a mirror plane")

@@ -34,16 +34,18 @@ struct Evidence {
 
 // Material borders are edges of the model: then seams are decided on the model itself. So they are
 // on small models without a mirror image: what is saved would be less than what transfer costs.
+// Trials by strain take longer.
 WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<MirrorPlane>& plane,
-                                    const SeamMarks& hard, Progress& progress) {
+                                    const SeamMarks& hard, bool by_strain, Progress& progress) {
     if (!hard.empty())
         return {mesh, {}};
     if (plane)
         if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
             return std::move(*surface);
-    if (mesh.face_count() <= tuning.large_model / 4)
+    const Index most = tuning.mirrored_faces * 3 / 2;
+    if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
-    return plain_working_surface(mesh, tuning.mirrored_faces * 3 / 2, progress);
+    return plain_working_surface(mesh, most, progress);
 }
 
 Evidence find_evidence(const WorkingSurface& surface, const PlushOptions& options,
@@ -90,12 +92,32 @@ SeamGuides guides_of(const Evidence& evidence) {
     return guides;
 }
 
-// Of half-edges as parts of darts: their lengths, less where seams look natural.
-std::vector<double> dart_cost(const Evidence& evidence) {
-    std::vector<double> cost = edge_lengths(evidence.surface.mesh);
-    for (std::size_t h = 0; h < cost.size(); ++h)
-        cost[h] *= natural_factor(tuning.natural_dart, evidence.weights.stray[h]);
-    return cost;
+// Of half-edges as parts of paths that cut patches, and of paths in place of seams.
+struct PathCosts {
+    std::vector<double> cut;
+    std::vector<double> straight;
+};
+
+PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
+    if (options.max_strain > 0.0) {
+        const std::vector<double> cost =
+            natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
+        return {cost, cost};
+    }
+    const std::vector<double>& weight = evidence.weights.weight;
+    std::vector<double> straight = edge_lengths(evidence.surface.mesh);
+    for (std::size_t h = 0; h < straight.size(); ++h)
+        straight[h] *= natural_factor(tuning.natural_straight, weight[h]);
+    return {weight, straight};
+}
+
+// Of half-edges as parts of paths along seams of another surface: factors of their lengths.
+std::vector<double> transfer_factors(const Evidence& evidence, const PlushOptions& options) {
+    std::vector<double> factors;
+    for (const double stray : evidence.weights.stray)
+        factors.push_back(natural_factor(
+            options.max_strain > 0.0 ? tuning.strained_transfer : tuning.natural_transfer, stray));
+    return factors;
 }
 
 // Extrema in the open part; those on the mirror image are left to it.
@@ -171,16 +193,22 @@ SeamMarks run(const std::vector<Pass>& passes, SeamMarks seam, PlushSeams& resul
     return seam;
 }
 
+// A share of what the model must keep.
+judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_search) {
+    return {share * options.max_area_change, share * options.max_strain, is_search};
+}
+
 // Seams of the open part. `hard` has all seams that are not inside of it; or is empty.
-SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard,
-                 double max_area_change, const PlushOptions& options, PlushSeams& result,
-                 Progress& progress) {
+SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
+                 const PlushOptions& options, PlushSeams& result, Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, {max_area_change, true});
-    PatchTester strict(surface, {tuning.nearly_flat * max_area_change, true});
-    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester,
-                              strict,  options.max_iterations};
+    PatchTester tester(surface, limits_of(options, share, true));
+    PatchTester strict(surface, limits_of(options, tuning.nearly_flat * share, true));
+    const PathCosts costs = path_costs(evidence, options);
+    const SeamSetting setting{surface,   evidence.graph, hard,
+                              weight,    tester,         strict,
+                              costs.cut, costs.straight, options.max_iterations};
     RemovalOptions any_patch;
     any_patch.random_seed = options.random_seed;
     RemovalOptions small_patches = any_patch;
@@ -222,12 +250,14 @@ SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamM
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, {options.max_area_change, false});
-    PatchTester search(surface, {options.max_area_change, true});
-    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester,
-                              tester,  options.max_iterations};
-    const SeamSetting searching{surface, evidence.graph,        hard, weight, search,
-                                search,  options.max_iterations};
+    PatchTester tester(surface, limits_of(options, 1.0, false));
+    PatchTester search(surface, limits_of(options, 1.0, true));
+    const std::vector<double> cost =
+        natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
+    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
+                              cost,    options.max_iterations};
+    const SeamSetting searching{surface, evidence.graph,        hard, weight, search, search, cost,
+                                cost,    options.max_iterations};
     RemovalOptions remnants;
     remnants.random_seed = options.random_seed;
     remnants.most_area = tuning.small_patch / 5.0;
@@ -241,8 +271,7 @@ SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamM
          [&](auto& seams, auto& part) { return join_patches(setting, remnants, seams, part); }},
         {"absorbing remnants", 0.25,
          [&](auto& seams, auto& part) {
-             return absorb_remnants(setting, dart_cost(evidence), tuning.small_patch / 10.0, seams,
-                                    part);
+             return absorb_remnants(setting, cost, tuning.small_patch / 10.0, seams, part);
          }},
         {"blunting corners", 0.2,
          [&](auto& seams, auto& part) { return blunt_acute_corners(setting, seams, part); }}};
@@ -259,32 +288,39 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const WorkingSurface& surface = working.surface;
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
-    double bound = (is_model ? tuning.own_margin : tuning.far_margin) * options.max_area_change;
+    const bool by_strain = options.max_strain > 0.0;
+    double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
+                   : is_model ? tuning.own_margin
+                              : tuning.far_margin;
     auto deciding = progress.part(0.5);
-    SeamMarks seam = decide(working, {}, {}, bound, options, result, deciding);
+    SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
     // Where the model has two halves, they stay alike only as long as seams are decided on both.
-    const int most_rounds = tuning.second_thoughts + (surface.is_symmetric() ? 1 : 0);
+    // By strain, darts and cuts on the model do better.
+    const int most_rounds =
+        by_strain ? 0 : tuning.second_thoughts + (surface.is_symmetric() ? 1 : 0);
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part = mend_patches(model.mesh, on_model.graph, dart_cost(on_model),
-                            transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                           on_model.weights.stray, transferring),
-                            {options.max_area_change, false}, transferring);
+        part =
+            mend_patches(model.mesh, on_model.graph,
+                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
+                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                        transfer_factors(on_model, options), transferring),
+                         limits_of(options, 1.0, false), transferring);
         if (!part.has_open_faces() || round == most_rounds)
             break;
         const OpenPart again = same_part(surface, seam, model.mesh, part);
         if (!again.has_open_faces())
             break;
-        bound *= tuning.tighter;
+        share *= tuning.tighter;
         auto deciding_again = progress.part(0.4 * progress.left());
-        seam = decide(working, again, fixed_seams(surface.mesh, again), bound, options, result,
+        seam = decide(working, again, fixed_seams(surface.mesh, again), share, options, result,
                       deciding_again);
     }
     if (part.has_open_faces()) {
         auto deciding_on_model = progress.part(0.6 * progress.left());
-        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), options.max_area_change,
-                           options, result, deciding_on_model);
+        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
+                           deciding_on_model);
     }
     auto cleaning = progress.part(progress.left());
     return without_remnants(on_model, std::move(part.seam), {}, options, result, cleaning);
@@ -301,13 +337,14 @@ SeamMarks decide_for_any(Evidence& working, const Mesh& mesh, const PlushOptions
     const WorkingSurface smaller = plain_working_surface(mesh, tuning.large_model / 2, coarsening);
     PlushOptions stricter = options;
     stricter.max_area_change *= tuning.own_margin;
+    stricter.max_strain *= tuning.own_margin;
     auto deciding = progress.part(0.7);
     const SeamMarks seam = decide_for_model(working, smaller, stricter, result, deciding);
     auto weighing = progress.part("finding the skeleton", 0.1);
     const Evidence on_model = find_evidence(model, options, working.skeleton, result, weighing);
     auto transferring = progress.part("transferring seams", 0.1);
-    return transfer_seams(smaller.mesh, seam, mesh, on_model.graph, on_model.weights.stray,
-                          transferring);
+    return transfer_seams(smaller.mesh, seam, mesh, on_model.graph,
+                          transfer_factors(on_model, options), transferring);
 }
 
 // The seams with which the mesh is flattened. A map that was accepted can fail on a mesh that is
@@ -316,33 +353,38 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
                         PlushSeams& result, Progress& progress) {
     const WorkingSurface surface{mesh, {}};
     const VertexGraph graph = build_vertex_graph(mesh);
-    PatchTester tester(surface, {options.max_area_change, false});
+    PatchTester tester(surface, limits_of(options, 1.0, false));
     const std::vector<double> weight =
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress)
             .weight;
     OpenPart part = mend_patches(mesh, graph, weight, std::move(seam), tester.limits(), progress);
-    result.all_developable = add_local_seams({surface, graph, {}, weight, tester, tester},
-                                             std::move(part.faces), part.seam, progress);
+    result.all_developable =
+        add_local_seams({surface, graph, {}, weight, tester, tester, weight, weight},
+                        std::move(part.faces), part.seam, progress);
     return part.seam;
 }
 
 // The charts, and the change of area in the maps that are accepted.
-void measure_patches(const Mesh& mesh, const SeamMarks& seam, double max_area_change,
+void measure_patches(const Mesh& mesh, const SeamMarks& seam, const PlushOptions& options,
                      PlushSeams& result, Progress& progress) {
     result.charts = atlas::make_chart_map(mesh, find_patches(mesh, seam).label, seam, false);
     const std::vector<std::vector<Index>> patches = patches_of(mesh, seam);
-    std::vector<PatchTrial> trials(patches.size());
+    std::vector<judge::ClothTrial> trials(patches.size());
     parallel_for(
         result.charts.count,
         [&](int c) {
-            trials[c] = try_patch(mesh, patches[c], seam, {max_area_change, false}, true, progress);
+            trials[c] = judge::try_cloth(mesh, patches[c], seam, limits_of(options, 1.0, false),
+                                         true, progress);
         },
         progress);
     result.area_change.assign(mesh.faces.size(), 0.0);
-    for (const PatchTrial& trial : trials) {
+    for (Index c = 0; c < result.charts.count; ++c) {
+        const judge::ClothTrial& trial = trials[at(c)];
+        if (!trial.accepted)
+            result.failed.push_back(c);
         result.max_area_change = std::max(result.max_area_change, trial.area_change);
-        result.all_developable = result.all_developable && trial.accepted;
+        result.strain.take_worse(trial.strain);
         for (std::size_t i = 0; i < trial.change.size(); ++i)
             result.area_change[trial.face[i]] = std::abs(trial.change[i]);
     }
@@ -360,7 +402,8 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     std::optional<MirrorPlane> plane;
     if (options.symmetric)
         plane = find_mirror_plane(framed, tuning.symmetric_within, finding);
-    const WorkingSurface surface = make_working_surface(framed, plane, hard, finding);
+    const WorkingSurface surface =
+        make_working_surface(framed, plane, hard, options.max_strain > 0.0, finding);
     result.is_symmetric = surface.is_symmetric();
     auto weighing = progress.part("finding the skeleton", 0.04);
     Evidence working = find_evidence(surface, options, std::move(skeleton), result, weighing);
@@ -368,7 +411,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     SeamMarks seam;
     if (!hard.empty()) {
         auto first = deciding.part(0.8);
-        seam = decide(working, {}, hard, options.max_area_change, options, result, first);
+        seam = decide(working, {}, hard, 1.0, options, result, first);
         auto cleaning = deciding.part(0.2);
         seam = without_remnants(working, std::move(seam), hard, options, result, cleaning);
     } else {
@@ -377,7 +420,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     auto settling = progress.part("measuring patches", 0.5 * progress.left());
     seam = settled_seams(mesh, std::move(seam), options, result, settling);
     auto measuring = progress.part("measuring patches", progress.left());
-    measure_patches(mesh, seam, options.max_area_change, result, measuring);
+    measure_patches(mesh, seam, options, result, measuring);
     result.shares = seam_shares(framed, seam, guides_of(working), plane, progress);
     return result;
 }
@@ -387,6 +430,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
 OptionRanges<PlushOptions> PlushOptions::ranges() {
     using O = PlushOptions;
     return with_rounds<O>({{&O::max_area_change, {"max_area_change", 0.01, 1.0}},
+                           {&O::max_strain, {"max_strain", 0.0, 1.0}},
                            {&O::geodesic_weight, {"geodesic_weight", 0.0, 10.0}},
                            {&O::skeleton_weight, {"skeleton_weight", 0.0, 10.0}},
                            {&O::curvature_weight, {"curvature_weight", 0.0, 10.0}},

@@ -11,13 +11,15 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/strain.h"
 #include "devseg/methods/plush/seam_guides.h"
 #include "devseg/methods/plush/skeleton.h"
 
 namespace devseg::plush {
 
 struct PlushOptions {
-    double max_area_change = 0.15; // largest change of a face's area, 0.15 = 15 %
+    double max_area_change = 0.15; // largest change of a face's area, where max_strain is 0
+    double max_strain = 0.2; // of 99 % of a patch's area, twice that anywhere; 0: by areas alone
     double geodesic_weight = 0.3;  // α
     double skeleton_weight = 0.3;  // β
     double curvature_weight = 0.8; // γ
@@ -33,6 +35,8 @@ struct PlushSeams {
     atlas::ChartMap charts;
     std::vector<double> area_change; // #F: of the accepted maps, |area in the plane / own area − 1|
     double max_area_change = 0.0;
+    flatten::Strain strain;    // of the patches' maps, each value that of the worst patch
+    std::vector<Index> failed; // charts that do not keep their bound
     bool is_symmetric = false;
     SeamShares shares;
     Index extrema = 0;

@@ -206,6 +206,14 @@ SeamWeights seam_weights(const Mesh& mesh, const SeamWeightOptions& options,
     return result;
 }
 
+std::vector<double> natural_lengths(const Mesh& mesh, const std::vector<double>& stray,
+                                    double share) {
+    std::vector<double> lengths = edge_lengths(mesh);
+    for (std::size_t h = 0; h < lengths.size(); ++h)
+        lengths[h] *= natural_factor(share, stray[h]);
+    return lengths;
+}
+
 SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
                        const std::optional<MirrorPlane>& plane, const Progress& progress) {
     const double diagonal = mesh_diagonal(mesh);

@@ -48,6 +48,10 @@ inline double natural_factor(double share, double stray) {
     return 1.0 - share + share * stray;
 }
 
+/// Lengths of half-edges (3 #F), times that factor for each.
+std::vector<double> natural_lengths(const Mesh& mesh, const std::vector<double>& stray,
+                                    double share);
+
 /// What seams follow: bones, or none, and the borders of limbs.
 struct SeamGuides {
     struct Line {

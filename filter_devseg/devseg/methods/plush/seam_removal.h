@@ -1,7 +1,7 @@
 // Taking seams away that are not needed, by trial flattenings.
 #pragma once
 
-#include "devseg/methods/plush/patch_trial.h"
+#include "devseg/methods/plush/patch_tester.h"
 #include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
@@ -13,8 +13,10 @@ struct SeamSetting {
     const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
     const std::vector<double>& weight; // 3 #F
     PatchTester& tester;
-    PatchTester& strict_tester; // for large patches
-    int max_rounds = 10000;     // of trials side by side
+    PatchTester& strict_tester;               // for large patches
+    const std::vector<double>& cut_cost;      // 3 #F: of paths that cut patches
+    const std::vector<double>& straight_cost; // 3 #F: of paths in place of seams
+    int max_rounds = 10000;                   // of trials side by side
 
     const Mesh& mesh() const { return surface.mesh; }
 };

@@ -24,7 +24,7 @@ public:
         : s_(setting), mesh_(setting.mesh()), seam_(seam), progress_(progress), cost_(seam.size()),
           side_(mesh_.points.size(), 0), on_plane_(mesh_.points.size(), 0) {
         for (const HalfEdge h : mesh_.all_half_edges()) {
-            cost_[h] = mesh_.edge_length(h) * natural_factor(tuning.natural_straight, s_.weight[h]);
+            cost_[h] = s_.straight_cost[h];
             side_[mesh_.origin(h)] = s_.surface.is_symmetric() && s_.surface.image[h] < h;
             on_plane_[mesh_.origin(h)] = s_.surface.starts_on_plane(h) ? 1 : 0;
         }

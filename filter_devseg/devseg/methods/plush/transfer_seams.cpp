@@ -36,8 +36,8 @@ double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
 class SeamTransfer {
 public:
     SeamTransfer(const Mesh& from, const Mesh& to, const VertexGraph& graph,
-                 const std::vector<double>& stray)
-        : from_(from), to_(to), graph_(graph), stray_(stray), search_(to),
+                 const std::vector<double>& factor)
+        : from_(from), to_(to), graph_(graph), factor_(factor), search_(to),
           normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
           may_border_(mesh::boundary_vertices(to)),
           reach_(tuning.strip_width * mean_edge_length(from)),
@@ -122,8 +122,7 @@ private:
 
     double cost_of(HalfEdge h, double away) const {
         const double d = away / leaning_;
-        return to_.edge_length(h) * (1.0 + d * d) *
-               natural_factor(tuning.natural_transfer, stray_[h]);
+        return to_.edge_length(h) * (1.0 + d * d) * factor_[h];
     }
 
     // Sets the cost of the edges near the line; returns the vertices there.
@@ -167,7 +166,7 @@ private:
     const Mesh& from_;
     const Mesh& to_;
     const VertexGraph& graph_;
-    const std::vector<double>& stray_; // 3 #F of to
+    const std::vector<double>& factor_; // 3 #F of to
     const mesh::SurfaceSearch search_;
     std::vector<Vec3> points_;                   // #V of from: on smooth seams
     const std::vector<Vec3> normal_;             // #V of from
@@ -241,9 +240,9 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
 }
 
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
-                         const VertexGraph& graph, const std::vector<double>& stray,
+                         const VertexGraph& graph, const std::vector<double>& factor,
                          Progress& progress) {
-    SeamMarks transferred = SeamTransfer(from, to, graph, stray).run(seam, progress);
+    SeamMarks transferred = SeamTransfer(from, to, graph, factor).run(seam, progress);
     cut_corners(to, transferred);
     return transferred;
 }

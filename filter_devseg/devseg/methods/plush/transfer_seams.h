@@ -14,10 +14,10 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam);
 
 /// The seams of `from` (3 #F of it) as paths on `to`: the ends of their segments go to the nearest
 /// vertices, and a path follows each segment closely; it leans to edges where seams look natural
-/// (`stray`, 3 #F of `to`, 0 … 1: where they do not). Seams that go around a face along two of its
-/// edges take the third one. Returns 3 #F of `to`.
+/// (`factor`, 3 #F of `to`: of a path's length, less where they do). Seams that go around a face
+/// along two of its edges take the third one. Returns 3 #F of `to`.
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
-                         const VertexGraph& graph, const std::vector<double>& stray,
+                         const VertexGraph& graph, const std::vector<double>& factor,
                          Progress& progress);
 
 } // namespace devseg::plush

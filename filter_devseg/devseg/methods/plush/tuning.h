@@ -69,22 +69,15 @@ struct Tuning {
     double least_path_weight = 1e-4; // so that paths stay short where a term vanishes
     double natural_seam = 0.95;      // of a seam's weight
     double natural_dart = 0.8;       // of a dart's length
-    double natural_transfer = 0.4;   // of a path along another surface's seam
-    double natural_straight = 0.5;   // while seams are straightened
-    double shared_seam = 0.25;       // factor of edges that are seams already
+    // Of a path along another surface's seam, where patches are judged by areas, and by strain.
+    double natural_transfer = 0.4;
+    double strained_transfer = 0.6;
+    double natural_cut = 0.9;      // of a path's length, where patches are judged by strain
+    double natural_straight = 0.5; // while seams are straightened
+    double shared_seam = 0.25;     // factor of edges that are seams already
 
     double flat_region = 0.01;  // of the surface: nobody sews across a flat face as large as that
     double through_flat = 10.0; // factor of its edges
-
-    // Trials.
-    double used_bound = 0.98; // share of the bound: maps are rounded to 32 bits later
-    double most_shear = 0.04; // L2 stretch above 1 that even areas may cost: 20 % in the mean; half
-                              // of it in a search
-    // As-rigid-as-possible energy of patches that are not worth a closer look: lines change their
-    // length by 8 % in the mean.
-    double hopeless_energy = 0.012;
-    double hopeless_overlap = 0.03; // pairs of faces over faces, in such a map
-    double usual_change = 0.1;      // for smaller bounds in proportion to their square
 
     // Local seams.
     double fragment = 4e-4;    // smaller parts go to a neighbour
@@ -116,9 +109,11 @@ struct Tuning {
     double least_leaning = 0.1; // of that, where the second surface is no finer than the first
     std::size_t path_edges = 6; // of a segment: longer paths could take a short cut
     // Of the bound: what is used of it on another surface than the model, on the model before seams
-    // are smoothed, and in each round of deciding again.
+    // are smoothed, by areas and by strain, and in each round of deciding again.
     double far_margin = 0.75;
+    double far_strain = 0.65;
     double own_margin = 0.95;
+    double own_strain = 0.9;
     double tighter = 0.88;
     int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
     int most_cuts = 4;          // that mend a patch

@@ -11,7 +11,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/methods/plush/limbs.h"
-#include "devseg/methods/plush/patch_trial.h"
+#include "devseg/methods/plush/patch_tester.h"
 #include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/surface_fields.h"
 #include "devseg/methods/plush/transfer_seams.h"
@@ -38,12 +38,12 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
     const VertexGraph graph = build_vertex_graph(mesh);
     const SeamMarks hard;
     const std::vector<double> weight(mesh.twin.size(), 1.0);
-    PatchTester tester(surface, {0.15, true});
+    PatchTester tester(surface, {});
     Progress progress;
     RemovalOptions options;
     options.most_together = 1.1; // no patch is large
-    const Index trials =
-        join_patches({surface, graph, hard, weight, tester, tester}, options, seam, progress);
+    const Index trials = join_patches(
+        {surface, graph, hard, weight, tester, tester, weight, weight}, options, seam, progress);
     EXPECT_EQ(trials, 1); // those that were made besides do not count
     EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
 }
@@ -157,28 +157,6 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
         }
 }
 
-TEST(PatchTrial, TubesPassAndHemispheresDoNot) {
-    const auto accepted = [](const mesh::RawMesh& raw) {
-        const checks::Disk disk(raw);
-        return try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, false, Progress{})
-            .accepted;
-    };
-    EXPECT_TRUE(accepted(shapes::cylinder_tube(24, 8)));
-    EXPECT_TRUE(accepted(shapes::grid(6, 6)));
-    EXPECT_FALSE(accepted(shapes::hemisphere(32, 12)));
-}
-
-// Equations of conformal maps are singular there; the answer is a map all the same.
-TEST(PatchTrial, NeedlesAreMapped) {
-    for (const double height : {1e-5, 1e-9, 1e-11, 1e-13}) {
-        const checks::Disk disk({{{0, 0, 0}, {1, 0, 0}, {0, height, 0}}, {{0, 1, 2}}});
-        const PatchTrial trial =
-            try_patch(disk.mesh, disk.surface.face, disk.charts.seam, {}, true, Progress{});
-        ASSERT_EQ(trial.change.size(), 1U);
-        EXPECT_TRUE(std::isfinite(trial.change[0])) << height;
-    }
-}
-
 TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     const Mesh mesh = checks::gated(shapes::grid(8, 8));
     SeamMarks seam(mesh.twin.size(), 0);
@@ -199,7 +177,8 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     const WorkingSurface surface{mesh, {}};
     PatchTester tester(surface, {});
     const VertexGraph graph = build_vertex_graph(mesh);
-    const SeamSetting setting{surface, graph, {}, weight, tester, tester, 100};
+    const SeamMarks hard;
+    const SeamSetting setting{surface, graph, hard, weight, tester, tester, weight, weight, 100};
     Progress progress;
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);

@@ -113,21 +113,20 @@ TEST(MendPatch, PatchesThatFitStay) {
     for (const Face f : mesh.all_faces())
         faces.push_back(f);
     const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), edge_lengths(mesh), faces,
-                                 SeamMarks(mesh.twin.size(), 0), {0.1, false}, Progress());
+                                 SeamMarks(mesh.twin.size(), 0), {0.1, 0.1, false}, Progress());
     ASSERT_TRUE(cuts.has_value());
     EXPECT_TRUE(cuts->empty());
 }
 
 // All faces as one patch, mended: the patches afterwards keep the limits.
-std::size_t mended_patches(const mesh::RawMesh& raw, double max_area_change) {
+std::size_t mended_patches(const mesh::RawMesh& raw, const judge::ClothLimits& limits) {
     const Mesh mesh = checks::gated(raw);
     std::vector<Index> faces;
     for (const Face f : mesh.all_faces())
         faces.push_back(f);
     SeamMarks seam(mesh.twin.size(), 0);
-    const PatchLimits limits{max_area_change, false};
     const Progress progress;
-    EXPECT_FALSE(try_patch(mesh, faces, seam, limits, false, progress).accepted);
+    EXPECT_FALSE(judge::try_cloth(mesh, faces, seam, limits, false, progress).accepted);
     const auto cuts = mend_patch(mesh, build_vertex_graph(mesh), edge_lengths(mesh), faces, seam,
                                  limits, progress);
     if (!cuts)
@@ -136,21 +135,22 @@ std::size_t mended_patches(const mesh::RawMesh& raw, double max_area_change) {
         mark(mesh, h, 1, seam);
     const auto patches = patches_of(mesh, seam, faces);
     for (const auto& patch : patches)
-        EXPECT_TRUE(try_patch(mesh, patch, seam, limits, false, progress).accepted);
+        EXPECT_TRUE(judge::try_cloth(mesh, patch, seam, limits, false, progress).accepted);
     return patches.size();
 }
 
 TEST(MendPatch, TipsGetDarts) {
     // A blunt cone: all of its curvature is at the tip.
-    EXPECT_EQ(mended_patches(shapes::cone(40, 16, 1.0, 1.0), 0.1), 1U);
+    EXPECT_EQ(mended_patches(shapes::cone(40, 16, 1.0, 1.0), {0.1, 0.0, false}), 1U);
+    EXPECT_EQ(mended_patches(shapes::cone(40, 16, 1.0, 1.0), {0.1, 0.15, false}), 1U);
 }
 
 TEST(MendPatch, SheetsAreCutApart) {
-    EXPECT_EQ(mended_patches(shapes::helix_strip(90, 1.2, 1.0, 1.4, 0.3), 0.1), 2U);
+    EXPECT_EQ(mended_patches(shapes::helix_strip(90, 1.2, 1.0, 1.4, 0.3), {0.1, 0.0, false}), 2U);
 }
 
 TEST(MendPatch, BallsAreLeftToOthers) {
-    EXPECT_EQ(mended_patches(shapes::hemisphere(48, 24), 0.005), 0U);
+    EXPECT_EQ(mended_patches(shapes::hemisphere(48, 24), {0.005, 0.0, false}), 0U);
 }
 
 // A surface with what seams on it are judged by.
@@ -159,13 +159,13 @@ struct Trials {
 
     const Mesh& mesh() const { return surface.mesh; }
     double unit() const { return 1.0 / mesh().unit_length; }
-    SeamSetting setting() { return {surface, graph, hard, weight, tester, tester}; }
+    SeamSetting setting() { return {surface, graph, hard, weight, tester, tester, weight, weight}; }
 
     WorkingSurface surface;
     VertexGraph graph = build_vertex_graph(surface.mesh);
     SeamMarks hard;
     std::vector<double> weight = std::vector<double>(surface.mesh.twin.size(), 1.0);
-    PatchTester tester{surface, {0.15, false}};
+    PatchTester tester{surface, {0.15, 0.0, false}};
 };
 
 TEST(Tongues, GoToThePatchBesideThem) {
