@@ -13,6 +13,7 @@ struct Tuning {
     double size_share = 0.25; // of the cube root of the solid's box: small toys have small openings
     double end = 5.0;         // mm to the seam's ends, where there is room: knots hold there
     double step = 5.0;        // mm between stretches that are looked at
+    double most_steps = 500;  // of a seam: that of a house is as long in steps as that of a toy
     int samples = 5;          // places on a stretch
 };
 constexpr Tuning tuning;
@@ -97,7 +98,8 @@ std::vector<Opening> find_openings(const pattern::Pattern& pattern, const PieceG
         const double margin = std::min(tuning.end, 0.5 * (length - least_opening));
         const double width = std::min(wanted, length - 2.0 * margin);
         const SeamOnModel on_model(pattern, seam.sides[0]);
-        for (double from = margin; from + width <= length - margin + 1e-9; from += tuning.step) {
+        const double step = std::max(tuning.step, length / tuning.most_steps);
+        for (double from = margin; from + width <= length - margin + 1e-9; from += step) {
             const double seen = on_model.seen(visibility, from, from + width);
             // Darts end at a tip, where a hand has no room.
             const double score = seam.is_dart ? seen + 1.0 : seen;

@@ -277,6 +277,20 @@ HostMesh wedge_of_a_cone() {
     return host;
 }
 
+// A tube that somebody has laid out as a ring: one chart with two loops.
+HostMesh tube_laid_out() {
+    HostMesh host = checks::host_of(shapes::cylinder_tube(12, 3));
+    for (const Triangle& t : host.geometry.faces) {
+        std::array<Vec2, 3> uv;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = host.geometry.points[at(t[k])];
+            uv[k] = Vec2(0.5, 0.5) + 0.1 * (2.0 + p.z()) * p.head<2>();
+        }
+        host.wedge_uv.push_back(uv);
+    }
+    return host;
+}
+
 // They need a file, and faces that are selected: plush_test and test_plush.py have them. `weld`
 // needs borders that lie on each other, and has a test of its own.
 bool needs_more_than_a_mesh(const std::string& name) {
@@ -287,6 +301,8 @@ bool needs_more_than_a_mesh(const std::string& name) {
 ParameterValues needed_for(const std::string& name) {
     if (name == "keep_unfinished")
         return {{"max_iterations", 1}};
+    if (name == "max_area_change")
+        return {{"max_strain", 0.0}};
     if (name == "max_l2_stretch" || name == "max_linf_stretch")
         return {{"charts_number", 0}};
     return {};
@@ -317,7 +333,8 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
                                       chosen_by_hand(0.0),
                                       halves_of_a_ball(),
                                       textured(),
-                                      wedge_of_a_cone()};
+                                      wedge_of_a_cone(),
+                                      tube_laid_out()};
     for (const FilterDeclaration& filter : filters::filter_table()) {
         std::map<std::pair<std::size_t, ParameterValues>, HostResult> unchanged;
         const auto plain = [&](std::size_t host, const ParameterValues& values) -> HostResult& {
