@@ -58,21 +58,21 @@ check_debian() {
     local wheel=$1 dir=$2 version start installed
     version=$(in_debian "$dir" python3 -c 'import platform; print(platform.python_version())') ||
         die "$dir has no Python; see the head of scripts/check_wheel.sh"
-    rm -rf "$dir/root/wheel"
-    mkdir -p "$dir/root/wheel"
-    cp "$wheel" "$dir/root/wheel"
+    rm -rf "$dir/opt/wheel"
+    mkdir -p "$dir/opt/wheel"
+    cp "$wheel" "$dir/opt/wheel"
     start=$SECONDS
     or_die "fetching packages" python3 -m pip download --disable-pip-version-check -d \
-        "$dir/root/wheel" --only-binary :all: --platform manylinux_2_35_x86_64 \
+        "$dir/opt/wheel" --only-binary :all: --platform manylinux_2_35_x86_64 \
         --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 --implementation cp \
         --python-version "${version%.*}" "$wheel"
-    or_die "making an environment" in_debian "$dir" python3 -m venv --clear /root/venv
-    or_die "installing the wheel into Python $version" in_debian "$dir" /root/venv/bin/pip install \
-        --no-index --find-links /root/wheel "/root/wheel/$(basename "$wheel")"
+    or_die "making an environment" in_debian "$dir" python3 -m venv --clear /opt/venv
+    or_die "installing the wheel into Python $version" in_debian "$dir" /opt/venv/bin/pip install \
+        --no-index --find-links /opt/wheel "/opt/wheel/$(basename "$wheel")"
     installed=$SECONDS
-    rm -rf "$dir/root/trial"
-    mkdir "$dir/root/trial"
-    or_die "running the wheel in $dir" in_debian "$dir" /root/venv/bin/python -c "$trial" /root/trial
+    rm -rf "$dir/opt/trial"
+    mkdir "$dir/opt/trial"
+    or_die "running the wheel in $dir" in_debian "$dir" /opt/venv/bin/python -c "$trial" /opt/trial
     row "Python $version in a bare Debian" "$((installed - start))" "$((SECONDS - installed))"
 }
 
