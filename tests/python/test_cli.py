@@ -16,7 +16,7 @@ from PIL import Image
 
 import meshes
 from conftest import ROOT
-from devseg import cli, quickstart
+from devseg import methods, quickstart
 from devseg.cli import main
 from devseg.errors import DevsegError
 from devseg.load import load_mesh
@@ -303,5 +303,5 @@ def test_import_is_cheap() -> None:
 
 
 def test_every_option_reaches_a_filter() -> None:
-    for method in cli.METHODS.values():
-        assert set(method.options) <= set(cli.METHOD_OPTIONS)
+    for method in methods.METHODS.values():
+        assert set(method.options) <= set(methods.METHOD_OPTIONS)
