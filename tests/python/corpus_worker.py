@@ -26,6 +26,10 @@ DCHARTS = "compute_segmentation_dcharts_per_face"
 ATTRIBUTES = ("chart_id", "seam_edges")
 
 
+# Filters that work on what is selected.
+CHOOSING = ("apply_charts_", "compute_charts_from_selected")
+
+
 def fingerprint(meshset: Any) -> str:
     """A digest of all that filters may change: geometry, colours, qualities, coordinates, charts.
 
@@ -130,6 +134,8 @@ class Corpus:
             parameters["charts_number"] = max(1, min(declared["charts_number"], faces))
         if "output_file" in declared:
             parameters["output_file"] = str(folder / "pattern.pdf")
+        if name.startswith(CHOOSING):
+            self.choose()
         before = fingerprint(self.meshset)
         current = self.meshset.current_mesh_id()
         # Where a filter fails, a host that is not verbose goes on swallowing what is printed, also
@@ -154,6 +160,12 @@ class Corpus:
         for left in folder.iterdir():
             left.unlink()
         return {"problems": problems}
+
+    def choose(self) -> None:
+        """Selects a few faces and vertices."""
+        for what, condition in (("face", "fi < 9"), ("vertex", "vi < 2")):
+            name = f"compute_selection_by_condition_per_{what}"
+            self.meshset.apply_filter(name, condselect=condition)
 
     def command(self, path: Path, options: list[str]) -> dict[str, Any]:
         """The command line, in this process: what it says, and what it leaves."""

@@ -69,12 +69,13 @@ def write_broken(folder: Path) -> dict[str, str]:
     for name, (text, _) in BROKEN.items():
         (folder / name).write_text(text)
     reasons = {name: reason for name, (_, reason) in BROKEN.items()}
-    scene, data = gltf_files.document(meshes.cube(), mode=5)
-    gltf_files.write_glb(folder / "strip.glb", scene, data)
+    scene, data = gltf_files.document(meshes.cube())
+    scene["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+    gltf_files.write_glb(folder / "packed.glb", scene, data)
     scene, data = gltf_files.document(meshes.cube())
     scene["nodes"][0]["children"] = [0]
     gltf_files.write_gltf(folder / "loop.gltf", scene, data)
-    return {**reasons, "strip.glb": "triangle strip", "loop.gltf": "its own descendant"}
+    return {**reasons, "packed.glb": "it is compressed", "loop.gltf": "its own descendant"}
 
 
 @pytest.fixture
