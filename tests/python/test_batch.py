@@ -9,6 +9,7 @@ import os
 import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -277,6 +278,21 @@ def test_a_batch_that_is_killed_goes_on(
     assert len(steps) < 6, "nothing of what was finished is done again"
     assert report(out) == report(whole)
     assert not (out / ".work").exists()
+
+
+def test_what_an_ended_process_has_left_is_swept_although_nobody_waited(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    stat = Path(f"/proc/{process.pid}/stat")
+    while stat.read_text().rpartition(")")[2].split()[0] != "Z":
+        time.sleep(0.01)
+    left = tmp_path / ".work" / f"{socket.gethostname()}+{process.pid}+a"
+    at_work = tmp_path / ".work" / f"{socket.gethostname()}+{os.getpid()}+b"
+    for folder in (left, at_work):
+        folder.mkdir(parents=True)
+    Store(tmp_path).sweep()
+    process.wait()
+    assert not left.exists()
+    assert at_work.exists()
 
 
 def test_an_interrupted_batch_ends_its_workers(
