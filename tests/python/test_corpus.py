@@ -61,6 +61,8 @@ FIRST = [
 ]
 
 SMOOTH = "meshing_smooth_chart_seams"
+# The last of all: faces that lie on others, which filters leave out, come apart from them.
+CUT = "meshing_cut_along_seams"
 
 
 def filter_names() -> list[str]:
@@ -68,8 +70,8 @@ def filter_names() -> list[str]:
     names = [filter_["python_name"] for filter_ in hosts.declarations()]
     segmentations = [name for name in names if name.startswith("compute_segmentation")]
     last = (SMOOTH, FIRST[-1])  # as `devseg run` does it: coordinates come after the last cuts
-    rest = [name for name in names if name not in segmentations and name not in last]
-    return [*FIRST[:4], *reversed(segmentations), *last, *rest]
+    rest = [name for name in names if name not in (*segmentations, *last, CUT)]
+    return [*FIRST[:4], *reversed(segmentations), *last, *rest, CUT]
 
 
 def processor_seconds(pid: int) -> float:
