@@ -296,6 +296,11 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     for (const Outline& outline : outlines)
         if (!outline.has_vanished())
             result.cut.push_back(outline.ring());
+    if (result.cut.empty())
+        throw InvalidMesh(
+            "expected pieces with an outline, found " + piece.name +
+            ", whose border lies on itself all around; join it to a neighbour, or use "
+            "fewer charts");
     const AllowanceWidths allowance = options.allowance();
     if (allowance.largest() > 0.0) {
         result.sew = std::move(result.cut);
