@@ -45,7 +45,13 @@ check() {
     "$@" </dev/null || failed+=("$what")
 }
 
+# Two types of one name are undefined behaviour that no compiler sees: the linker compares them.
+one_definition() {
+    cmake --preset odr >/dev/null && cmake --build --preset odr
+}
+
 check ctest ctest --preset release
+check "one definition" one_definition
 check walls .venv/bin/python scripts/check_walls.py
 check reference .venv/bin/python scripts/reference.py --check
 check "ruff check" .venv/bin/ruff check scripts tests docs/examples
