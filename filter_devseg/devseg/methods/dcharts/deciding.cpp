@@ -154,17 +154,39 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     return merging;
 }
 
+// Of each chart, whether it lies on a component that is no polyhedron: charts do not unfold exactly
+// there.
+std::vector<std::uint8_t> charts_off_polyhedra(const Mesh& mesh, const Draft& draft) {
+    const mesh::FaceComponents components =
+        mesh::face_components(mesh, [](HalfEdge) { return true; });
+    std::vector<double> excess(at(components.count), 0.0);
+    std::vector<double> area(at(components.count), 0.0);
+    for (std::size_t p = 0; p < draft.faces.size(); ++p) {
+        if (draft.faces[p].empty())
+            continue;
+        const auto c = at(components.label[at(draft.faces[p].front())]);
+        area[c] += draft.map[p].area;
+        excess[c] += draft.map[p].area * (draft.map[p].l2_squared - 1.0);
+    }
+    std::vector<std::uint8_t> off(draft.faces.size(), 0);
+    for (std::size_t p = 0; p < draft.faces.size(); ++p)
+        if (!draft.faces[p].empty()) {
+            const auto c = at(components.label[at(draft.faces[p].front())]);
+            off[p] = !(excess[c] < tuning.negligible * area[c]);
+        }
+    return off;
+}
+
 // Joins of a creased surface that are not exact, as those of smooth ones: while there are more
-// charts than wanted, or for the fewest. The net of a polyhedron stays exact.
+// charts than wanted, or for the fewest. Nets of polyhedra stay exact, whatever lies beside them.
 void join_as_smooth(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim, Draft& draft,
                     Progress& progress) {
     const bool to_number = plan.options.charts_number > 0;
-    if (!to_number && draft.excess() < tuning.negligible * mesh.total_area)
-        return;
     SegmentationPlan as_smooth = plan;
     as_smooth.creased = false;
     MergeOptions merging = merge_options(as_smooth, to_number ? aim_of(as_smooth) : aim);
     merging.enough_charts = plan.options.charts_number;
+    merging.open = charts_off_polyhedra(mesh, draft);
     merge_charts(mesh, merging, draft, progress);
 }
 

@@ -119,6 +119,22 @@ TEST(ChartBounds, APrismUnfoldsExactly) {
     EXPECT_LE(worst(mesh, charts), 1.0 + 1e-6);
 }
 
+// Fewer charts are wanted than its exact net has: it stays exact, whatever lies beside it.
+TEST(ChartBounds, APlateWithHandlesUnfoldsExactlyBesideABall) {
+    const mesh::RawMesh plate = shapes::slab(shapes::mask_with_holes(4));
+    for (const bool with_ball : {false, true}) {
+        SCOPED_TRACE(with_ball);
+        mesh::RawMesh raw = plate;
+        if (with_ball)
+            add(shapes::sphere(3), raw);
+        const Mesh mesh = checks::gated(raw);
+        const DevelopableCharts charts = segment(mesh, 1, 1.02);
+        const std::vector<double> l2 = final_stretch(mesh, charts);
+        for (std::size_t f = 0; f < plate.faces.size(); ++f)
+            ASSERT_NEAR(l2[at(charts.chart[f])], 1.0, 1e-6);
+    }
+}
+
 TEST(ChartBounds, NoBorderRunsThroughAFlatFace) {
     mesh::RawMesh raw;
     add(box(4.0, 1.0, 2.0, Vec3(0.0, 0.0, 0.0)), raw);
