@@ -20,6 +20,7 @@ struct FlatChart {
     bool mended = false;    // the chosen method flipped faces: the injective one was used instead
     bool pushed = false;    // parts overlapped and were pushed apart
     bool cut_off = false;   // a part of a given chart that overlapped another part
+    bool torn = false;      // no map in one piece was found; `uv` is the last one, if there is any
     bool developed = false; // exactly developable, and unfolded instead of mapped
     bool converged = true;
     double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
@@ -42,6 +43,10 @@ struct FlattenResult {
 /// where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
+
+/// The same without cutting anything apart: where that would be done, the chart is `torn`.
+std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
+                                     FlattenMethod method, Progress& progress);
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
 /// their whole common border, where its map stays one-to-one and is stretched little more; the
