@@ -47,7 +47,8 @@ std::vector<Index> numbers_of(const std::vector<FlatChart>& flat) {
 
 // Flattens the charts with the given numbers; returns where to cut them.
 Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> which,
-                  std::vector<FlatChart>& flat, Progress& progress) {
+                  std::vector<FlatChart>& flat, Progress& progress,
+                  const WorthPushing& worth = {}) {
     // The largest first, so that no core is left with a large chart at the end.
     std::stable_sort(which.begin(), which.end(), [&](Index a, Index b) {
         return flat[a].surface.face.size() > flat[b].surface.face.size();
@@ -58,7 +59,7 @@ Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> whi
         [&](int i) {
             progress.check();
             const Index c = which[i];
-            cuts[c] = flatten_one(mesh, method, flat[c], progress);
+            cuts[c] = flatten_one(mesh, method, flat[c], progress, worth);
         },
         progress);
     return cuts;
@@ -252,9 +253,10 @@ int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress) 
 }
 
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
-                                     FlattenMethod method, Progress& progress) {
+                                     FlattenMethod method, const WorthPushing& worth,
+                                     Progress& progress) {
     std::vector<FlatChart> flat = without_maps(mesh, charts);
-    const Cuts cuts = flatten_some(mesh, method, numbers_of(flat), flat, progress);
+    const Cuts cuts = flatten_some(mesh, method, numbers_of(flat), flat, progress, worth);
     for (std::size_t c = 0; c < flat.size(); ++c)
         flat[c].torn = !cuts[c].empty();
     return flat;

@@ -2,10 +2,12 @@
 // flipped or overlapping faces.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
 
@@ -44,9 +46,14 @@ struct FlattenResult {
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 
-/// The same without cutting anything apart: where that would be done, the chart is `torn`.
+/// Whether a map that lies on itself is worth pushing its parts apart. Called from all threads.
+using WorthPushing = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
+
+/// The same without cutting anything apart: where that would be done, the chart is `torn`, and its
+/// map the last one.
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
-                                     FlattenMethod method, Progress& progress);
+                                     FlattenMethod method, const WorthPushing& worth,
+                                     Progress& progress);
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
 /// their whole common border, where its map stays one-to-one and is stretched little more; the

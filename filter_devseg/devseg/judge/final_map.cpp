@@ -123,14 +123,20 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
 }
 
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam, Progress& progress) {
+                                 const std::vector<std::uint8_t>& seam, double most_l2,
+                                 Progress& progress) {
     if (charts.empty())
         return {};
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
+    const auto worth = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+        TrialMap map;
+        measure_stretch(problem, uv, map);
+        return most_l2 <= 0.0 || map.l2_squared <= most_l2 * most_l2;
+    };
     const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
-        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, flattening);
+        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, worth, flattening);
     Measures measures(part, charts);
     for (const flatten::FlatChart& flat : whole)
         if (!flat.uv.empty())
