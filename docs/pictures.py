@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.sax.saxutils import escape
@@ -244,6 +245,32 @@ def smooth_seams() -> None:
     save(titled(panels, ["seams on edges", "smooth seams"]), "smooth_seams")
 
 
+def with_selection(session: Session, size: int) -> Image.Image:
+    """The mesh alone, its selected faces in red."""
+    found = data(session)
+    selected = session.meshes.current_mesh().face_selection_array()
+    colors = found.colors.copy()
+    colors[selected] = (0.85, 0.1, 0.1)
+    return render_pair(replace(found, colors=colors), size).crop((0, 0, size, size))
+
+
+def your_seams() -> None:
+    """A seam where faces were selected."""
+    session = sample("bunny.obj")
+    meshes = session.meshes
+    session.apply(METHODS["dcharts"].filter, charts_number=12)
+    session.apply(FLATTEN_FILTER)
+    corners = meshes.current_mesh().vertex_matrix()[meshes.current_mesh().face_matrix()]
+    head = np.percentile(corners[:, :, 1].min(axis=1), 86)
+    session.call("compute_selection_by_condition_per_face", condselect=f"min(y0, y1) > {head}")
+    panels = [with_selection(session, SIZE)]
+    session.apply("compute_charts_from_selected_edges_per_face")
+    session.apply(FLATTEN_FILTER)
+    panels += [mesh_side(session, SIZE), pattern_side(session, SIZE)]
+    titles = ["select faces", "their border is a seam", "flat"]
+    save(titled(panels, titles), "your_seams")
+
+
 def packing() -> None:
     """Nesting, and first fit."""
     panels = []
@@ -368,6 +395,7 @@ PICTURES: dict[str, Callable[[], None]] = {
         flattening,
         cutting,
         smooth_seams,
+        your_seams,
         packing,
         deformation,
         pieces,

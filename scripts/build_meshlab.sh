@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 # build_meshlab: does nothing where it is there already.
 build_meshlab() {
     local version=2025.07 target=$devseg_cache/meshlab-2025.07-window part jobs
-    [[ -x $target/meshlab ]] && return
+    [[ -x $target/meshlab && -e $target/plugins/libedit_select.so ]] && return
     mkdir -p "$devseg_cache"
     part=$(mktemp -d -p "$devseg_cache") || return 1
     say "fetching the MeshLab $version sources"
@@ -23,7 +23,7 @@ build_meshlab() {
         -DCMAKE_BUILD_TYPE=Release -DMESHLAB_BUILD_MINI=ON -DCMAKE_BUILD_RPATH_USE_ORIGIN=ON \
         -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache
     or_die "building MeshLab" cmake --build "$part/build" -j "$jobs" \
-        --target meshlab io_base filter_select
+        --target meshlab io_base filter_select edit_select
     rm -rf "$target"
     mv -T "$part/build/src/distrib" "$target"
     rm -rf "$part"

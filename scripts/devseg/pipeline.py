@@ -259,8 +259,10 @@ def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
 
 def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Flattens the charts; measures of them, by kind."""
+    chosen = options.given.charts_from or options.given.keep_seams
+    kept = {"keep": "Seams"} if chosen else {}
     with progress.stage("flatten"):
-        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
+        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], **kept)
     with progress.stage("measure"):
         return {
             "segmentation": session.apply(SEGMENTATION_MEASURES),

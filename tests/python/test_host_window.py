@@ -6,9 +6,6 @@ has been done, or where DEVSEG_GUI_TESTS=1 asks for it.
 
 from __future__ import annotations
 
-import os
-import re
-import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,83 +18,33 @@ from PIL import Image
 
 import hosts
 import reference
-from conftest import ROOT
-from meshlab_window import INSPECTOR, MeshLabWindow, Widget
-
-PICTURES = ROOT / "build" / "screenshots"
-ASKED = os.environ.get("DEVSEG_GUI_TESTS") == "1"
-BUILT = (hosts.CACHE / "meshlab-2025.07-window" / "meshlab").is_file()
-
-pytestmark = pytest.mark.skipif(
-    not (ASKED or BUILT), reason="no MeshLab 2025.07 in the cache, and no DEVSEG_GUI_TESTS=1"
+from meshlab_window import MeshLabWindow, Widget
+from window_filters import (
+    FLAVOURS,
+    PICTURES,
+    applied,
+    find,
+    needs_window,
+    opened,
+    row_of,
+    save_pattern,
+    tell,
 )
 
+pytestmark = needs_window
 
-@pytest.fixture(scope="module", params=["meshlab-2020.09", "meshlab-2025.07"])
+
+@pytest.fixture(scope="module", params=FLAVOURS)
 def flavour(request: pytest.FixtureRequest) -> str:
     return request.param
 
 
 @pytest.fixture(scope="module")
-def mesh_file(pymeshlab: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A bunny as PLY: MeshLab 2020.09 stops at some OBJ files."""
-    samples = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
-    meshset = pymeshlab.MeshSet()
-    meshset.load_new_mesh(str(samples / "bunny10k_textured.obj"))
-    file = tmp_path_factory.mktemp("mesh") / "bunny.ply"
-    meshset.save_current_mesh(
-        str(file), save_vertex_color=False, save_face_color=False, save_wedge_texcoord=False
-    )
-    return file
-
-
-@pytest.fixture(scope="module")
 def window(
-    flavour: str, mesh_file: Path, tmp_path_factory: pytest.TempPathFactory
+    flavour: str, pymeshlab: ModuleType, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[MeshLabWindow]:
-    for program in ("Xvfb", "xdotool"):
-        if shutil.which(program) is None:
-            hosts.missing(f"no {program} on this machine")
-    if not INSPECTOR.is_file():
-        hosts.missing("the window inspector is not built; run scripts/setup.sh")
-    meshlab = hosts.PrivateMeshLab.make(tmp_path_factory.mktemp("window") / "meshlab", flavour)
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    with MeshLabWindow(meshlab, mesh_file) as running:
+    with opened(flavour, pymeshlab, tmp_path_factory.mktemp("window")) as running:
         yield running
-
-
-def find(window: MeshLabWindow, name: str) -> None:
-    """Starts a filter as MeshLab's help tells: Ctrl+F, its name, and its line in the list."""
-    window.focus("MeshLab")
-    window.press("ctrl+f")
-    window.type(name)
-
-    def listed() -> int:
-        for menu in window.menus():
-            entries = [e["text"] for e in menu["entries"] if e["text"]]
-            if menu["visible"] and name in entries:
-                return entries.index(name) + 1
-        return 0
-
-    line = window.wait_for(f"{name} in the search", listed)
-    window.press(*["Down"] * line, "Return")
-
-
-def applied(window: MeshLabWindow, name: str) -> int:
-    line = re.compile(rf"Applied filter:? {re.escape(name)} in \d+ msec")
-    return sum(1 for text in window.log() if line.search(text))
-
-
-def row_of(window: MeshLabWindow, dock: str, label: str) -> list[Widget]:
-    """The widgets of a dialog beside a label, and the label."""
-    shown = window.widgets(dock=dock)
-    named = [w for w in shown if w.get("text") == label]
-    assert named, f"{label} in the dialog of {dock}"
-    return [w for w in shown if abs(middle(w) - middle(named[0])) < 8]
-
-
-def middle(widget: Widget) -> float:
-    return widget["box"][1] + widget["box"][3] / 2
 
 
 def check_dialog(window: MeshLabWindow, filter_: dict[str, Any]) -> None:
@@ -155,23 +102,6 @@ def run_filter(
         window.click(window.widgets(dock=name, text="Close")[0])
 
 
-def tell(window: MeshLabWindow, filter_: dict[str, Any], values: dict[str, Any]) -> None:
-    """Writes values into the dialog of a filter, and ticks what is true."""
-    name = filter_["menu_name"]
-    for parameter in filter_["parameters"]:
-        value = values.get(parameter["name"])
-        if value is None:
-            continue
-        row = row_of(window, name, parameter["label"])
-        window.focus(name)
-        if parameter["kind"] == "boolean":
-            window.click(next(w for w in row if w["class"] == "QCheckBox"))
-            continue
-        window.click(next(w for w in row if w["class"] == "QLineEdit"))
-        window.press("ctrl+a")
-        window.type(value)
-
-
 def show_beside(window: MeshLabWindow, dock: str, picture: Path) -> None:
     """A picture with the dialog at the right, where it hides the log and its file names."""
     docks = [w for w in window.widgets(dock=dock) if "Dialog" in w["class"]]
@@ -218,21 +148,7 @@ def test_charts_get_colors_and_their_pattern_is_exported(
     picture.save(PICTURES / f"{flavour}-charts.png")
     run_filter(window, flatten, tmp_path)
 
-    file = tmp_path / "bunny.svg"
-    window.focus("MeshLab")
-    window.press("ctrl+shift+e")
-    window.wait_for("the file dialog", lambda: window.widgets(**{"class": "QFileDialog"}))
-    window.focus("Save ")
-    window.press("ctrl+a")
-    window.type(str(file))
-    window.press("Return")
-    okay = window.wait_for(
-        "the saving options", lambda: window.widgets(text="OK") + window.widgets(text="&OK")
-    )
-    window.screenshot().save(PICTURES / f"{flavour}-export.png")
-    window.click(okay[0])
-    window.wait_for("the pattern", file.is_file)
-    text = file.read_text()
+    text = save_pattern(window, tmp_path / "bunny.svg")
     assert text.count("<path") > 3 and text.rstrip().endswith("</svg>")
     hosts.record(f"window-{flavour}", "Saving as SVG", "runs")
 

@@ -8,6 +8,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/base/option_checks.h"
 #include "devseg/base/worker.h"
+#include "devseg/declare/opening.h"
 #include "devseg/declare/part.h"
 
 namespace devseg::declare {
@@ -257,6 +258,12 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
     const std::vector<OutputFace> faces = output_faces(gated, output);
     if (output.refinement && !output.refinement->parts.empty())
         result.refinement = host_refinement(host, gated, *output.refinement, faces);
+    if (output.fans) {
+        HostRefinement opening = host_opening(host, gated, *output.fans);
+        result.values.emplace_back(new_vertices_number, static_cast<int>(opening.points.size()));
+        if (!opening.parts.empty())
+            result.refinement = std::move(opening);
+    }
     for (const OutputFace& f : faces) {
         const auto source = result.untouched.size();
         const bool stays = !output.untouched.empty() && source < host.geometry.faces.size() &&

@@ -104,6 +104,8 @@ struct FilterInput {
     Vec3 from_model(const Vec3& p) const { return (p - center) / mesh.unit_length; }
 };
 
+constexpr const char* new_vertices_number = "new_vertices_number";
+
 struct FilterOutput {
     std::optional<atlas::ChartMap> charts;
     std::optional<std::vector<double>> face_quality; // #F
@@ -112,8 +114,11 @@ struct FilterOutput {
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
+    // #F: numbers of corners, to cut the host's mesh open: those of one vertex with the same number
+    // stay together. How many vertices that adds comes with the values (new_vertices_number).
+    std::optional<std::vector<Triangle>> fans;
     std::optional<plane::Image> texture;
-    std::vector<std::uint8_t> untouched;        // #F of the mesh: 1 where all stays as it is
+    std::vector<std::uint8_t> untouched; // #F of the mesh: 1 where all stays as it is
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
     std::function<void()> save;     // writes the filter's file, if it has one: comes last, because

@@ -404,9 +404,9 @@ std::vector<Parameter> part_parameters(bool on_part, bool keeps) {
     if (keeps)
         parameters.push_back({keep,
                               "Keep",
-                              "None: begin anew. Seams: existing seams stay, and more may come. "
-                              "Charts: existing charts stay, and faces without one, whose chart_id "
-                              "is -1, get some.",
+                              "None: nothing need stay. Seams: existing seams stay, and more may "
+                              "come. Charts: existing charts stay, and faces without one, whose "
+                              "chart_id is -1, get some.",
                               ParameterKind::choice,
                               0,
                               0.0,

@@ -56,18 +56,22 @@ double worst_l2(const std::vector<TrialMap>& maps) {
     return worst;
 }
 
+// Of charts that may be cut apart; with a bound, of charts that must stay in one piece.
 std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
-                              const std::vector<Index>& which, Progress& progress) {
+                              const std::vector<Index>& which, const double* most_l2,
+                              Progress& progress) {
     try {
-        return judge::final_maps(mesh, faces_of(charts, which), charts.seam, progress);
+        const std::vector<std::vector<Index>> faces = faces_of(charts, which);
+        return most_l2 != nullptr ? judge::whole_maps(mesh, faces, charts.seam, *most_l2, progress)
+                                  : judge::final_maps(mesh, faces, charts.seam, progress);
     } catch (const NumericalFailure& error) {
         refuse(std::string("the chart cannot be flattened: ") + error.what());
     }
 }
 
 // Cuts the charts open where they are no disks, flattens and measures them.
-std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which, Edit& edit,
-                             Progress& progress) {
+std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
+                             const double* most_l2, Edit& edit, Progress& progress) {
     for (const std::vector<Index>& faces : faces_of(edit.charts, which)) {
         atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, edit.charts.seam);
         if (!surface.is_disk())
@@ -75,7 +79,7 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which, 
                                &edit.cut_length);
     }
     auto judging = progress.part("flattening what has changed", progress.left());
-    std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, judging);
+    std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, most_l2, judging);
     edit.changed = static_cast<Index>(which.size());
     edit.l2_stretch = worst_l2(maps);
     for (const TrialMap& map : maps)
@@ -88,9 +92,11 @@ void check_joined(const std::vector<TrialMap>& maps, const EditBounds& bounds) {
         return;
     for (const TrialMap& map : maps) {
         const double l2 = std::sqrt(map.l2_squared);
+        if (!std::isfinite(l2))
+            refuse("the joined chart has no map in one piece; it would be cut apart");
         if (!map.flat)
-            refuse(
-                "parts of the joined chart would lie on each other; it would be cut apart there");
+            refuse("parts of the joined chart would lie on each other, at an L2 stretch of " +
+                   text_of(l2) + "; it would be cut apart there");
         if (bounds.max_chart_l2_stretch > 0.0 && l2 > bounds.max_chart_l2_stretch)
             refuse("the joined chart would have an L2 stretch of " + text_of(l2) + ", above " +
                    text_of(bounds.max_chart_l2_stretch) +
@@ -164,7 +170,8 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
             changed.push_back(edit.charts.chart[face_of(h)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    check_joined(finish(mesh, changed, edit, progress), bounds);
+    const double* most = bounds.force ? nullptr : &bounds.max_chart_l2_stretch;
+    check_joined(finish(mesh, changed, most, edit, progress), bounds);
     return edit;
 }
 
@@ -230,7 +237,7 @@ Edit split_charts(const Mesh& mesh, const ChartMap& charts, const std::vector<In
             changed.push_back(edit.charts.chart[at(f)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    const std::vector<TrialMap> maps = finish(mesh, changed, edit, progress);
+    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress);
     for (const TrialMap& map : maps)
         if (!bounds.force && map.area < tuning.least_part * mesh.total_area)
             refuse("a part would be a sliver, of " + text_of(100.0 * map.area / mesh.total_area) +
@@ -262,9 +269,9 @@ Edit add_darts(const Mesh& mesh, const ChartMap& charts, const std::vector<Index
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     auto before = progress.part("flattening the charts", 0.5);
-    const std::vector<TrialMap> old = maps_of(mesh, charts, changed, before);
+    const std::vector<TrialMap> old = maps_of(mesh, charts, changed, nullptr, before);
     edit.l2_before = worst_l2(old);
-    const std::vector<TrialMap> maps = finish(mesh, changed, edit, progress);
+    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress);
     for (std::size_t i = 0; i < maps.size(); ++i)
         if (!bounds.force &&
             !(maps[i].excess() < old[i].excess() - tuning.least_gain * maps[i].area))

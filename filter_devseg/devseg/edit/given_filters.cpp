@@ -1,9 +1,9 @@
 // The filters that make charts from what the user has.
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "devseg/atlas/disks.h"
-#include "devseg/atlas/opening.h"
 #include "devseg/atlas/texture.h"
 #include "devseg/base/errors.h"
 #include "devseg/declare/declare.h"
@@ -143,9 +143,10 @@ FilterOutput run_open(const FilterInput& input, const NoOptions&, Progress& prog
     auto cutting = progress.part("cutting the mesh", 1.0);
     atlas::ChartMap charts = find_charts(input);
     FilterOutput output;
-    output.refinement = atlas::open_along(input.mesh, charts.seam);
+    std::vector<Index> all(input.mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0);
+    output.fans = atlas::extract_surface(input.mesh, std::move(all), charts.seam).faces;
     output.values = {{"charts_number", charts.count},
-                     {"new_vertices_number", static_cast<int>(output.refinement->points.size())},
                      {"seam_length", metrics::seam_length(input.mesh, charts)}};
     output.charts = std::move(charts);
     cutting.check();
@@ -206,7 +207,7 @@ FilterDeclaration cut_open() {
                               FilterCategory::remeshing, open_help)
         .writes(writes_charts | writes_mesh)
         .result("charts_number", "charts, as many as before")
-        .result("new_vertices_number", "vertices that were duplicated")
+        .result(new_vertices_number, "vertices that were duplicated")
         .result("seam_length", "length of all cut edges, model units")
         .runs(run_open);
 }

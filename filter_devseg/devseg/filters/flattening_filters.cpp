@@ -163,6 +163,7 @@ FilterDeclaration flatten() {
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in rows and in model units, which takes no time.")
         .on_part()
+        .keeps()
         .writes(writes_charts | writes_uv)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that had to be cut to disks first")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 #include "devseg/atlas/disks.h"
@@ -31,9 +32,23 @@ constexpr Tuning tuning;
 
 using Cuts = std::vector<std::vector<HalfEdge>>; // of the mesh, by chart
 
+std::vector<FlatChart> without_maps(const Mesh& mesh, const atlas::ChartMap& charts) {
+    std::vector<FlatChart> flat;
+    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts))
+        flat.emplace_back().surface = std::move(surface);
+    return flat;
+}
+
+std::vector<Index> numbers_of(const std::vector<FlatChart>& flat) {
+    std::vector<Index> numbers(flat.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
 // Flattens the charts with the given numbers; returns where to cut them.
 Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> which,
-                  std::vector<FlatChart>& flat, Progress& progress) {
+                  std::vector<FlatChart>& flat, Progress& progress,
+                  const WorthPushing& worth = {}) {
     // The largest first, so that no core is left with a large chart at the end.
     std::stable_sort(which.begin(), which.end(), [&](Index a, Index b) {
         return flat[a].surface.face.size() > flat[b].surface.face.size();
@@ -44,7 +59,7 @@ Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> whi
         [&](int i) {
             progress.check();
             const Index c = which[i];
-            cuts[c] = flatten_one(mesh, method, flat[c], progress);
+            cuts[c] = flatten_one(mesh, method, flat[c], progress, worth);
         },
         progress);
     return cuts;
@@ -237,15 +252,22 @@ int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress) 
     return number;
 }
 
+std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
+                                     FlattenMethod method, const WorthPushing& worth,
+                                     Progress& progress) {
+    std::vector<FlatChart> flat = without_maps(mesh, charts);
+    const Cuts cuts = flatten_some(mesh, method, numbers_of(flat), flat, progress, worth);
+    for (std::size_t c = 0; c < flat.size(); ++c)
+        flat[c].torn = !cuts[c].empty();
+    return flat;
+}
+
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress) {
     FlattenResult result;
     result.charts = charts;
-    std::vector<Index> open;
-    for (atlas::ChartSurface& surface : atlas::extract_charts(mesh, charts)) {
-        open.push_back(static_cast<Index>(open.size()));
-        result.flat.emplace_back().surface = std::move(surface);
-    }
+    result.flat = without_maps(mesh, charts);
+    std::vector<Index> open = numbers_of(result.flat);
     // Every cut makes charts smaller, and a single face overlaps nothing: this ends.
     while (!open.empty()) {
         auto flattening = progress.part(0.75 * progress.left());

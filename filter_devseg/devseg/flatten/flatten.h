@@ -2,10 +2,12 @@
 // flipped or overlapping faces.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
 
@@ -20,6 +22,7 @@ struct FlatChart {
     bool mended = false;    // the chosen method flipped faces: the injective one was used instead
     bool pushed = false;    // parts overlapped and were pushed apart
     bool cut_off = false;   // a part of a given chart that overlapped another part
+    bool torn = false;      // no map in one piece was found; `uv` is the last one, if there is any
     bool developed = false; // exactly developable, and unfolded instead of mapped
     bool converged = true;
     double energy = 0.0; // symmetric Dirichlet energy, 1 for an isometry
@@ -42,6 +45,15 @@ struct FlattenResult {
 /// where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
+
+/// Whether a map that lies on itself is worth pushing its parts apart. Called from all threads.
+using WorthPushing = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
+
+/// The same without cutting anything apart: where that would be done, the chart is `torn`, and its
+/// map the last one.
+std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
+                                     FlattenMethod method, const WorthPushing& worth,
+                                     Progress& progress);
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
 /// their whole common border, where its map stays one-to-one and is stretched little more; the

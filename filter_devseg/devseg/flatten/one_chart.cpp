@@ -290,7 +290,7 @@ bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& char
 }
 
 std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
-                                  const Progress& progress) {
+                                  const Progress& progress, const WorthPushing& worth) {
     const ChartSurface& surface = chart.surface;
     const FlatteningProblem problem = make_flattening_problem(mesh, surface);
     const double tolerance = plane::layout_tolerance(problem.model_size);
@@ -322,7 +322,7 @@ std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatCh
     // would not be theirs any more.
     const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
                           surface.face_count() <= tuning.most_polished_faces;
-    if (pairs.empty() || !may_push)
+    if (pairs.empty() || !may_push || (worth && !worth(problem, chart.uv)))
         return cut_between(mesh, surface, pairs);
     auto apart = push_apart(problem, surface, chart.uv, pairs, tolerance, progress);
     if (!apart)

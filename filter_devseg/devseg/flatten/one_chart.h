@@ -10,9 +10,10 @@ namespace devseg::flatten {
 
 /// Flattens chart.surface, which is sound (see atlas/holes.h), and fills in the rest of `chart`.
 /// Returns the half-edges of the mesh to cut where parts overlap in the plane and could not be
-/// pushed apart, or where there is no map around holes; nothing where the map is one-to-one.
+/// pushed apart, which is tried if it is `worth` it, or where there is no map around holes; nothing
+/// where the map is one-to-one.
 std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
-                                  const Progress& progress);
+                                  const Progress& progress, const WorthPushing& worth = {});
 
 /// The half-edges of the mesh to cut so that the chart's holes open to its rim; nothing for disks.
 std::vector<HalfEdge> open_holes(const Mesh& mesh, const atlas::ChartSurface& surface,

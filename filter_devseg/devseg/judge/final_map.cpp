@@ -45,55 +45,109 @@ Extract extract(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
     return result;
 }
 
+// Of the charts together; the stretch of one that was cut apart is the mean of its parts'.
+class Measures {
+public:
+    Measures(const Extract& part, const std::vector<std::vector<Index>>& charts)
+        : part_(part), maps_(charts.size()), place_(part.chart.size()), excess_(charts.size(), 0.0),
+          parts_(charts.size(), 0) {
+        std::vector<Index> seen(charts.size(), 0);
+        for (std::size_t f = 0; f < place_.size(); ++f)
+            place_[f] = seen[at(part.chart[f])]++;
+        for (std::size_t c = 0; c < maps_.size(); ++c) {
+            maps_[c].turns.resize(charts[c].size());
+            maps_[c].part.resize(charts[c].size());
+        }
+    }
+
+    void add(const flatten::FlatChart& flat) {
+        const Index c = part_.chart[flat.surface.face.front()];
+        TrialMap& whole = maps_[at(c)];
+        const auto problem = flatten::make_flattening_problem(part_.mesh, flat.surface);
+        TrialMap map;
+        measure_stretch(problem, flat.uv, map);
+        excess_[at(c)] += map.excess();
+        whole.area += map.area;
+        whole.linf = std::max(whole.linf, map.linf);
+        const std::vector<Vec2> turns = flatten::face_turns(problem, flat.uv);
+        for (std::size_t f = 0; f < turns.size(); ++f) {
+            const Index place = place_[at(flat.surface.face[f])];
+            whole.turns[at(place)] = turns[f];
+            whole.part[at(place)] = parts_[at(c)];
+        }
+        ++parts_[at(c)];
+    }
+
+    std::vector<TrialMap> take() {
+        for (std::size_t c = 0; c < maps_.size(); ++c) {
+            maps_[c].flat = parts_[c] == 1;
+            if (maps_[c].flat)
+                maps_[c].part.clear();
+            if (maps_[c].area > 0.0)
+                maps_[c].l2_squared = 1.0 + excess_[c] / maps_[c].area;
+        }
+        return std::move(maps_);
+    }
+
+private:
+    const Extract& part_;
+    std::vector<TrialMap> maps_;
+    std::vector<Index> place_; // of each face among those of its chart
+    std::vector<double> excess_;
+    std::vector<int> parts_;
+};
+
+// The charts cut open to disks.
+atlas::ChartMap disks_of(const Extract& part, Progress& progress) {
+    auto cutting = progress.part("measuring final maps", 0.1);
+    return atlas::cut_charts_to_disks(
+               part.mesh, atlas::make_chart_map(part.mesh, part.chart, {}, false), cutting)
+        .charts;
+}
+
 } // namespace
 
 std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, Progress& progress) {
-    std::vector<TrialMap> maps(charts.size());
     if (charts.empty())
-        return maps;
+        return {};
     const Extract part = extract(mesh, charts, seam);
-    auto cutting = progress.part("measuring final maps", 0.1);
-    const atlas::ChartMap disks =
-        atlas::cut_charts_to_disks(part.mesh,
-                                   atlas::make_chart_map(part.mesh, part.chart, {}, false), cutting)
-            .charts;
+    const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
     const flatten::FlattenResult result = flatten::flatten_charts(
         part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, flattening);
-    std::vector<Index> place(part.chart.size()); // of each face among those of its chart
-    std::vector<Index> seen(charts.size(), 0);
-    for (std::size_t f = 0; f < place.size(); ++f)
-        place[f] = seen[at(part.chart[f])]++;
-    for (std::size_t c = 0; c < maps.size(); ++c)
-        maps[c].turns.resize(charts[c].size());
-    for (std::size_t c = 0; c < maps.size(); ++c)
-        maps[c].part.resize(charts[c].size());
-    std::vector<double> excess(charts.size(), 0.0);
-    std::vector<int> parts(charts.size(), 0);
-    for (const flatten::FlatChart& flat : result.flat) {
-        const Index c = part.chart[flat.surface.face.front()];
-        const auto problem = flatten::make_flattening_problem(part.mesh, flat.surface);
+    Measures measures(part, charts);
+    for (const flatten::FlatChart& flat : result.flat)
+        measures.add(flat);
+    return measures.take();
+}
+
+std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                                 const std::vector<std::uint8_t>& seam, double most_l2,
+                                 Progress& progress) {
+    if (charts.empty())
+        return {};
+    const Extract part = extract(mesh, charts, seam);
+    const atlas::ChartMap disks = disks_of(part, progress);
+    auto flattening = progress.part("measuring final maps", 0.9);
+    const auto worth = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
         TrialMap map;
-        measure_stretch(problem, flat.uv, map);
-        excess[at(c)] += map.excess();
-        maps[at(c)].area += map.area;
-        maps[at(c)].linf = std::max(maps[at(c)].linf, map.linf);
-        const std::vector<Vec2> turns = flatten::face_turns(problem, flat.uv);
-        for (std::size_t f = 0; f < turns.size(); ++f) {
-            const Index at_place = place[at(flat.surface.face[f])];
-            maps[at(c)].turns[at(at_place)] = turns[f];
-            maps[at(c)].part[at(at_place)] = parts[at(c)];
+        measure_stretch(problem, uv, map);
+        return most_l2 <= 0.0 || map.l2_squared <= most_l2 * most_l2;
+    };
+    const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
+        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, worth, flattening);
+    Measures measures(part, charts);
+    for (const flatten::FlatChart& flat : whole)
+        if (!flat.uv.empty())
+            measures.add(flat);
+    std::vector<TrialMap> maps = measures.take();
+    for (const flatten::FlatChart& flat : whole)
+        if (flat.torn) {
+            TrialMap& map = maps[at(part.chart[flat.surface.face.front()])];
+            map.flat = false;
+            map.l2_squared = flat.uv.empty() ? infinite : map.l2_squared;
         }
-        ++parts[at(c)];
-    }
-    for (std::size_t c = 0; c < maps.size(); ++c) {
-        maps[c].flat = parts[c] == 1;
-        if (maps[c].flat)
-            maps[c].part.clear();
-        if (maps[c].area > 0.0)
-            maps[c].l2_squared = 1.0 + excess[c] / maps[c].area;
-    }
     return maps;
 }
 

@@ -17,6 +17,13 @@ namespace devseg::judge {
 std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, Progress& progress);
 
+/// The same for charts that must stay in one piece, sooner: one that would be cut apart is not, and
+/// its stretch is that of the map that lies on itself; infinite where there is none without flips.
+/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always).
+std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                                 const std::vector<std::uint8_t>& seam, double most_l2,
+                                 Progress& progress);
+
 /// Whether the final map's L2 stretch is at most `l2` beyond doubt, from a bound that costs one
 /// linear system. False says nothing.
 bool is_surely_within(const Mesh& mesh, const std::vector<Index>& faces,

@@ -166,6 +166,8 @@ TEST(Keep, ExistingSeamsStayInEverySegmentation) {
         const auto most = *std::max_element(r.chart_id.begin(), r.chart_id.end());
         EXPECT_EQ(value(r, "charts_number"), most + 1);
         EXPECT_GE(value(r, "charts_number"), 4);
+        if (filter.menu_name == "Charts: Flatten")
+            continue; // has no measure of seams
         double length = 0.0;
         for (const auto& [ends, faces] : checks::edges_of(host.geometry))
             if (r.seam_edges[faces[0].first] >> faces[0].second & 1)
@@ -174,6 +176,51 @@ TEST(Keep, ExistingSeamsStayInEverySegmentation) {
                         .norm();
         EXPECT_NEAR(value(r, "seam_length"), length, 1e-9 * length);
     }
+}
+
+// A fan of triangles about one vertex, together more than a full turn, with a flap on each of them.
+HostMesh overfull_fan() {
+    HostMesh host;
+    host.geometry.points.emplace_back(0.0, 0.0, 0.0);
+    const auto on_circle = [](int i, double radius) {
+        const double turn = pi / 6.0 * i;
+        const double side = i % 2 == 0 ? 0.6 : -0.6;
+        return Vec3(radius * std::cos(turn), radius * std::sin(turn), radius * side);
+    };
+    constexpr int triangles = 7;
+    for (int i = 0; i <= triangles; ++i)
+        host.geometry.points.push_back(on_circle(i, 1.0));
+    for (int i = 1; i <= triangles; ++i) {
+        host.geometry.faces.push_back({0, i, i + 1});
+        host.chart_id.push_back(0.0);
+    }
+    for (int i = 1; i <= triangles; ++i) {
+        const Index tip = static_cast<Index>(host.geometry.points.size());
+        host.geometry.points.push_back(host.geometry.points[at(i)] +
+                                       host.geometry.points[at(i + 1)]);
+        host.geometry.faces.push_back({i + 1, i, tip});
+        host.chart_id.push_back(i);
+    }
+    return host;
+}
+
+TEST(Keep, APartThatIsCutOffIsNotHandedOverAcrossASeam) {
+    HostMesh host = overfull_fan();
+    checks::take_charts(host, run("Charts: Cut to Disks", host, {{"cut_tips", false}}));
+    const HostResult handed = run("Charts: Flatten", host, {{"pack", false}});
+    EXPECT_EQ(value(handed, "overlap_cuts_number"), 1);
+    EXPECT_GE(value(handed, "reattached_parts_number"), 1);
+    const HostResult kept = run("Charts: Flatten", host, {{"pack", false}, {"keep", 1}});
+    EXPECT_EQ(value(kept, "overlap_cuts_number"), 1);
+    EXPECT_EQ(value(kept, "reattached_parts_number"), 0);
+    EXPECT_EQ(value(kept, "charts_number"), 9);
+    bool all_stay = true;
+    for (std::size_t f = 0; f < host.seam_edges.size(); ++f) {
+        const int before = static_cast<int>(host.seam_edges[f]);
+        EXPECT_EQ(kept.seam_edges[f] & before, before);
+        all_stay = all_stay && (handed.seam_edges[f] & before) == before;
+    }
+    EXPECT_FALSE(all_stay);
 }
 
 TEST(Keep, FacesWithoutAChartAreSegmentedBesideTheOthers) {

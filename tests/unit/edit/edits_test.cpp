@@ -85,6 +85,18 @@ TEST(JoinSelected, WhatStretchesTooMuchIsRefusedWithTheStretch) {
     EXPECT_EQ(bounded.chart_id, forced.chart_id);
 }
 
+TEST(JoinSelected, WhatWouldLieOnItselfIsRefusedWithTheStretch) {
+    HostMesh host = checks::host_of(shapes::helix_strip(40, 1.6, 0.6, 1.0, 0.5));
+    const std::size_t count = host.geometry.faces.size();
+    for (std::size_t f = 0; f < count; ++f)
+        host.chart_id.push_back(2 * f < count ? 0.0 : 1.0);
+    select(host, [](const Vec3&) { return true; });
+    const std::string text =
+        error_of<InvalidParameter>([&] { run("Charts: Join Selected", host); });
+    EXPECT_TRUE(contains(text, "lie on each other, at an L2 stretch of 1")) << text;
+    EXPECT_EQ(value(run("Charts: Join Selected", host, {{"force", true}}), "charts_number"), 1);
+}
+
 TEST(JoinSelected, OneChartOrChartsApartAreRefused) {
     HostMesh host = in_wedges(shapes::cylinder_tube(24, 8), 6);
     select(host, [](const Vec3& p) { return std::atan2(p.y(), p.x()) > 0.9 * pi; });

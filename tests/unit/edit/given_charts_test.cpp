@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/atlas/opening.h"
 #include "devseg/atlas/slit_closing.h"
 #include "devseg/base/errors.h"
 #include "unit/checks.h"
@@ -82,23 +81,6 @@ TEST(CompleteCuts, WholeCutsStay) {
     const CompletedCuts cuts = complete_cuts(mesh, border, Progress());
     EXPECT_EQ(cuts.seam, border);
     EXPECT_EQ(cuts.completed, 0);
-}
-
-TEST(OpenAlong, EachSideOfASeamGetsItsVertices) {
-    const Mesh mesh = checks::gated(shapes::cylinder_tube(12, 4));
-    const auto meridian =
-        edges_where(mesh, [](const Vec3& p) { return p.x() > 0.0 && std::abs(p.y()) < 1e-9; });
-    const mesh::Refinement open = atlas::open_along(mesh, meridian);
-    EXPECT_TRUE(checks::is_valid(open.mesh));
-    EXPECT_EQ(open.points.size(), 5U); // one for each vertex of the cut
-    EXPECT_EQ(open.mesh.vertex_count(), mesh.vertex_count() + 5);
-    for (std::size_t i = 0; i < open.points.size(); ++i) {
-        const auto& p = open.points[i];
-        Index corner = -1;
-        p.weights.maxCoeff(&corner);
-        EXPECT_EQ(open.mesh.points[mesh.points.size() + i],
-                  mesh.points[mesh.faces[p.face][at(corner)]]);
-    }
 }
 
 Vec3 middle_of(const HostMesh& host, const Triangle& t) {
@@ -225,6 +207,90 @@ TEST(GivenCharts, ACutMeshIsOpenAndStillTheSameCharts) {
     HostMesh again = checks::host_of(open);
     checks::take_charts(again, cut);
     EXPECT_EQ(value(run("Charts: Colorize", again), "charts_number"), 2);
+}
+
+TEST(CutMesh, EachSideOfASeamGetsItsVertices) {
+    HostMesh host = checks::host_of(shapes::cylinder_tube(12, 4));
+    for (const Triangle& t : host.geometry.faces) { // along a meridian
+        int bits = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = host.geometry.points[t[k]];
+            const Vec3& q = host.geometry.points[t[(k + 1) % 3]];
+            if (std::abs(p.y()) < 1e-9 && std::abs(q.y()) < 1e-9 && p.x() > 0.0 && q.x() > 0.0)
+                bits |= 1 << k;
+        }
+        host.seam_edges.push_back(bits);
+    }
+    const HostResult cut = run("Charts: Cut Mesh Along Seams", host);
+    const mesh::RawMesh open = checks::refined(host.geometry, cut);
+    EXPECT_EQ(open.points.size(), host.geometry.points.size() + 5); // one for each on the cut
+    EXPECT_EQ(value(cut, "new_vertices_number"), 5);
+    EXPECT_TRUE(checks::is_valid(checks::gated(open)));
+}
+
+TEST(CutMesh, DoubledFacesStayOnTheirTwins) {
+    HostMesh host = sphere_with_cap();
+    checks::take_charts(host, run("Charts: From Selected Edges", host));
+    const std::size_t count = host.geometry.faces.size();
+    for (std::size_t f = 0; f < count; ++f) { // every face twice, some of them turned over
+        Triangle twin = host.geometry.faces[f];
+        if (f % 2 == 0)
+            std::swap(twin[0], twin[1]);
+        host.geometry.faces.push_back(twin);
+    }
+    host.face_selected.clear();
+    for (auto* values : {&host.chart_id, &host.seam_edges})
+        values->resize(2 * count, 0.0);
+    const HostResult cut = run("Charts: Cut Mesh Along Seams", host);
+    EXPECT_GT(value(cut, "new_vertices_number"), 0);
+    const mesh::RawMesh open = checks::refined(host.geometry, cut);
+    for (std::size_t f = 0; f < count; ++f) {
+        Triangle twin = open.faces[count + f];
+        if (f % 2 == 0)
+            std::swap(twin[0], twin[1]);
+        EXPECT_EQ(twin, open.faces[f]) << f;
+    }
+}
+
+TEST(CutMesh, SheetsThatMeetAtOneEdgeComeApart) {
+    HostMesh host;
+    host.geometry.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+    host.geometry.faces = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    const HostResult cut = run("Charts: Cut Mesh Along Seams", host);
+    EXPECT_EQ(value(cut, "charts_number"), 3);
+    EXPECT_EQ(value(cut, "new_vertices_number"), 4); // both ends of the edge, three times each
+    const mesh::RawMesh open = checks::refined(host.geometry, cut);
+    for (const auto& [ends, faces] : checks::edges_of(open))
+        EXPECT_EQ(faces.size(), 1U);
+}
+
+// Files have two vertices where texture coordinates differ: they are read as one, and still what
+// hangs together at either of them goes on to do so.
+TEST(CutMesh, VerticesAtTheSamePlaceAreNoReasonToTearFacesApart) {
+    HostMesh host = sphere_with_cap();
+    checks::take_charts(host, run("Charts: From Selected Edges", host));
+    const auto count = static_cast<Index>(host.geometry.points.size());
+    const std::vector<Vec3> points = host.geometry.points;
+    host.geometry.points.insert(host.geometry.points.end(), points.begin(), points.end());
+    for (Triangle& t : host.geometry.faces)
+        if (middle_of(host, t).x() > 0.0)
+            for (Index& v : t)
+                v += count;
+    const HostResult cut = run("Charts: Cut Mesh Along Seams", host);
+    const mesh::RawMesh open = checks::refined(host.geometry, cut);
+    const checks::Edges edges = checks::edges_of(open);
+    int torn = 0;
+    for (const auto& [ends, faces] : checks::edges_of(host.geometry)) {
+        if (faces.size() != 2)
+            continue;
+        const Triangle& t = open.faces[faces[0].first];
+        const int k = faces[0].second;
+        const std::size_t sides = edges.at({t[at(k)], t[at((k + 1) % 3)]}).size();
+        const bool is_seam = (cut.seam_edges[faces[0].first] >> k & 1) != 0;
+        EXPECT_EQ(sides, is_seam ? 1U : 2U);
+        torn += is_seam ? 1 : 0;
+    }
+    EXPECT_GT(torn, 10);
 }
 
 } // namespace
