@@ -16,6 +16,7 @@ class Method:
     Attributes:
         name: word of the command line.
         filter: name of the filter.
+        parameters: of the filter.
         options: options of the command line and the filter parameters they set; an option that
             is not here does not apply to the method.
         deforms: whether the charts are deformed until they can be unfolded exactly.
@@ -25,6 +26,7 @@ class Method:
 
     name: str
     filter: str
+    parameters: tuple[str, ...]
     options: Mapping[str, str]
     deforms: bool
     preset: str | None
@@ -49,6 +51,7 @@ METHODS = {
     name: Method(
         name,
         row["filter"],
+        tuple(row["parameters"]),
         {option: of for option, of in _OPTIONS.items() if of in row["parameters"]},
         row["deforms"],
         row["preset"],

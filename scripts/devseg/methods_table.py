@@ -72,6 +72,7 @@ TABLE = {
         "filter": "compute_segmentation_papercraft_per_face",
         "parameters": [
             "charts_number",
+            "deform",
             "growth_threshold",
             "slit_threshold",
             "max_iterations",
