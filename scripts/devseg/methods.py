@@ -40,6 +40,7 @@ _OPTIONS = {
     "max_linf_stretch": "max_linf_stretch",
     "max_fitting_error": "max_fitting_error",
     "slit_threshold": "slit_threshold",
+    "max_net_faces": "max_net_faces",
     "seed": "random_seed",
     "max_iterations": "max_iterations",
 }

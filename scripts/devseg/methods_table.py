@@ -73,6 +73,7 @@ TABLE = {
         "parameters": [
             "charts_number",
             "deform",
+            "max_net_faces",
             "growth_threshold",
             "slit_threshold",
             "max_iterations",

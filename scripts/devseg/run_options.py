@@ -67,6 +67,9 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         help="whether vertices move until charts unfold exactly: always, never (papercraft: exact "
         "nets instead), or auto, with papercraft but for models of few faces; default: auto",
     )
+    parser.add_argument(
+        "--max-net-faces", type=integer(1), metavar="N", help="of nets (papercraft); default: any"
+    )
     parser.add_argument("--max-iterations", type=integer(1), metavar="N", help="at most N rounds")
     parser.add_argument("--seed", type=integer(0), metavar="N", help="of the random choices")
     parser.add_argument(

@@ -20,9 +20,9 @@ namespace {
 struct Tuning {
     // Of the root of the surface's area: sides of an edge that are closer lie on each other.
     double together = 1e-7;
-    int most_orders = 24;
-    Index most_faces_in_all = 6000; // over all orders, so that large surfaces try few
-    double variation = 0.6;         // of the lengths that hinges are sorted by
+    int most_orders = 200;
+    Index most_faces_in_all = 60000; // over all orders, so that large surfaces try few
+    double variation = 0.6;          // of the lengths that hinges are sorted by
 };
 constexpr Tuning tuning;
 
@@ -35,8 +35,10 @@ struct Hinge {
 // The faces in the plane: islands that grow together.
 class Nets {
 public:
-    Nets(const Mesh& mesh, const mesh::FaceComponents& regions)
-        : mesh_(mesh), regions_(regions), islands_(at(regions.count)), faces_(at(regions.count)) {
+    // `most_faces`: of a net, those of one plane being one; 0: no limit.
+    Nets(const Mesh& mesh, const mesh::FaceComponents& regions, Index most_faces)
+        : mesh_(mesh), regions_(regions), most_faces_(most_faces), islands_(at(regions.count)),
+          faces_(at(regions.count)), size_(at(regions.count), 1) {
         uv_.resize(mesh.twin.size());
         lay_flat();
         tolerance_ = plane::layout_tolerance(std::sqrt(mesh.total_area));
@@ -48,6 +50,9 @@ public:
         HalfEdge fixed = h;
         HalfEdge moved = mesh_.twin[h];
         if (island(fixed) == island(moved))
+            return;
+        const Index size = size_[at(island(fixed))] + size_[at(island(moved))];
+        if (most_faces_ > 0 && size > most_faces_)
             return;
         if (faces_[at(island(fixed))].size() < faces_[at(island(moved))].size())
             std::swap(fixed, moved);
@@ -74,6 +79,7 @@ public:
         const Index from = island(moved);
         stay.insert(stay.end(), come.begin(), come.end());
         come.clear();
+        size_[at(into)] = size;
         islands_.join(into, from);
     }
 
@@ -139,8 +145,10 @@ private:
 
     const Mesh& mesh_;
     const mesh::FaceComponents& regions_;
+    Index most_faces_;
     graph::Unions islands_;                 // of regions
     std::vector<std::vector<Index>> faces_; // of each island
+    std::vector<Index> size_;               // of each island, in regions
     CornerUv uv_;
     double tolerance_ = 0.0;
     double together_ = 0.0;
@@ -179,7 +187,8 @@ void sort_hinges(int order, int random_seed, std::vector<Hinge>& hinges) {
 
 } // namespace
 
-atlas::ChartMap unfold_into_nets(const Mesh& mesh, int random_seed, const Progress& progress) {
+atlas::ChartMap unfold_into_nets(const Mesh& mesh, const NetOptions& options,
+                                 const Progress& progress) {
     const mesh::FaceComponents regions = mesh::flat_regions(mesh);
     const std::vector<Hinge> hinges = hinges_between(mesh, regions);
     const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
@@ -190,8 +199,8 @@ atlas::ChartMap unfold_into_nets(const Mesh& mesh, int random_seed, const Progre
     Heartbeat beat(progress);
     for (int order = 0; order < orders; ++order) {
         std::vector<Hinge> sorted = hinges;
-        sort_hinges(order, random_seed, sorted);
-        Nets nets(mesh, regions);
+        sort_hinges(order, options.random_seed, sorted);
+        Nets nets(mesh, regions, options.most_faces);
         for (const Hinge& hinge : sorted) {
             beat();
             nets.hinge(hinge.edge);

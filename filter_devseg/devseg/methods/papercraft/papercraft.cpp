@@ -149,6 +149,7 @@ double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
 OptionRanges<PapercraftOptions> PapercraftOptions::ranges() {
     using O = PapercraftOptions;
     return with_rounds<O>({{&O::charts_number, {"charts_number", 1, 1e9}},
+                           {&O::max_net_faces, {"max_net_faces", 0, 1e9}},
                            {&O::growth_threshold, {"growth_threshold", 0.0, 1000.0, true}},
                            {&O::slit_threshold, {"slit_threshold", 0.0, 1000.0}}});
 }
@@ -247,8 +248,8 @@ PapercraftResult nets_and_charts(const Mesh& mesh, const std::vector<std::uint8_
     }
     const atlas::ChartSurface surface = surface_of(1);
     auto unfolding = progress.part("unfolding", progress.left());
-    const atlas::ChartMap nets =
-        unfold_into_nets(atlas::mesh_of(mesh, surface), options.random_seed, unfolding);
+    const atlas::ChartMap nets = unfold_into_nets(
+        atlas::mesh_of(mesh, surface), {options.random_seed, options.max_net_faces}, unfolding);
     result.nets = nets.count;
     append_charts(surface, nets, all);
     result.charts = atlas::make_chart_map(mesh, all.chart, all.seam, false);
@@ -324,6 +325,8 @@ std::vector<FilterDeclaration> filters() {
                     "are nets that unfold exactly as they are (Never), as many as it takes. "
                     "Automatic: nets of components that have few faces, those of one plane being "
                     "one; charts of the others.")
+            .integer(&O::max_net_faces, "Most faces of a net",
+                     "Of charts that unfold as they are; those of one plane are one. 0 = no limit.")
             .real(&O::growth_threshold, "Growth threshold",
                   "What the inner vertices of a chart of the initial segmentation may lack to "
                   "360 degrees, or have too much, all together, in radians, above 0. Smaller "

@@ -21,6 +21,7 @@ enum class Deform { automatic, always, never };
 struct PapercraftOptions {
     int charts_number = 20;
     Deform deform = Deform::automatic;
+    int max_net_faces = 0;         // those of one plane being one; 0: no limit
     double growth_threshold = 0.5; // radians that a chart of the initial segmentation may cost
     double slit_threshold = 0.1;   // largest E_s of a slit that is closed, share of the diagonal
     int max_iterations = 100;      // rounds of the chart selection

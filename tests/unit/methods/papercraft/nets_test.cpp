@@ -1,5 +1,5 @@
 // Nets of polyhedra: few, exact, and no flat face is cut.
-#include <algorithm>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace devseg::papercraft {
 namespace {
 
 atlas::ChartMap nets_of(const Mesh& mesh) {
-    return unfold_into_nets(mesh, 0, Progress());
+    return unfold_into_nets(mesh, {}, Progress());
 }
 
 Index cut_edges(const Mesh& mesh, const atlas::ChartMap& charts) {
@@ -91,6 +91,23 @@ TEST(Nets, StripsThatWouldLieOnThemselvesArePieces) {
     expect_exact(mesh, charts);
 }
 
+TEST(Nets, HaveNoMoreFacesThanTheyMay) {
+    const Mesh mesh = checks::gated(shapes::cube(2));
+    for (const int most : {1, 2, 3, 6}) {
+        const atlas::ChartMap charts = unfold_into_nets(mesh, {0, most}, Progress());
+        EXPECT_GE(charts.count, 6 / most);
+        expect_exact(mesh, charts);
+        const mesh::FaceComponents regions = mesh::flat_regions(mesh);
+        for (Index c = 0; c < charts.count; ++c) {
+            std::set<Index> faces;
+            for (const Face f : mesh.all_faces())
+                if (charts.chart[f] == c)
+                    faces.insert(regions.label[f]);
+            EXPECT_LE(static_cast<int>(faces.size()), most);
+        }
+    }
+}
+
 TEST(Nets, AreForComponentsOfFewFaces) {
     const Mesh mesh = checks::gated(
         shapes::join(shapes::sphere(3), shapes::moved(shapes::cube(4), 1.0, Vec3(3, 0, 0))));
@@ -113,7 +130,7 @@ TEST(Nets, AreTheSameEveryTimeAndOthersWithAnotherSeed) {
     const Mesh mesh = checks::gated(shapes::sphere(2));
     const atlas::ChartMap charts = nets_of(mesh);
     EXPECT_EQ(charts.seam, nets_of(mesh).seam);
-    EXPECT_NE(charts.seam, unfold_into_nets(mesh, 1, Progress()).seam);
+    EXPECT_NE(charts.seam, unfold_into_nets(mesh, {1, 0}, Progress()).seam);
 }
 
 TEST(Nets, CanBeCancelled) {
