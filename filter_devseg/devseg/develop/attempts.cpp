@@ -10,8 +10,10 @@ namespace devseg::develop {
 namespace {
 
 struct Tuning {
-    double held_back = 0.2;        // factor of the ease of points that went wrong
-    double finer_turn = 0.7;       // factor of the largest defect inside, where all moved too far
+    double held_back = 0.2; // factor of the ease of points that went wrong
+    // Factors of the largest defect inside, where all moved too far: by how much, within bounds.
+    double least_finer = 0.6;
+    double most_finer = 0.9;
     double relieved_defect = 0.15; // radians: what is opened around a fault at first
     int widening = 2;              // attempts after which faults reach one ring farther
     int still = 6;                 // attempt in which the faults' charts stop to move
@@ -26,7 +28,7 @@ struct Faults {
     Marks moved; // too far, or into another face
     bool any_stuck = false;
     bool any_moved = false;
-    bool mean_too_large = false;
+    double mean_share = 0.0; // mean displacement over what it may be
 };
 
 Faults find_faults(const Mesh& mesh, const DeformOptions& options, const DeformResult& result,
@@ -53,8 +55,8 @@ Faults find_faults(const Mesh& mesh, const DeformOptions& options, const DeformR
                 faults.moved[v] = 1;
                 faults.any_moved = true;
             }
-    faults.mean_too_large = options.max_mean_displacement > 0.0 &&
-                            result.mean_displacement > options.max_mean_displacement * diagonal;
+    if (options.max_mean_displacement > 0.0)
+        faults.mean_share = result.mean_displacement / (options.max_mean_displacement * diagonal);
     return faults;
 }
 
@@ -98,8 +100,9 @@ bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOpt
                 std::min(attempt.ease[at(point_of[v])], std::pow(tuning.held_back, number + 1));
     if (!options.adjust_slits)
         return faults.any_moved;
-    if (faults.mean_too_large)
-        attempt.most_turn_inside *= tuning.finer_turn;
+    if (faults.mean_share > 1.0)
+        attempt.most_turn_inside *=
+            std::clamp(std::sqrt(1.0 / faults.mean_share), tuning.least_finer, tuning.most_finer);
     Marks around = faults.moved;
     for (std::size_t v = 0; v < around.size(); ++v) {
         around[v] |= faults.stuck[v];
@@ -120,7 +123,7 @@ bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOpt
                 attempt.ease[at(point_of[v])] = 0.0;
             }
     }
-    return faults.any_stuck || faults.any_moved || faults.mean_too_large;
+    return faults.any_stuck || faults.any_moved || faults.mean_share > 1.0;
 }
 
 } // namespace devseg::develop

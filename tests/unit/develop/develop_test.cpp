@@ -212,8 +212,8 @@ TEST(Deform, SurfacesThatWouldCrossAreCutUntilTheyDoNot) {
     EXPECT_TRUE(find_intersections(r.points, shells.mesh.faces, Progress()).empty());
     EXPECT_LE(worst_defect(with_points(shells.mesh, r.points), r.charts.seam), 1e-6);
     EXPECT_TRUE(checks::is_valid(shells.mesh, r.charts));
-    // Most of it is still surface that bends.
-    EXPECT_GT(r.inner_vertices, shells.mesh.vertex_count() / 4);
+    // Charts that do not come near others still bend.
+    EXPECT_GT(r.inner_vertices, shells.mesh.vertex_count() / 8);
 }
 
 TEST(Deform, VerticesMoveNoFartherThanTheyMay) {
