@@ -67,9 +67,28 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
                  "they are made smaller or put on the other side.")
         .real(&O::tab_depth_mm, {"tab_depth_mm", 0.5, 1e3}, "Depth of glue tabs (mm)",
               "Depth of the flaps in millimetres, where there is room.")
+        .choice(&O::tabs, "tabs", "Sides of glue tabs",
+                {"Automatic", "One", "Both", "Alternating", "None"},
+                "One: a flap on one side of each seam, wherever it fits best. Both: on both sides. "
+                "Alternating: stretches of a seam take turns. None: no flaps, whatever the preset. "
+                "Automatic: one where 'Glue tabs' or the preset asks for them.")
+        .boolean(&O::border_tabs, "border_tabs", "Glue tabs on borders",
+                 "Flaps along open borders of the model as well.")
+        .boolean(
+            &O::tab_shadows, "tab_shadows", "Shadows of glue tabs",
+            "Outlines of the flaps on the pieces that they are glued to, where they lie within "
+            "them.")
         .boolean(&O::fold_lines, "fold_lines", "Fold lines",
                  "Mountain folds (solid) and valley folds (dashed) where the surface bends, seen "
                  "from the outside.")
+        .choice(&O::fold_marks, "fold_marks", "Marks of folds", {"Lines", "Outside", "None"},
+                "Lines: along the whole fold. Outside: short strokes beside the outline where the "
+                "fold ends, so that the piece stays clean. None: no marks.")
+        .real(&O::perforation_mm, {"perforation_mm", 0.0, 1e3}, "Perforation (mm)",
+              "Length in millimetres of the cuts that folds are made of, on a layer of their own "
+              "for cutters. 0 = folds are lines.")
+        .real(&O::perforation_gap_mm, {"perforation_gap_mm", 0.1, 1e3}, "Perforation gap (mm)",
+              "What stays between two cuts of a perforation, in millimetres.")
         .real(&O::fold_angle, "Least fold angle (degrees)",
               "Edges that bend by less are no folds, in degrees.");
 }
@@ -84,6 +103,9 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
         .boolean(&O::tiling, "tiling", "Tiling",
                  "Pieces larger than a page go on several pages that are glued together. Off: "
                  "they are refused.")
+        .boolean(&O::fit_page, "fit_page", "Fit pieces on pages",
+                 "Pieces that do not fit on a page are cut until they do, along folds where that "
+                 "is short enough.")
         .boolean(&O::cover, "cover", "Cover and overview",
                  "PDF only: pages with the model and the numbers of its pieces, the list of seams, "
                  "and how the pages lie.")

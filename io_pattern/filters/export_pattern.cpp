@@ -103,7 +103,7 @@ Index printed_count(const sheet::PatternLayout& layout) {
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
                               const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
-    const sheet::ExportOptions options = sheet::resolved(given);
+    const sheet::ExportOptions options = sheet::limited_to_page(sheet::resolved(given));
     sheet::page_format(options); // says what is wrong with it before the work begins
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);

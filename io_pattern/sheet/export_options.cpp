@@ -1,5 +1,6 @@
 #include "sheet/export_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -24,6 +25,9 @@ void check(const char* name, double value, double least, const char* expected) {
 constexpr double longest_side = 1e5; // mm
 // Two pages share the overlap; what they add to the sheet must be more than a sliver.
 constexpr double least_room = tile_overlap + 20.0; // mm
+
+// What turning a piece to its least box by steps and the clearance of pages take.
+constexpr double page_play = 4.0; // mm
 
 struct NamedPage {
     const char* name;
@@ -67,6 +71,8 @@ ExportOptions resolved(const ExportOptions& given) {
     check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
+    check("perforation_mm", options.perforation_mm, 0.0, "cuts of 0 mm or more");
+    check("perforation_gap_mm", options.perforation_gap_mm, 0.1, "gaps of 0.1 mm or more");
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
     check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");
@@ -88,6 +94,10 @@ ExportOptions resolved(const ExportOptions& given) {
         options.edge_numbers = true;
         break;
     }
+    if (options.tabs != TabSides::automatic)
+        options.glue_tabs = options.tabs != TabSides::none;
+    if (options.perforation_mm > 0.0)
+        options.fold_lines = true;
     if (options.glue_tabs && options.allowance().largest() > 0.0)
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
                                "both; set the allowances to 0 or choose another preset");
@@ -106,6 +116,23 @@ std::optional<PageFormat> page_format(const ExportOptions& options) {
                                writers::number_text(options.page_margin_mm, 3) +
                                " mm; take a larger page or smaller margins");
     return format;
+}
+
+ExportOptions limited_to_page(const ExportOptions& given) {
+    if (!given.fit_page)
+        return given;
+    const std::optional<PageFormat> format = page_format(given);
+    if (!format)
+        throw InvalidParameter("fit_page: expected a page that pieces are to fit on, found none; "
+                               "give page");
+    const double around = given.glue_tabs ? given.tab_depth_mm : given.allowance().largest();
+    const Vec2 room = (format->printable() - Vec2::Constant(2.0 * around + page_play))
+                          .cwiseMax(Vec2::Constant(least_room));
+    ExportOptions options = given;
+    const auto limit = [](double& most, double by) { most = most > 0.0 ? std::min(most, by) : by; };
+    limit(options.max_piece_mm, room.maxCoeff());
+    limit(options.max_width_mm, room.minCoeff());
+    return options;
 }
 
 } // namespace devseg::sheet

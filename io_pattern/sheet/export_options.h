@@ -8,6 +8,7 @@
 #include "devseg/mesh/mesh.h"
 #include "devseg/pattern/pieces.h"
 #include "sheet/allowance.h"
+#include "sheet/tabs.h"
 
 namespace devseg::sheet {
 
@@ -18,6 +19,8 @@ enum class DxfKind { automatic, cutter, apparel };
 enum class Grouping { layer, piece };
 /// Texts of an SVG: as text, or as outlines of its letters.
 enum class TextKind { text, paths };
+/// Folds as lines, as short strokes outside of the outlines, where nobody sees them later, or not.
+enum class FoldMarks { lines, outside, none };
 
 struct ExportOptions : pattern::PatternOptions {
     ExportOptions() { notch_spacing_mm = 0.0; }
@@ -29,15 +32,22 @@ struct ExportOptions : pattern::PatternOptions {
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
+    TabSides tabs = TabSides::automatic;
+    bool border_tabs = false; // tabs along open borders as well
+    bool tab_shadows = false; // where they are glued, on the other piece
     bool fold_lines = false;
+    FoldMarks fold_marks = FoldMarks::lines;
+    double perforation_mm = 0.0; // length of the cuts that make a fold; 0: folds are drawn
+    double perforation_gap_mm = 1.0;
     bool edge_numbers = false; // the number of each seam on both sides
     bool step_numbers = false; // behind each number, the step of the assembly that does the seam
     bool grain_line = false;
     bool mirror = false;       // as seen from inside the model
     std::string page = "none"; // none, a4, letter, a3 or WxH in mm
     double page_margin_mm = 10.0;
-    bool tiling = true; // pieces larger than a page go on several
-    bool cover = true;  // PDF: picture of the model, list of the pieces, overview
+    bool tiling = true;    // pieces larger than a page go on several
+    bool fit_page = false; // pieces are cut until each fits on a page
+    bool cover = true;     // PDF: picture of the model, list of the pieces, overview
     DxfKind dxf_kind = DxfKind::automatic;
     Grouping group = Grouping::layer;
     TextKind text = TextKind::text;
@@ -76,6 +86,11 @@ struct PageFormat {
     /// From one page of a sheet to the next.
     Vec2 step() const { return printable() - Vec2::Constant(tile_overlap); }
 };
+
+/// The options with limits of the pieces' size, such that each fits on a page with its tabs or
+/// allowance, where that is asked for. `options` must be resolved. Throws InvalidParameter without
+/// a page.
+ExportOptions limited_to_page(const ExportOptions& options);
 
 /// none (no value), a4, letter, a3 or WxH, such as 600x400. Throws InvalidParameter for others and
 /// for pages that their margins leave no room on.

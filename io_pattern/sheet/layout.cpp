@@ -156,13 +156,13 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     tabs.tabs.resize(pattern.pieces.size());
     auto tabbing = progress.part("glue tabs", 0.1);
     if (options.glue_tabs)
-        tabs = make_tabs(pattern, options.tab_depth_mm, tabbing);
+        tabs =
+            make_tabs(pattern, {options.tab_depth_mm, options.tabs, options.border_tabs}, tabbing);
     layout.seams_without_tab = tabs.seams_without;
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
-        layout.pieces.push_back(
-            compose_piece(pattern, static_cast<Index>(i), tabs.tabs[i], options));
+        layout.pieces.push_back(compose_piece(pattern, static_cast<Index>(i), tabs, options));
         if (options.marks_openings())
             add_openings(pattern, layout.assembly, layout.pieces.back());
     }

@@ -11,46 +11,6 @@ namespace devseg::sheet {
 
 namespace {
 
-constexpr double mark_length = 4.0;    // mm: of notches where there is no allowance, of arrow heads
-constexpr double notch_share = 0.6;    // of the allowance
-constexpr double arrow_angle = 0.4;    // radians
-constexpr double shortest_grain = 6.0; // mm: less cannot be laid along a thread
-
-// Distance from p along the direction to the nearest cut line, or a negative number.
-double reach(const SheetPiece& piece, const Vec2& p, const Vec2& direction, double most) {
-    double best = -1.0;
-    for (const std::vector<Vec2>& ring : piece.cut)
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Vec2 a = ring[i] - p;
-            const Vec2 d = ring[(i + 1) % ring.size()] - ring[i];
-            const double across = plane::cross(direction, d);
-            if (across == 0.0)
-                continue;
-            const double t = plane::cross(a, d) / across;
-            const double s = plane::cross(a, direction) / across;
-            if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= most && (best < 0.0 || t < best))
-                best = t;
-        }
-    return best;
-}
-
-// In the allowance, from the cut line towards the sew line; without one, and in the folded
-// allowance of a narrow dart, from the sew line inwards.
-void add_notch(const pattern::PiecePath& path, const pattern::SeamSide& side, double distance,
-               double allowance, SheetPiece& result) {
-    const OutlinePlace place = place_on(path, side, distance);
-    const Vec2 outward(place.direction.y(), -place.direction.x());
-    if (allowance > 0.0) {
-        const double out = reach(result, place.position, outward, 1.01 * allowance);
-        if (out > 0.0) {
-            result.notches.push_back({place.position + out * outward,
-                                      place.position + (1.0 - notch_share) * out * outward});
-            return;
-        }
-    }
-    result.notches.push_back({place.position, place.position - mark_length * outward});
-}
-
 // Font sizes in mm: the largest that fits. Less than the last cannot be read on paper.
 constexpr double name_sizes[] = {8.0, 6.5, 5.0, 4.0, 3.2, 2.5};
 constexpr double number_sizes[] = {3.5, 3.0, 2.5};
@@ -104,7 +64,8 @@ public:
                 solid_.add_ring(ring, 0);
         for (const std::vector<Vec2>& slit : piece.slits)
             add_line(slit, solid_);
-        for (const auto* lines : {&piece.mountains, &piece.valleys, &piece.grain, &piece.openings})
+        for (const auto* lines : {&piece.mountains, &piece.valleys, &piece.grain, &piece.openings,
+                                  &piece.perforations, &piece.shadows})
             for (const std::vector<Vec2>& line : *lines)
                 add_line(line, lines_);
         for (const SheetNotch& notch : piece.notches)
@@ -362,34 +323,30 @@ OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& s
     return place;
 }
 
-void add_notches(const pattern::Pattern& pattern, const ExportOptions& options,
-                 SheetPiece& result) {
-    const pattern::PatternPiece& piece = pattern.pieces[result.piece];
-    for (const pattern::Seam& seam : pattern.seams)
-        for (const pattern::SeamSide& side : seam.sides)
-            if (side.piece == result.piece)
-                for (const double distance : side.notches)
-                    add_notch(piece.path(side.path), side, distance, options.seam_allowance_mm,
-                              result);
+bool is_ambiguous(const std::string& number) {
+    constexpr const char* upside_down = "01----9-86"; // of each digit
+    std::string turned;
+    for (auto c = number.rbegin(); c != number.rend(); ++c)
+        turned += *c >= '0' && *c <= '9' ? upside_down[*c - '0'] : '-';
+    return turned != number && turned.find('-') == std::string::npos && turned.front() != '0';
 }
 
-void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {
-    const Vec2 from = piece.grain[0];
-    const Vec2 to = piece.grain[1];
-    const double length = (to - from).norm();
-    if (length < shortest_grain)
-        return;
-    result.grain_line = piece.grain;
-    const Vec2 direction = (to - from) / length;
-    const double head = std::min(mark_length, 0.3 * length);
-    const auto barb = [&](const Vec2& tip, const Vec2& along, double angle) {
-        return Vec2(tip - head * (Eigen::Rotation2Dd(angle) * along));
+namespace {
+
+// Of the middles of both sides of a dart: where they are nearer, one number stands for both.
+constexpr double narrow_dart = 10.0; // mm
+
+std::size_t numbers_of(const pattern::Pattern& pattern, const pattern::Seam& seam) {
+    const auto middle = [&](const pattern::SeamSide& side) {
+        return place_on(pattern.pieces[side.piece].path(side.path), side, 0.5 * side.length)
+            .position;
     };
-    result.grain = {
-        {from, to},
-        {barb(to, direction, arrow_angle), to, barb(to, direction, -arrow_angle)},
-        {barb(from, -direction, arrow_angle), from, barb(from, -direction, -arrow_angle)}};
+    const bool is_narrow =
+        seam.is_dart && (middle(seam.sides[0]) - middle(seam.sides[1])).norm() <= narrow_dart;
+    return is_narrow ? 1 : seam.sides.size();
 }
+
+} // namespace
 
 LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
                   const ExportOptions& options, std::vector<SheetPiece>& pieces,
@@ -409,7 +366,8 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
             write_openings(pattern, assembly, piece, room);
         for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)
             for (const pattern::SeamSide& side : pattern.seams[s].sides) {
-                if (side.piece != piece.piece)
+                if (side.piece != piece.piece ||
+                    written[s].size() == numbers_of(pattern, pattern.seams[s]))
                     continue;
                 NumberWriter number(source.path(side.path), side,
                                     seam_text(pattern, assembly, options, s), piece, room);
@@ -421,7 +379,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
             }
     }
     for (std::size_t s = 0; s < written.size() && options.edge_numbers; ++s) {
-        if (written[s].size() < pattern.seams[s].sides.size()) {
+        if (written[s].size() < numbers_of(pattern, pattern.seams[s])) {
             left_out.seams.push_back(static_cast<Index>(s));
             continue;
         }

@@ -36,6 +36,9 @@ void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& ass
 /// Adds the arrow along the threads, where it is long enough to be of use.
 void add_grain(const pattern::PatternPiece& piece, SheetPiece& result);
 
+/// Whether the text upside down is another number, as 6 and 16: it is underlined then.
+bool is_ambiguous(const std::string& number);
+
 /// What could not be written in a size that can be read.
 struct LeftOut {
     std::vector<Index> seams;  // positions in Pattern::seams
@@ -46,7 +49,7 @@ struct LeftOut {
 /// Texts are upright, 2.5 mm high at least, and touch neither lines nor each other; where there is
 /// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
 /// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
-/// number on both sides or on none.
+/// number on both sides or on none, and narrow darts on one.
 /// Openings are named as well. `borders`: for each sheet, lines that no text may cross; or nothing.
 LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
                   const ExportOptions& options, std::vector<SheetPiece>& pieces,

@@ -6,6 +6,7 @@
 
 #include "devseg/plane/plane.h"
 #include "sheet/drawing_plan.h"
+#include "sheet/marks.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -137,6 +138,23 @@ writers::DrawingPolyline segment(const Vec2& a, const Vec2& b) {
     return {{a, b}, false};
 }
 
+constexpr double underline_gap = 0.12; // of the font size, below the digits
+
+// Below numbers that are others upside down.
+void add_underlines(const SheetPiece& piece, writers::DrawingLayer& layer) {
+    std::vector<std::vector<Vec2>> lines;
+    for (const writers::DrawingText& text : piece.numbers) {
+        if (!is_ambiguous(text.text))
+            continue;
+        const Vec2 along(std::cos(text.angle), std::sin(text.angle));
+        const Vec2 foot = text.position - (0.5 * writers::capital_height + underline_gap) *
+                                              text.size * plane::left_of(along);
+        const Vec2 half = 0.5 * writers::text_width(text.text, text.size) * along;
+        lines.push_back({foot - half, foot + half});
+    }
+    add_lines(lines, false, piece, "-underline", layer);
+}
+
 // Crosses in the middle of the strips that a page shares with its neighbours, in the drawing.
 std::vector<Vec2> cross_places(const PatternSheet& sheet, const PageFormat& page,
                                const PrintedPage& printed) {
@@ -199,6 +217,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
     writers::DrawingLayer cut{"cut", "Cut", "#ff0000", {}, {}, {}};
     writers::DrawingLayer mountain{"mountain", "Fold mountain", "#0000ff", {}, {}, {}};
     writers::DrawingLayer valley{"valley", "Fold valley", "#00aa00", {3.0, 1.5}, {}, {}};
+    writers::DrawingLayer perforation{"perforation", "Perforation", "#ff8800", {}, {}, {}};
+    writers::DrawingLayer shadow{"shadow", "Tab shadows", "#999999", {1.0, 1.0}, {}, {}};
     writers::DrawingLayer sew{"sew", "Sew line", "#00a000", {3.0, 1.5}, {}, {}};
     writers::DrawingLayer notch{"notch", "Notches", "#ff00ff", {}, {}, {}};
     writers::DrawingLayer grain{"grain", "Grain line", "#000000", {}, {}, {}};
@@ -213,10 +233,13 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         add_rings(piece.sew, piece.sew_curves, piece, "-sew", sew);
         add_lines(piece.mountains, false, piece, "-mountain", mountain);
         add_lines(piece.valleys, false, piece, "-valley", valley);
+        add_lines(piece.perforations, false, piece, "-perforation", perforation);
+        add_lines(piece.shadows, false, piece, "-shadow", shadow);
         add_lines(piece.grain, false, piece, "-grain", grain);
         add_notches(piece, notch);
         add_lines(piece.openings, false, piece, "-opening", notch);
         add_lines(piece.leaders, false, piece, "-leader", laser ? engrave : numbers);
+        add_underlines(piece, laser ? engrave : numbers);
         for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
                                            std::pair(&piece.numbers, laser ? &engrave : &numbers)})
             for (writers::DrawingText written : *texts) {
@@ -236,8 +259,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         drawing.pages.push_back(
             {pages[i].window.low - pages[i].window.position, layout.page->size});
     drawing.layers = {
-        cut,     mountain, valley,  sew,
-        notch,   grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
+        cut,     perforation, mountain, valley,  shadow,
+        sew,     notch,       grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
         numbers, text};
     return drawing;
 }

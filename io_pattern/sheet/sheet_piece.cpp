@@ -1,6 +1,8 @@
 #include "sheet/sheet_piece.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "devseg/base/errors.h"
 #include "devseg/declare/segmentation_output.h"
@@ -160,30 +162,91 @@ double bend_at(const pattern::Pattern& pattern, const pattern::PiecePath& path,
     return length > 0.0 ? sum / length : 0.0;
 }
 
-void add_tabs(const pattern::Pattern& pattern, const std::vector<GlueTab>& tabs, double least_fold,
-              std::vector<Outline>& outlines, SheetPiece& result) {
+// Strokes of this length outside of outlines mark where folds end.
+constexpr double outside_mark = 2.5; // mm
+constexpr double on_outline = 0.05;  // mm: nearer ends of folds lie on it
+
+// The cuts of a perforation along a line, with a gap at either end.
+void perforate(const std::vector<Vec2>& line, const ExportOptions& options, SheetPiece& result) {
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        const Vec2 along = line[i] - line[i - 1];
+        const double length = along.norm();
+        const double pitch = options.perforation_mm + options.perforation_gap_mm;
+        const double whole = std::floor((length - options.perforation_gap_mm) / pitch);
+        const double number = std::max(1.0, whole);
+        const double cut = std::min(options.perforation_mm, 0.5 * length);
+        const double start = 0.5 * (length - number * pitch + options.perforation_gap_mm);
+        for (double k = 0.0; k < number && length > 0.0; ++k) {
+            const double from = whole < 1.0 ? 0.5 * (length - cut) : start + k * pitch;
+            result.perforations.push_back(
+                {line[i - 1] + from / length * along, line[i - 1] + (from + cut) / length * along});
+        }
+    }
+}
+
+void add_fold(std::vector<Vec2> line, bool is_mountain, const ExportOptions& options,
+              SheetPiece& result) {
+    if (options.perforation_mm > 0.0)
+        perforate(line, options, result);
+    else
+        (is_mountain ? result.mountains : result.valleys).push_back(std::move(line));
+}
+
+void add_tabs(const pattern::Pattern& pattern, const std::vector<GlueTab>& tabs,
+              const ExportOptions& options, std::vector<Outline>& outlines, SheetPiece& result) {
+    const double least_fold = options.fold_angle * degrees;
     for (const GlueTab& tab : tabs) {
         Outline& outline = outlines[tab.path];
         std::vector<Vec2> base;
         for (Index i = tab.first; i <= tab.first + tab.count; ++i)
             base.push_back(outline.points[outline.at_index(i)]);
         const pattern::PiecePath& path = pattern.pieces[result.piece].path(tab.path);
-        const bool is_valley = bend_at(pattern, path, tab) < -least_fold;
-        (is_valley ? result.valleys : result.mountains).push_back(std::move(base));
+        const double bend = tab.on_border ? pi : bend_at(pattern, path, tab);
+        if (std::abs(bend) > least_fold && options.fold_marks == FoldMarks::lines)
+            add_fold(std::move(base), bend > 0.0, options, result);
         for (Index i = tab.first + 1; i < tab.first + tab.count; ++i)
             outline.skipped[outline.at_index(i)] = 1;
-        outline.inserted[outline.at_index(tab.first)] = {tab.corner[0], tab.corner[1]};
+        std::vector<Vec2>& flap = outline.inserted[outline.at_index(tab.first)];
+        flap = {tab.corner[0]};
+        if (tab.corner[1] != tab.corner[0])
+            flap.push_back(tab.corner[1]);
     }
 }
 
-void add_folds(const pattern::PatternPiece& piece, SheetPiece& result) {
+// Strokes that go on from the ends of a fold on the outline; on tabs as well.
+void mark_outside(const pattern::PieceFold& fold, const std::vector<std::vector<Vec2>>& outlines,
+                  const ExportOptions& options, SheetPiece& result) {
+    const auto is_on_outline = [&](const Vec2& p) {
+        for (const std::vector<Vec2>& ring : outlines)
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                if (plane::distance(p, ring[i], ring[(i + 1) % ring.size()]) <= on_outline)
+                    return true;
+        return false;
+    };
+    const Vec2 along = (fold.to - fold.from).normalized();
+    for (const auto& [end, out] : {std::pair(fold.from, Vec2(-along)), std::pair(fold.to, along)}) {
+        const Vec2 tip = end + outside_mark * out;
+        if (is_on_outline(end) && !plane::is_inside(outlines, end + 2.0 * on_outline * out) &&
+            !plane::is_inside(outlines, tip))
+            add_fold({end, tip}, fold.angle > 0.0, options, result);
+    }
+}
+
+void add_folds(const pattern::PatternPiece& piece, const ExportOptions& options,
+               SheetPiece& result) {
+    if (options.fold_marks == FoldMarks::none)
+        return;
     std::vector<std::vector<Vec2>> outlines;
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.push_back(piece.path(i).points);
-    for (const pattern::PieceFold& fold : piece.folds)
-        if (plane::is_inside(outlines,
-                             0.5 * (fold.from + fold.to))) // others: where outlines are simpler
-            (fold.angle > 0.0 ? result.mountains : result.valleys).push_back({fold.from, fold.to});
+    for (const pattern::PieceFold& fold : piece.folds) {
+        if (!plane::is_inside(outlines, 0.5 * (fold.from + fold.to)))
+            continue; // where outlines are simpler
+        if (options.fold_marks == FoldMarks::outside)
+            mark_outside(fold, outlines, options, result);
+        else
+            add_fold({fold.from, fold.to}, fold.angle > 0.0, options, result);
+    }
 }
 
 // Lines that follow the curves.
@@ -217,8 +280,9 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
 
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
-    for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
-                        &piece.grain, &piece.leaders, &piece.openings})
+    for (auto* lines :
+         {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys, &piece.grain,
+          &piece.leaders, &piece.openings, &piece.perforations, &piece.shadows})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
@@ -282,8 +346,8 @@ std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern) {
     return declare::chart_colors(pattern.mesh, charts);
 }
 
-SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
-                         const std::vector<GlueTab>& tabs, const ExportOptions& options) {
+SheetPiece compose_piece(const pattern::Pattern& pattern, Index index, const GlueTabs& tabs,
+                         const ExportOptions& options) {
     const pattern::PatternPiece& piece = pattern.pieces[index];
     SheetPiece result;
     result.piece = index;
@@ -292,7 +356,10 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.emplace_back(piece.path(i));
     merge_slits(pattern, index, outlines, result.slits);
-    add_tabs(pattern, tabs, options.fold_angle * degrees, outlines, result);
+    add_tabs(pattern, tabs.tabs[index], options, outlines, result);
+    for (const TabShadow& shadow : tabs.shadows)
+        if (shadow.piece == index && options.tab_shadows)
+            result.shadows.push_back(shadow.line);
     for (const Outline& outline : outlines)
         if (!outline.has_vanished())
             result.cut.push_back(outline.ring());
@@ -314,7 +381,7 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     if (options.curve_mm > 0.0)
         add_curves(piece, outlines, options, result);
     if (options.fold_lines)
-        add_folds(piece, result);
+        add_folds(piece, options, result);
     add_notches(pattern, options, result);
     if (options.grain_line)
         add_grain(piece, result);

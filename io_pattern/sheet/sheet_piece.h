@@ -10,6 +10,7 @@
 #include "devseg/pattern/pattern.h"
 #include "sheet/allowance.h"
 #include "sheet/export_options.h"
+#include "sheet/tabs.h"
 #include "writers/drawing.h"
 
 namespace devseg::sheet {
@@ -40,6 +41,8 @@ struct SheetPiece {
     std::vector<std::vector<Vec2>> slits;     // open lines whose two sides lie on each other
     std::vector<std::vector<Vec2>> mountains; // open lines
     std::vector<std::vector<Vec2>> valleys;
+    std::vector<std::vector<Vec2>> perforations; // folds as short cuts, instead of their lines
+    std::vector<std::vector<Vec2>> shadows;      // where tabs of others are glued
     std::vector<SheetNotch> notches;
     std::vector<std::vector<Vec2>> openings; // brackets along what stays open
     std::vector<std::vector<Vec2>> grain;    // the arrow's lines
@@ -62,8 +65,9 @@ struct SheetPiece {
 /// A colour for each piece of the pattern, and a last one for faces in no piece.
 std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern);
 
-/// The piece as the options want it, where the pattern has it, without texts. `tabs` may be empty.
-SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece,
-                         const std::vector<GlueTab>& tabs, const ExportOptions& options);
+/// The piece as the options want it, where the pattern has it, without texts. `tabs` has a list for
+/// each piece.
+SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece, const GlueTabs& tabs,
+                         const ExportOptions& options);
 
 } // namespace devseg::sheet

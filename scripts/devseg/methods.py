@@ -16,6 +16,7 @@ class Method:
     Attributes:
         name: word of the command line.
         filter: name of the filter.
+        parameters: of the filter.
         options: options of the command line and the filter parameters they set; an option that
             is not here does not apply to the method.
         deforms: whether the charts are deformed until they can be unfolded exactly.
@@ -25,6 +26,7 @@ class Method:
 
     name: str
     filter: str
+    parameters: tuple[str, ...]
     options: Mapping[str, str]
     deforms: bool
     preset: str | None
@@ -38,6 +40,7 @@ _OPTIONS = {
     "max_linf_stretch": "max_linf_stretch",
     "max_fitting_error": "max_fitting_error",
     "slit_threshold": "slit_threshold",
+    "max_net_faces": "max_net_faces",
     "seed": "random_seed",
     "max_iterations": "max_iterations",
 }
@@ -49,6 +52,7 @@ METHODS = {
     name: Method(
         name,
         row["filter"],
+        tuple(row["parameters"]),
         {option: of for option, of in _OPTIONS.items() if of in row["parameters"]},
         row["deforms"],
         row["preset"],

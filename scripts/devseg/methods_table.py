@@ -72,6 +72,8 @@ TABLE = {
         "filter": "compute_segmentation_papercraft_per_face",
         "parameters": [
             "charts_number",
+            "deform",
+            "max_net_faces",
             "growth_threshold",
             "slit_threshold",
             "max_iterations",

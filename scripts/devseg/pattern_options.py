@@ -15,6 +15,8 @@ DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
 TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
+TABS = {"one": "One", "both": "Both", "alternating": "Alternating", "none": "None"}
+FOLD_MARKS = {"lines": "Lines", "outside": "Outside", "none": "None"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -46,7 +48,18 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         help="between notches; default: 0, none",
     )
     group.add_argument(
-        "--fold-angle", type=length(), metavar="DEG", help="least angle of a fold; default: 22.5"
+        "--fold-angle", type=length(), metavar="DEG", help="least angle of a fold; default: 3"
+    )
+    group.add_argument(
+        "--fold-marks",
+        choices=FOLD_MARKS,
+        help="folds as lines, as strokes outside of the pieces, or not; default: lines",
+    )
+    group.add_argument(
+        "--perforation",
+        type=_perforation,
+        metavar="CUT,GAP",
+        help="folds as cuts with gaps, in mm such as 3,1, on a layer of their own",
     )
     group.add_argument(
         "--max-piece-mm",
@@ -70,6 +83,11 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--tab-depth-mm", type=millimetres(0.5), metavar="D", help="of glue tabs; default: 5"
     )
     group.add_argument(
+        "--tabs",
+        choices=TABS,
+        help="sides of seams with glue tabs; default: one to fold, else none",
+    )
+    group.add_argument(
         "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
     )
     group.add_argument(
@@ -85,9 +103,22 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     _add_switches(group)
 
 
+def _perforation(text: str) -> tuple[float, float]:
+    """The type of an option: the lengths of the cuts and of the gaps between them, mm."""
+    lengths = text.split(",")
+    if len(lengths) != 2:
+        raise argparse.ArgumentTypeError(
+            f"expected the lengths of cuts and gaps in mm such as 3,1, found '{text}'"
+        )
+    return millimetres(0.1)(lengths[0]), millimetres(0.1)(lengths[1])
+
+
 def _add_switches(group: argparse._ArgumentGroup) -> None:
     for name, text in (
         ("glue-tabs", "flaps to glue the pieces with"),
+        ("fit-page", "cut pieces until each fits on a page"),
+        ("border-tabs", "flaps along open borders of the model as well"),
+        ("tab-shadows", "outlines of the flaps where they are glued"),
         ("fold-lines", "mountain and valley folds"),
         ("edge-numbers", "the number of each seam on both sides"),
         ("step-numbers", "the step of the assembly behind each seam number"),
@@ -128,6 +159,9 @@ _PARAMETERS = (
     "notch_spacing_mm",
     "fold_angle",
     "glue_tabs",
+    "border_tabs",
+    "fit_page",
+    "tab_shadows",
     "fold_lines",
     "edge_numbers",
     "grain_line",
@@ -146,7 +180,7 @@ _PARAMETERS = (
 OPTION_OF = {
     **{
         name: f"--{name.replace('_', '-')}"
-        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text")
+        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text", "tabs", "fold_marks")
     },
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
@@ -155,6 +189,8 @@ OPTION_OF = {
     "frame": "--no-frame",
     "scale_check": "--no-scale-check",
     "dxf_kind": "--dxf",
+    "perforation_mm": "--perforation",
+    "perforation_gap_mm": "--perforation",
 }
 
 _CHOICES = {
@@ -163,6 +199,8 @@ _CHOICES = {
     "corner_style": CORNERS,
     "group": GROUPS,
     "text": TEXTS,
+    "tabs": TABS,
+    "fold_marks": FOLD_MARKS,
 }
 
 
@@ -173,6 +211,8 @@ def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
     for name, values in _CHOICES.items():
         if (value := getattr(args, name)) is not None:
             parameters[name] = values[value]
+    if args.perforation:
+        parameters["perforation_mm"], parameters["perforation_gap_mm"] = args.perforation
     if args.height_mm:
         parameters["height_mm"] = args.height_mm
     elif args.mm_per_unit:

@@ -26,11 +26,11 @@ from devseg.outputs import staged, to_json
 from devseg.pattern_options import EXPORT_FILTER, PATTERN_FORMATS
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
+from devseg.simplify import close_holes, simplify
 
-SIMPLIFY_FILTER = "meshing_decimation_quadric_edge_collapse"
-DISTANCE_FILTER = "get_hausdorff_distance"
 DEFORM_FILTER = "apply_coord_developable_charts"
 SMOOTH_FILTER = "meshing_smooth_chart_seams"
+COLOR_FILTER = "compute_color_by_chart_per_face"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
@@ -61,6 +61,8 @@ class RunOptions:
         formats: svg, pdf, dxf, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
         target_faces: simplify the mesh to so many faces first; None: leave it.
+        deforms: whether charts are deformed until they unfold exactly; None: as the method does.
+        close_holes: close holes of at most so many edges first; None: none.
         longest_mm: the longest side of the finished object; None: see pattern.
         up: axis of the file that points up, y or z; None: as its format says, else y.
         objects: names of the objects of the file to take; none: all.
@@ -85,6 +87,8 @@ class RunOptions:
     smooth_seams: bool = False
     weld: float = 0.0  # as the parameter of all filters
     given: Given = field(default_factory=Given)
+    deforms: bool | None = None
+    close_holes: int | None = None
 
 
 class Session:
@@ -216,6 +220,9 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         The measures, by stage.
     """
     found: dict[str, Any] = {}
+    if options.close_holes is not None:
+        with progress.stage("close holes"):
+            close_holes(session, options.close_holes)
     if options.target_faces is not None:
         with progress.stage("simplify"):
             found["simplification"] = simplify(session, options.target_faces)
@@ -232,7 +239,7 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
             if _bounds(options) and made.get("bounds_kept", True):
                 kept = _copy(session)
             found["smoothing"] = session.apply(SMOOTH_FILTER, **_chart_bound(session, options))
-    if options.method.deforms:
+    if options.method.deforms if options.deforms is None else options.deforms:
         with progress.stage("deform"):
             found["deformation"] = _deform(session)
     measures = _flatten(session, options, progress)
@@ -262,7 +269,9 @@ def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[
     chosen = options.given.charts_from or options.given.keep_seams
     kept = {"keep": "Seams"} if chosen else {}
     with progress.stage("flatten"):
-        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], **kept)
+        flat = session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], **kept)
+        if flat["overlap_cuts_number"]:
+            session.call(COLOR_FILTER)  # charts came apart, and parts are at others now
     with progress.stage("measure"):
         return {
             "segmentation": session.apply(SEGMENTATION_MEASURES),
@@ -299,39 +308,6 @@ def _copy(session: Session) -> int:
         meshes.current_mesh().add_face_custom_scalar_attribute(of_faces, name)
     meshes.set_current_mesh(number)
     return copy
-
-
-def simplify(session: Session, target_faces: int) -> dict[str, Any]:
-    """Replaces the mesh by one of so many faces; how far apart both are, both ways.
-
-    Deviations are shares of the diagonal of the model's box.
-    """
-    meshes = session.meshes
-    # A copy lacks the attributes of the original.
-    simplified = meshes.current_mesh_id()
-    diagonal = meshes.current_mesh().bounding_box().diagonal()
-    session.call("generate_copy_of_current_mesh")
-    original = meshes.current_mesh_id()
-    meshes.set_current_mesh(simplified)
-    session.call(
-        SIMPLIFY_FILTER,
-        targetfacenum=target_faces,
-        preserveboundary=True,
-        preservetopology=True,
-        preservenormal=True,
-    )
-    ways = [
-        session.call(DISTANCE_FILTER, sampledmesh=one, targetmesh=other, samplevert=True)
-        for one, other in ((original, simplified), (simplified, original))
-    ]
-    meshes.set_current_mesh(original)
-    session.call("delete_current_mesh")
-    meshes.set_current_mesh(simplified)
-    return {
-        "faces": meshes.current_mesh().face_number(),
-        "mean_deviation": max(way["mean"] for way in ways) / diagonal,
-        "largest_deviation": max(way["max"] for way in ways) / diagonal,
-    }
 
 
 def _deform(session: Session) -> dict[str, Any]:

@@ -19,6 +19,10 @@ from devseg.pattern_options import (
 if TYPE_CHECKING:
     from devseg.pipeline import RunOptions
 
+# Words of --deform and the values of the filter's parameter "deform".
+DEFORM = {"auto": "Automatic", "always": "Always", "never": "Never"}
+# Rims of holes in scans have fewer edges, those of sleeves and necks more.
+HOLE_EDGES = 100
 FORMATS = (*PATTERN_FORMATS, "ply", "obj")
 
 
@@ -47,6 +51,24 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         type=integer(4),
         metavar="N",
         help="simplify the mesh to N faces first; people fold tens of edges, not thousands",
+    )
+    parser.add_argument(
+        "--close-holes",
+        type=integer(3),
+        nargs="?",
+        const=HOLE_EDGES,
+        metavar="N",
+        help=f"close holes of at most N edges first; default of N: {HOLE_EDGES}",
+    )
+    parser.add_argument(
+        "--deform",
+        choices=DEFORM,
+        default="auto",
+        help="whether vertices move until charts unfold exactly: always, never (papercraft: exact "
+        "nets instead), or auto, with papercraft but for models of few faces; default: auto",
+    )
+    parser.add_argument(
+        "--max-net-faces", type=integer(1), metavar="N", help="of nets (papercraft); default: any"
     )
     parser.add_argument("--max-iterations", type=integer(1), metavar="N", help="at most N rounds")
     parser.add_argument("--seed", type=integer(0), metavar="N", help="of the random choices")
@@ -203,6 +225,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
     """What the options of add_run_options ask for; parser reports those that do not fit."""
     from devseg.pipeline import RunOptions
 
+    if args.close_holes and (args.keep_texcoords or args.charts_from or args.keep_seams):
+        parser.error("--close-holes needs charts that the method makes, without those of the file")
     if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
         parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
     method = METHODS[args.method]
@@ -214,6 +238,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         if name not in method.options:
             parser.error(f"--{name.replace('_', '-')} does not apply to --method {method.name}")
         segmentation[method.options[name]] = value
+    if args.deform != "auto" and "deform" in method.parameters:
+        segmentation["deform"] = DEFORM[args.deform]
     if args.max_l2_stretch or args.max_linf_stretch:
         if args.charts:
             parser.error("bounds on the stretch find the number of charts: give --charts auto")
@@ -240,6 +266,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         _smooth_seams(args, pattern, parser),
         args.weld,
         given.check(args, parser),
+        method.deforms if args.deform == "auto" else args.deform == "always",
+        args.close_holes,
     )
 
 

@@ -216,9 +216,9 @@ def length_cut_twice(layer: Layer, grid: float = 0.01) -> float:
 
 
 def wrong_counts(texts: list[str], seams: int, unnumbered: int = 0) -> dict[int, int]:
-    """Seam numbers that are not written exactly twice, or not at all on so many seams."""
+    """Seam numbers that are not written twice, or once at narrow darts; none on so many seams."""
     counts = Counter(int(text) for text in texts)
-    wrong = {n: counts[n] for n in range(1, seams + 1) if counts[n] != 2}
+    wrong = {n: counts[n] for n in range(1, seams + 1) if counts[n] not in (1, 2)}
     missing = [n for n, count in wrong.items() if count == 0]
     return {n: c for n, c in wrong.items() if c} if len(missing) == unnumbered else wrong
 

@@ -8,6 +8,7 @@
 #include "devseg/atlas/border_path.h"
 #include "devseg/atlas/slit_closing.h"
 #include "devseg/base/errors.h"
+#include "devseg/develop/attempts.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/develop/projection.h"
 #include "devseg/mesh/angle_defects.h"
@@ -25,12 +26,14 @@ struct Tuning {
     std::size_t most_slits_at_once = 3;
     double late = 0.75;     // share of the rounds
     double late_gain = 0.3; // what the residual has to fall to in `gainless_rounds` then
-    int attempts = 3;       // at a surface that does not run through itself
-    double held_back = 0.2; // mobility of points where it did
+    int attempts = 3;       // at a surface that does not run through itself, with given slits
+    // The same where slits may be cut: the last ones hold whole charts still, one after another.
+    int most_attempts = 40;
+    double saddle_turn = 2.0; // what saddles may have too much, over what others may lack: slits to
+                              // them cost parts
     int most_focused_rounds = 25;
     double most_in_focus = 0.5; // share of the inner vertices
     double focus_share = 0.1;
-    double most_turn_inside = 0.5; // radians: more of a defect is not taken inside of a chart
 };
 constexpr Tuning tuning;
 
@@ -52,9 +55,10 @@ namespace {
 class Deformation {
 public:
     Deformation(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<Index>& point_of,
-                const DeformOptions& options, const std::vector<double>& ease)
-        : mesh_(mesh), point_of_(point_of), options_(options), projection_(mesh, point_of, ease),
-          leaving_(mesh::leaving_half_edges(mesh)) {
+                const DeformOptions& options, const Attempt& attempt)
+        : mesh_(mesh), point_of_(point_of), options_(options), attempt_(attempt),
+          projection_(mesh, point_of, attempt.ease), leaving_(mesh::leaving_half_edges(mesh)),
+          kept_open_(attempt.opened) {
         result_.charts = charts;
         constrain_all();
         result_.start_residual = projection_.residual();
@@ -81,7 +85,7 @@ private:
     // Alternates deforming and closing until no tip is left with more than 2π around it.
     void iterate(Progress& progress) {
         if (options_.adjust_slits)
-            add_slits(0, tuning.most_turn_inside, rows_.size());
+            open_vertices();
         do
             project(progress);
         while (options_.adjust_slits && projection_.residual() <= options_.tolerance &&
@@ -97,10 +101,9 @@ private:
         std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         std::vector<std::uint8_t>& seam = result_.charts.seam;
         const Index closed_before = result_.closed_edges;
-        kept_open_.resize(mesh_.points.size(), 0);
         for (const Vertex v : mesh_.all_vertices()) {
             if (boundary[v] != 0 || cuts[v] != 1 || kept_open_[v] != 0 ||
-                !(defect[v] < -options_.tolerance) || defect[v] < -tuning.most_turn_inside)
+                !(defect[v] < -options_.tolerance) || defect[v] < -attempt_.most_turn_inside)
                 continue;
             HalfEdge edge;
             mesh::visit_star(mesh_, leaving_[v],
@@ -238,18 +241,39 @@ private:
                 worst.emplace_back(-std::abs(defects[r]), rows_[r]);
         std::sort(worst.begin(), worst.end());
         worst.resize(std::min(worst.size(), most));
+        return cut_to(worst, true);
+    }
+
+    // Before anything moves: to vertices that lack too much, and to those that had to be opened
+    // after other attempts.
+    void open_vertices() {
+        std::vector<std::pair<double, Index>> opened;
+        const Eigen::VectorXd& defects = projection_.defects();
+        for (Index r = 0; r < defects.size(); ++r) {
+            const double turn = std::max(
+                defects[r], -defects[r] / (attempt_.number > 0 ? tuning.saddle_turn : 1.0));
+            if (turn > attempt_.most_turn_inside || attempt_.opened[at(rows_[r])] != 0)
+                opened.emplace_back(-std::abs(defects[r]), rows_[r]);
+        }
+        std::sort(opened.begin(), opened.end());
+        cut_to(opened, false);
+    }
+
+    // Cuts from the border to the vertices in their order; of neighbours the first alone, if so
+    // asked. Returns whether there was any.
+    bool cut_to(const std::vector<std::pair<double, Index>>& vertices, bool first_of_neighbours) {
         std::vector<std::uint8_t> on_border = mesh::boundary_vertices(mesh_);
         const std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         for (std::size_t v = 0; v < cuts.size(); ++v)
             on_border[v] = on_border[v] != 0 || cuts[v] > 0;
         std::vector<std::uint8_t> relieved(mesh_.points.size(), 0);
         bool any = false;
-        for (const auto& [size, v] : worst) {
+        for (const auto& [size, v] : vertices) {
             if (on_border[v] != 0 || relieved[v] != 0 || !cut_to_border(v, on_border))
                 continue;
             ++result_.added_slits;
             any = true;
-            if (least < tuning.most_turn_inside)
+            if (first_of_neighbours)
                 mesh::visit_star(mesh_, leaving_[v],
                                  [&](HalfEdge h) { relieved[mesh_.target(h)] = 1; });
         }
@@ -275,6 +299,7 @@ private:
     const Mesh& mesh_;
     const std::vector<Index>& point_of_;
     const DeformOptions& options_;
+    const Attempt& attempt_;
     Projection projection_;
     std::vector<Index> rows_; // vertices of the projection's rows
     std::size_t all_rows_ = 0;
@@ -282,16 +307,14 @@ private:
     double late_residual_ = infinite; // at the last late look
     std::vector<Index> leaving_;
     bool focused_ = false;                // whether these are a part of all inner vertices
-    std::vector<std::uint8_t> kept_open_; // #V: tips that were closed before
+    std::vector<std::uint8_t> kept_open_; // #V: tips that were closed before, or must be open
     DeformResult result_;
 };
 
 // Pairs of faces that cross after the deformation and not before; close to where the surface
 // crossed itself already, crossings just move from face to face.
-std::vector<std::pair<Index, Index>> new_crossings(const std::vector<Triangle>& faces,
-                                                   const std::vector<Vec3>& before,
-                                                   const std::vector<Vec3>& after,
-                                                   const Progress& progress) {
+Crossings new_crossings(const std::vector<Triangle>& faces, const std::vector<Vec3>& before,
+                        const std::vector<Vec3>& after, const Progress& progress) {
     std::vector<std::uint8_t> crossed(before.size(), 0); // by point
     for (const auto& [f, g] : find_intersections(before, faces, progress))
         for (std::size_t k = 0; k < 3; ++k)
@@ -300,7 +323,7 @@ std::vector<std::pair<Index, Index>> new_crossings(const std::vector<Triangle>& 
         const Triangle& t = faces[f];
         return (crossed[t[0]] | crossed[t[1]] | crossed[t[2]]) != 0;
     };
-    std::vector<std::pair<Index, Index>> added;
+    Crossings added;
     for (const auto& [f, g] : find_intersections(after, faces, progress))
         if (!had_crossed(f) || !had_crossed(g))
             added.emplace_back(f, g);
@@ -340,25 +363,24 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
         return points;
     };
     const std::vector<Vec3> before = by_point(mesh.points);
-    std::vector<double> ease(before.size(), 1.0);
+    Attempt attempt{std::vector<double>(before.size(), 1.0),
+                    std::vector<std::uint8_t>(mesh.points.size(), 0)};
+    const int attempts = options.adjust_slits ? tuning.most_attempts : tuning.attempts;
     DeformResult result;
-    for (int attempt = 0; attempt < tuning.attempts; ++attempt) {
-        auto deforming = progress.part("deforming to exact developability",
-                                       attempt == 0 ? 0.7 : 0.5 * progress.left());
-        DeformResult next = Deformation(mesh, charts, point_of, options, ease).run(deforming);
-        if (attempt > 0 && !next.converged)
+    while (true) {
+        auto deforming = progress.part("deforming to exact developability", 0.5 * progress.left());
+        DeformResult next = Deformation(mesh, charts, point_of, options, attempt).run(deforming);
+        if (attempt.number > 0 && !options.adjust_slits && !next.converged)
             break;
         result = std::move(next);
-        if (!result.converged)
-            break;
-        auto looking = progress.part("looking for intersections", 0.3 * progress.left());
-        const auto added = new_crossings(faces, before, by_point(result.points), looking);
+        Crossings added;
+        if (result.converged) {
+            auto looking = progress.part("looking for intersections", 0.3 * progress.left());
+            added = new_crossings(faces, before, by_point(result.points), looking);
+        }
         result.new_intersections = static_cast<Index>(added.size());
-        if (added.empty())
+        if (!learn(mesh, point_of, options, result, added, attempt) || attempt.number == attempts)
             break;
-        for (const auto& [f, g] : added) // once more, with these held back
-            for (std::size_t k = 0; k < 3; ++k)
-                ease[faces[f][k]] = ease[faces[g][k]] = std::pow(tuning.held_back, attempt + 1);
     }
     if (!options.keep_unfinished)
         check(result, options);

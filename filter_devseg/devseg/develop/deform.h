@@ -24,10 +24,15 @@ struct DeformOptions {
     double tolerance = 1e-6;      // radians, at every inner vertex
     bool adjust_slits = true;     // see below
     bool keep_unfinished = false; // return the best state instead of throwing
+    // With `adjust_slits`, shares of the diagonal of the mesh's box; 0: no bound.
+    double max_displacement = 0.03;
+    double max_mean_displacement = 0.003;
 
     static OptionRanges<DeformOptions> ranges() {
         return {{&DeformOptions::max_iterations, {"max_iterations", 1, 1e6}},
-                {&DeformOptions::tolerance, {"tolerance", 1e-10, 1.0}}};
+                {&DeformOptions::tolerance, {"tolerance", 1e-10, 1.0}},
+                {&DeformOptions::max_displacement, {"max_displacement", 0.0, 1.0}},
+                {&DeformOptions::max_mean_displacement, {"max_mean_displacement", 0.0, 1.0}}};
     }
 };
 
@@ -47,7 +52,9 @@ struct DeformResult {
 };
 
 /// With `adjust_slits`, slits are cut to the vertices that cannot be made developable, and closed
-/// from tips with more than 2π around them, where their sides would overlap in the plane.
+/// from tips with more than 2π around them, where their sides would overlap in the plane. Where an
+/// attempt misses the tolerance, makes the surface cross itself or moves vertices too far, the next
+/// one begins with more slits there (attempts.h), until none does.
 ///
 /// `point_of` (#V) tells vertices that must stay together by equal numbers 0 … n − 1. A vertex is
 /// inner if none of its edges is cut and it is not on the mesh's boundary; a slit's tip is not.

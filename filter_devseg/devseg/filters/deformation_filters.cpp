@@ -105,6 +105,11 @@ std::vector<FilterDeclaration> deformation_filters() {
             .boolean(&O::keep_unfinished, "keep_unfinished", "Keep the best state",
                      "Where the tolerance is not reached, take the best state instead of leaving "
                      "the mesh as it is.")
+            .real(&O::max_displacement, "Largest displacement",
+                  "How far a vertex may move, as a share of the diagonal of the model's box; where "
+                  "more would be needed, slits are cut (with 'Adjust slits'). 0 = no limit.")
+            .real(&O::max_mean_displacement, "Largest mean displacement",
+                  "The same for the mean over all vertices. 0 = no limit.")
             .writes(writes_charts | writes_points)
             .result("charts_number", "charts, each a disk but for flat holes")
             .result("inner_vertices_number", "vertices inside of charts, whose angles count")

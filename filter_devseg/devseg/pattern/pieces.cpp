@@ -246,9 +246,13 @@ Layout read_layout(const Mesh& mesh, const CornerUv& uv, const PatternOptions& o
     Layout layout{whole_layout(mesh, even.uv, charts),
                   measure_charts(mesh, even.uv, charts, even.scale), even.is_as_given};
     check_charts(charts, layout.areas);
-    if (options.max_piece_mm > 0.0) {
+    if (options.max_piece_mm > 0.0 || options.max_width_mm > 0.0) {
         SplitLayout& split = layout.split;
-        split_large_charts(options.max_piece_mm / (even.scale * mm), split, progress);
+        const auto limit = [&](double most) {
+            return most > 0.0 ? most / (even.scale * mm) : infinite;
+        };
+        split_large_charts({limit(options.max_piece_mm), limit(options.max_width_mm)}, split,
+                           progress);
         layout.areas = measure_charts(split.mesh, split.uv, split.charts, even.scale);
         check_charts(split.charts, layout.areas);
     }
@@ -375,6 +379,7 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
     return {{&O::mm_per_unit, {"mm_per_unit", 1e-9, 1e9}},
             {&O::height_mm, {"height_mm", 0.0, 1e9}},
             {&O::max_piece_mm, {"max_piece_mm", 0.0, 1e9}},
+            {&O::max_width_mm, {"max_width_mm", 0.0, 1e9}},
             {&O::simplify_mm, {"simplify_mm", 0.0, 1e6}},
             {&O::notch_spacing_mm, {"notch_spacing_mm", 0.0, 1e6}},
             {&O::pair_tolerance_mm, {"pair_tolerance_mm", 0.0, 1e6}},

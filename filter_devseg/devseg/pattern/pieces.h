@@ -24,8 +24,9 @@ struct PatternOptions {
     double curve_mm = 0.0;          // largest distance of curves from the outline; 0: none
     bool match_seams = true;        // make both sides of each seam equally long
     double notch_spacing_mm = 50.0; // mean distance of the notches of a seam; 0 = none
-    double fold_angle = 22.5;       // degrees: flatter edges are no folds
+    double fold_angle = 3.0;        // degrees: flatter edges are no folds
     double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
+    double max_width_mm = 0.0;      // the same of the shorter side of the least box around it
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::longest;
 

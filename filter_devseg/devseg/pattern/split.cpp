@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "devseg/atlas/border_path.h"
 #include "devseg/base/errors.h"
 #include "devseg/graph/min_cut.h"
 #include "devseg/pattern/shapes.h"
@@ -48,8 +49,8 @@ CutLine choose_line(const PieceBox& box, double start, double longest) {
 }
 
 // Which faces of the chart lie before the shortest cut near the line.
-std::vector<graph::CutSide> sides_of(const atlas::ChartSurface& surface, const CornerUv& uv,
-                                     const CutLine& line) {
+std::vector<graph::CutSide> sides_of(const Mesh& mesh, const atlas::ChartSurface& surface,
+                                     const CornerUv& uv, const CutLine& line) {
     std::vector<double> place;
     for (const Face f : surface.face)
         place.push_back(line.along.dot(uv[3 * f] + uv[3 * f + 1] + uv[3 * f + 2]) / 3.0);
@@ -74,8 +75,10 @@ std::vector<graph::CutSide> sides_of(const atlas::ChartSurface& surface, const C
                 line.high > line.low
                     ? (line.along.dot(from + to) - line.low - line.high) / (line.high - line.low)
                     : 0.0;
+            const double length = mesh.edge_length(own);
+            const double through_flat = length > 0.0 ? atlas::cut_cost(mesh, own) / length : 1.0;
             cut.link(h / 3, surface.twin[h] / 3,
-                     (1.0 + edge_cost * off * off) * (to - from).norm());
+                     (1.0 + edge_cost * off * off) * through_flat * (to - from).norm());
         }
     return cut.solve();
 }
@@ -279,11 +282,18 @@ private:
     }
 };
 
-void refuse_too_many(const SplitLayout& layout, double longest) {
+// How long a part with this box may be: where it is too wide, it is cut until it is short enough to
+// lie across.
+double allowed_length(const PieceBox& box, const PieceLimit& limit) {
+    return parts_of(box.short_side, limit.widest) > 1.0 ? limit.widest : limit.longest;
+}
+
+void refuse_too_many(const SplitLayout& layout, const PieceLimit& limit) {
     double cuts = 0.0;
     for (const atlas::ChartSurface& surface : atlas::extract_charts(layout.mesh, layout.charts)) {
         double start = 0.0;
         const PieceBox box = box_of(surface, layout.uv, start);
+        const double longest = allowed_length(box, limit);
         cuts += parts_of(box.long_side, longest) * parts_of(box.short_side, longest) - 1.0;
     }
     if (cuts > most_cuts)
@@ -303,8 +313,8 @@ SplitLayout whole_layout(const Mesh& mesh, const CornerUv& uv, const atlas::Char
     return layout;
 }
 
-void split_large_charts(double longest, SplitLayout& layout, const Progress& progress) {
-    refuse_too_many(layout, longest);
+void split_large_charts(const PieceLimit& limit, SplitLayout& layout, const Progress& progress) {
+    refuse_too_many(layout, limit);
     // Every cut makes parts that are shorter across it: this ends.
     for (bool again = true; again;) {
         again = false;
@@ -317,12 +327,13 @@ void split_large_charts(double longest, SplitLayout& layout, const Progress& pro
             const atlas::ChartSurface& surface = surfaces[c];
             double start = 0.0;
             const PieceBox box = box_of(surface, layout.uv, start);
+            const double longest = allowed_length(box, limit);
             if (parts_of(box.long_side, longest) == 1.0)
                 continue;
             again = true;
             const CutLine line = choose_line(box, start, longest);
             if (surface.face_count() > 1) {
-                std::vector<graph::CutSide> sides = sides_of(surface, layout.uv, line);
+                std::vector<graph::CutSide> sides = sides_of(layout.mesh, surface, layout.uv, line);
                 join_crumbs(surface, layout.uv, sides);
                 if (is_short_enough(surface, layout.uv, sides, box, longest)) {
                     mark_cut(surface, sides, layout);
@@ -333,11 +344,12 @@ void split_large_charts(double longest, SplitLayout& layout, const Progress& pro
         }
         for (const Slice& slice : slices)
             Slicer(slice, layout).run();
+        if (!slices.empty())
+            mesh::compute_face_geometry(layout.mesh);
         if (again)
             layout.charts =
                 atlas::make_chart_map(layout.mesh, layout.charts.chart, layout.charts.seam, true);
     }
-    mesh::compute_face_geometry(layout.mesh);
 }
 
 } // namespace devseg::pattern

@@ -22,11 +22,17 @@ struct SplitLayout {
 /// Nothing is cut yet.
 SplitLayout whole_layout(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts);
 
-/// Cuts every chart whose least box is longer than `longest` (units of `uv`) across its long
-/// direction, into as few parts as fit, until none is too large: along the shortest line of mesh
-/// edges within the stretch that leaves both parts small enough, or straight through the faces in
-/// its middle where no such line does. Both sides of a seam get the same new vertices. Throws
-/// InvalidParameter for a limit that takes too many cuts, Cancelled.
-void split_large_charts(double longest, SplitLayout& layout, const Progress& progress);
+/// What the least box around a chart may measure, in units of `uv`.
+struct PieceLimit {
+    double longest = 0.0;
+    double widest = 0.0; // its shorter side
+};
+
+/// Cuts every chart that is larger than the limit across its long direction, into as few parts as
+/// fit, until none is too large: along the shortest line of mesh edges within the stretch that
+/// leaves both parts small enough, or straight through the faces in its middle where no such line
+/// does. Edges within a flat region count ten times: parts end at folds. Both sides of a seam get
+/// the same new vertices. Throws InvalidParameter for a limit that takes too many cuts, Cancelled.
+void split_large_charts(const PieceLimit& limit, SplitLayout& layout, const Progress& progress);
 
 } // namespace devseg::pattern

@@ -1,5 +1,6 @@
 // Deformation to exact developability and exact unfolding.
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -171,26 +172,71 @@ TEST(Deform, TheSameSphereConvergesWithMoreSlits) {
     EXPECT_EQ(checks::topology(disk.mesh, r.charts, 0).euler, 1);
 }
 
-TEST(Deform, SurfacesThatWouldCrossAreRefused) {
-    // Two shells with charts of their own, nearer to each other than they have to move.
-    const mesh::RawMesh shell = shapes::with_noise(shapes::sphere(3), 0.003, 8);
-    const mesh::RawMesh inside = shapes::with_noise(shapes::sphere(3), 0.003, 9);
-    const Mesh mesh =
-        checks::gated(shapes::join(shell, shapes::moved(inside, 0.975, Vec3::Zero())));
-    papercraft::PapercraftOptions options;
-    options.charts_number = 12;
+// Two shells, nearer to each other than they have to move.
+struct Shells {
+    Shells() {
+        const mesh::RawMesh shell = shapes::with_noise(shapes::sphere(3), 0.003, 8);
+        const mesh::RawMesh inside = shapes::with_noise(shapes::sphere(3), 0.003, 9);
+        mesh = checks::gated(shapes::join(shell, shapes::moved(inside, 0.975, Vec3::Zero())));
+        papercraft::PapercraftOptions options;
+        options.charts_number = 12;
+        Progress progress;
+        charts = papercraft::segment_papercraft(mesh, options, progress).charts;
+    }
+    Mesh mesh;
+    atlas::ChartMap charts;
+};
+
+TEST(Deform, SurfacesThatWouldCrossAreRefusedWhereSlitsMustStay) {
+    const Shells shells;
     Progress progress;
-    const atlas::ChartMap charts = papercraft::segment_papercraft(mesh, options, progress).charts;
-    ASSERT_TRUE(find_intersections(mesh.points, mesh.faces, progress).empty());
+    ASSERT_TRUE(find_intersections(shells.mesh.points, shells.mesh.faces, progress).empty());
     DeformOptions anyway;
+    anyway.adjust_slits = false;
     anyway.keep_unfinished = true;
-    const DeformResult r = deform(mesh, charts, anyway);
+    const DeformResult r = deform(shells.mesh, shells.charts, anyway);
     EXPECT_TRUE(r.converged);
     EXPECT_EQ(r.new_intersections,
-              static_cast<Index>(find_intersections(r.points, mesh.faces, progress).size()));
+              static_cast<Index>(find_intersections(r.points, shells.mesh.faces, progress).size()));
     EXPECT_GT(r.new_intersections, 0); // they are too close, and so it is refused
-    const std::string text = checks::error_of<NumericalFailure>([&] { deform(mesh, charts); });
+    anyway.keep_unfinished = false;
+    const std::string text =
+        checks::error_of<NumericalFailure>([&] { deform(shells.mesh, shells.charts, anyway); });
     EXPECT_TRUE(checks::contains(text, "new pairs of faces that intersect"));
+}
+
+TEST(Deform, SurfacesThatWouldCrossAreCutUntilTheyDoNot) {
+    const Shells shells;
+    const DeformResult r = deform(shells.mesh, shells.charts);
+    EXPECT_TRUE(r.converged);
+    EXPECT_TRUE(find_intersections(r.points, shells.mesh.faces, Progress()).empty());
+    EXPECT_LE(worst_defect(with_points(shells.mesh, r.points), r.charts.seam), 1e-6);
+    EXPECT_TRUE(checks::is_valid(shells.mesh, r.charts));
+    // Charts that do not come near others still bend.
+    EXPECT_GT(r.inner_vertices, shells.mesh.vertex_count() / 8);
+}
+
+TEST(Deform, VerticesMoveNoFartherThanTheyMay) {
+    const Mesh start = lumpy_torus();
+    papercraft::PapercraftOptions options;
+    options.charts_number = 6;
+    Progress progress;
+    const atlas::ChartMap charts = papercraft::segment_papercraft(start, options, progress).charts;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : start.points)
+        box.extend(p);
+    const auto shares = [&](double largest, double mean) {
+        DeformOptions bounds;
+        bounds.max_displacement = largest;
+        bounds.max_mean_displacement = mean;
+        const DeformResult r = deform(start, charts, bounds);
+        EXPECT_LE(worst_defect(with_points(start, r.points), r.charts.seam), 1e-6);
+        return std::pair(r.largest_displacement / box.diagonal().norm(),
+                         r.mean_displacement / box.diagonal().norm());
+    };
+    const auto free = shares(0.0, 0.0);
+    EXPECT_LE(shares(0.5 * free.first, 0.0).first, 0.5 * free.first);
+    EXPECT_LE(shares(0.0, 0.5 * free.second).second, 0.5 * free.second);
 }
 
 TEST(Deform, VerticesThatShareAPointStayTogether) {

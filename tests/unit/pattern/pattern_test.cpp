@@ -464,7 +464,8 @@ TEST(Shapes, OptionsOutOfRangeAreRefused) {
     for (double PatternOptions::*field :
          {&PatternOptions::simplify_mm, &PatternOptions::corner_angle, &PatternOptions::curve_mm,
           &PatternOptions::notch_spacing_mm, &PatternOptions::fold_angle,
-          &PatternOptions::max_piece_mm, &PatternOptions::pair_tolerance_mm})
+          &PatternOptions::max_piece_mm, &PatternOptions::max_width_mm,
+          &PatternOptions::pair_tolerance_mm})
         for (const double bad : {-1.0, std::nan("")}) {
             PatternOptions options;
             options.*field = bad;

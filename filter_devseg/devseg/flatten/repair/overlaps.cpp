@@ -7,6 +7,7 @@
 #include <queue>
 #include <set>
 
+#include "devseg/atlas/border_path.h"
 #include "devseg/flatten/energy/laplacian.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -317,7 +318,7 @@ std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& 
     for (const HalfEdge h : surface.all_half_edges())
         if (surface.twin[h] > h)
             cut.link(face_of(h), face_of(surface.twin[h]),
-                     mesh.edge_length(surface.mesh_half_edge(h)));
+                     atlas::cut_cost(mesh, surface.mesh_half_edge(h)));
     const std::vector<graph::CutSide> side = cut.solve(progress);
     std::vector<Index> path;
     for (const HalfEdge h : surface.all_half_edges())

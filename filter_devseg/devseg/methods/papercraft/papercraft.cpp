@@ -1,6 +1,7 @@
 #include "devseg/methods/papercraft/papercraft.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -11,8 +12,10 @@
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
 #include "devseg/mesh/angle_defects.h"
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/methods/growth/seeds.h"
 #include "devseg/methods/growth/vertex_growth.h"
+#include "devseg/methods/papercraft/nets.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::papercraft {
@@ -30,6 +33,8 @@ struct Tuning {
     Index share_of_surplus = 8;   // of the charts that are too many, one in so many goes
     double seed_variation = 0.25; // of the costs, with random seeds
     double flat = 1e-5;           // radians: what rounding leaves of defects on flat faces
+    // Faces of a component that people fold as it is: more of them approximate something round.
+    Index most_net_faces = 128;
 };
 constexpr Tuning tuning;
 
@@ -144,14 +149,16 @@ double slit_length(const Mesh& mesh, const atlas::ChartMap& charts) {
 OptionRanges<PapercraftOptions> PapercraftOptions::ranges() {
     using O = PapercraftOptions;
     return with_rounds<O>({{&O::charts_number, {"charts_number", 1, 1e9}},
+                           {&O::max_net_faces, {"max_net_faces", 0, 1e9}},
                            {&O::growth_threshold, {"growth_threshold", 0.0, 1000.0, true}},
                            {&O::slit_threshold, {"slit_threshold", 0.0, 1000.0}}});
 }
 
-PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& options,
-                                    Progress& progress) {
-    check_charts_number(mesh.face_count(), options.charts_number);
-    check_ranges(options);
+namespace {
+
+// Charts with slits, to be deformed.
+PapercraftResult grow_charts(const Mesh& mesh, const PapercraftOptions& options,
+                             Progress& progress) {
     const double diagonal = diagonal_of(mesh);
     const std::vector<double> defect = mesh::angle_defects(mesh);
     std::vector<double> cost = vertex_costs(mesh, defect, diagonal);
@@ -189,6 +196,78 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     result.charts = atlas::cut_charts_to_disks(mesh, result.charts, closing).charts;
     atlas::lead_around_flat_faces(mesh, cost, tuning.flat, result.charts, closing);
     result.slit_length = slit_length(mesh, result.charts);
+    return result;
+}
+
+// 1 for each face (#F) of a component that becomes nets.
+std::vector<std::uint8_t> faces_of_nets(const Mesh& mesh, Deform deform) {
+    std::vector<std::uint8_t> is_net(mesh.faces.size(), deform == Deform::never ? 1 : 0);
+    if (deform != Deform::automatic)
+        return is_net;
+    const mesh::FaceComponents components = mesh::face_components(mesh, [](Index) { return true; });
+    const mesh::FaceComponents regions = mesh::flat_regions(mesh);
+    std::vector<Index> component(at(regions.count));
+    for (const Face f : mesh.all_faces())
+        component[at(regions.label[f])] = components.label[f];
+    std::vector<Index> faces(at(components.count), 0);
+    for (const Index c : component)
+        ++faces[at(c)];
+    for (const Face f : mesh.all_faces())
+        is_net[f] = faces[at(components.label[f])] <= tuning.most_net_faces ? 1 : 0;
+    return is_net;
+}
+
+// The charts of a part come behind those that there are.
+void append_charts(const atlas::ChartSurface& part, const atlas::ChartMap& charts,
+                   atlas::ChartMap& all) {
+    for (std::size_t f = 0; f < part.face.size(); ++f)
+        all.chart[at(part.face[f])] = all.count + charts.chart[f];
+    for (std::size_t h = 0; h < charts.seam.size(); ++h)
+        all.seam[at(part.mesh_half_edge(static_cast<Index>(h)))] = charts.seam[h];
+    all.count += charts.count;
+}
+
+// Nets of the components that are polyhedra, charts with slits of the others.
+PapercraftResult nets_and_charts(const Mesh& mesh, const std::vector<std::uint8_t>& is_net,
+                                 const PapercraftOptions& options, Progress& progress) {
+    std::array<std::vector<Index>, 2> faces;
+    for (const Face f : mesh.all_faces())
+        faces[is_net[f]].push_back(f);
+    PapercraftResult result;
+    atlas::ChartMap all{std::vector<Index>(mesh.faces.size()),
+                        std::vector<std::uint8_t>(mesh.twin.size(), 0), 0};
+    const auto surface_of = [&](std::size_t kind) {
+        return atlas::extract_surface(mesh, faces[kind], all.seam);
+    };
+    if (!faces[0].empty()) {
+        const atlas::ChartSurface surface = surface_of(0);
+        PapercraftOptions own = options;
+        own.charts_number = std::min(options.charts_number, static_cast<int>(surface.face.size()));
+        result = grow_charts(atlas::mesh_of(mesh, surface), own, progress);
+        append_charts(surface, result.charts, all);
+    }
+    const atlas::ChartSurface surface = surface_of(1);
+    auto unfolding = progress.part("unfolding", progress.left());
+    const atlas::ChartMap nets = unfold_into_nets(
+        atlas::mesh_of(mesh, surface), {options.random_seed, options.max_net_faces}, unfolding);
+    result.nets = nets.count;
+    append_charts(surface, nets, all);
+    result.charts = atlas::make_chart_map(mesh, all.chart, all.seam, false);
+    result.slit_length = slit_length(mesh, result.charts);
+    return result;
+}
+
+} // namespace
+
+PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& options,
+                                    Progress& progress) {
+    check_charts_number(mesh.face_count(), options.charts_number);
+    check_ranges(options);
+    const std::vector<std::uint8_t> is_net = faces_of_nets(mesh, options.deform);
+    const bool any = std::find(is_net.begin(), is_net.end(), 1) != is_net.end();
+    PapercraftResult result = any ? nets_and_charts(mesh, is_net, options, progress)
+                                  : grow_charts(mesh, options, progress);
+    const std::vector<double> defect = mesh::angle_defects(mesh);
     const std::vector<Index> valence = valences(mesh);
     result.defect_share.assign(mesh.faces.size(), 0.0);
     for (const HalfEdge h : mesh.all_half_edges())
@@ -206,7 +285,8 @@ constexpr const char* help =
     "nearly 360 degrees, whatever creases run through it. Where a chart meets itself a slit stays "
     "open, and ends at vertices that are far from developable. The smallest charts are removed and "
     "the others grown again until the wanted number is left, and slits that matter little are "
-    "closed.<br>"
+    "closed. Polyhedra of few faces become nets instead, which fold exactly as they are; no flat face "
+    "is cut.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut, slits included), the same cuts as selected face-edges, the "
     "face's share of the angle defects of its vertices (radians) as face quality and a colour for "
@@ -222,6 +302,7 @@ FilterOutput run(const FilterInput& input, const PapercraftOptions& options, Pro
         {"initial_charts_number", result.initial_charts},
         {"rounds_number", result.rounds},
         {"closed_edges_number", result.closed_edges},
+        {"nets_number", result.nets},
         {"slit_length", result.slit_length * input.mesh.unit_length},
         {"seam_length", metrics::seam_length(input.mesh, result.charts)},
     };
@@ -239,6 +320,13 @@ std::vector<FilterDeclaration> filters() {
             .integer(&O::charts_number, "Number of charts",
                      "From 1 to the number of faces. Fewer charts have more and longer slits. A "
                      "mesh of more components gets one chart for each of them.")
+            .choice(&O::deform, "deform", "Deform", {"Automatic", "Always", "Never"},
+                    "Whether charts are made to be deformed until they unfold exactly (Always), or "
+                    "are nets that unfold exactly as they are (Never), as many as it takes. "
+                    "Automatic: nets of components that have few faces, those of one plane being "
+                    "one; charts of the others.")
+            .integer(&O::max_net_faces, "Most faces of a net",
+                     "Of charts that unfold as they are; those of one plane are one. 0 = no limit.")
             .real(&O::growth_threshold, "Growth threshold",
                   "What the inner vertices of a chart of the initial segmentation may lack to "
                   "360 degrees, or have too much, all together, in radians, above 0. Smaller "
@@ -261,6 +349,7 @@ std::vector<FilterDeclaration> filters() {
             .result("initial_charts_number", "charts of the initial segmentation")
             .result("rounds_number", "rounds of removing charts and growing the others")
             .result("closed_edges_number", "edges of slits that were closed")
+            .result("nets_number", "charts that unfold exactly as they are")
             .result("slit_length", "length of the slits that are left, model units")
             .result("seam_length", "length of all cut edges, model units")
             .runs(run)};

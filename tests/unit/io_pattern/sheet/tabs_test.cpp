@@ -1,4 +1,4 @@
-#include "sheet/allowance.h"
+#include "sheet/tabs.h"
 
 #include <polyclipping/clipper.hpp>
 
@@ -74,7 +74,7 @@ void expect_no_overlap(const pattern::Pattern& pattern, const GlueTabs& tabs) {
 TEST(GlueTabs, OneForEachSeam) {
     Progress progress;
     const pattern::Pattern pattern = two_squares(50.0, 0.0);
-    const GlueTabs tabs = make_tabs(pattern, 5.0, progress);
+    const GlueTabs tabs = make_tabs(pattern, {5.0}, progress);
     EXPECT_EQ(tabs.tabs[0].size() + tabs.tabs[1].size(), 5u);
     EXPECT_EQ(tabs.seams_without, 0);
     for (const GlueTab& tab : tabs.tabs[0])
@@ -88,21 +88,81 @@ TEST(GlueTabs, GiveWayAtConcaveCorners) {
     Progress progress;
     for (const double notch : {5.0, 15.0, 30.0, 45.0}) {
         const pattern::Pattern pattern = two_squares(50.0, notch);
-        const GlueTabs tabs = make_tabs(pattern, 8.0, progress);
+        const GlueTabs tabs = make_tabs(pattern, {8.0}, progress);
         EXPECT_GE(tabs.tabs[0].size() + tabs.tabs[1].size(), 4u);
         expect_no_overlap(pattern, tabs);
     }
 }
 
+TEST(GlueTabs, BothSidesOrTurnsOrNarrowTriangles) {
+    Progress progress;
+    const pattern::Pattern pattern = two_squares(50.0, 0.0);
+    const GlueTabs both = make_tabs(pattern, {5.0, TabSides::both}, progress);
+    EXPECT_EQ(both.tabs[0].size(), 5u);
+    EXPECT_EQ(both.tabs[1].size(), 5u);
+    expect_no_overlap(pattern, both);
+    // Sides of 8 mm are too short for a tab of 5 mm that is no triangle.
+    const pattern::Pattern small = two_squares(8.0, 0.0);
+    const GlueTabs narrow = make_tabs(small, {5.0}, progress);
+    std::size_t triangles = 0;
+    for (const std::vector<GlueTab>& tabs : narrow.tabs)
+        for (const GlueTab& tab : tabs)
+            triangles += tab.corner[0] == tab.corner[1] ? 1 : 0;
+    EXPECT_EQ(triangles, 5u);
+    expect_no_overlap(small, narrow);
+}
+
+TEST(GlueTabs, AlternateAlongASeam) {
+    // The seam turns by 90 degrees twice: three stretches.
+    pattern::Pattern pattern = two_squares(50.0, 0.0);
+    pattern.seams.resize(1);
+    pattern.seams[0].sides[0] = {0, 0, 0, 3, false, 0.0, {}};
+    pattern.seams[0].sides[1] = {1, 0, 0, 3, true, 0.0, {}};
+    Progress progress;
+    const GlueTabs tabs = make_tabs(pattern, {5.0, TabSides::alternating}, progress);
+    EXPECT_EQ(tabs.tabs[0].size(), 2u);
+    EXPECT_EQ(tabs.tabs[1].size(), 1u);
+}
+
+TEST(GlueTabs, OpenBordersGetSomeIfAsked) {
+    pattern::Pattern pattern = two_squares(50.0, 0.0);
+    pattern.seams.clear();
+    for (pattern::PatternPiece& piece : pattern.pieces)
+        piece.outer.edges.assign(5, {});
+    Progress progress;
+    EXPECT_TRUE(make_tabs(pattern, {5.0}, progress).tabs[0].empty());
+    const GlueTabs tabs = make_tabs(pattern, {5.0, TabSides::one, true}, progress);
+    // The two halves of the upper side are one stretch.
+    ASSERT_EQ(tabs.tabs[0].size() + tabs.tabs[1].size(), 8u);
+    EXPECT_TRUE(tabs.tabs[0][0].on_border);
+    EXPECT_TRUE(tabs.shadows.empty());
+    expect_no_overlap(pattern, tabs);
+}
+
+TEST(GlueTabs, CastShadowsOnTheOtherPiece) {
+    pattern::Pattern pattern = two_squares(50.0, 0.0);
+    pattern.seams.resize(1);
+    Progress progress;
+    const GlueTabs tabs = make_tabs(pattern, {5.0}, progress);
+    ASSERT_EQ(tabs.shadows.size(), 1u);
+    const TabShadow& shadow = tabs.shadows[0];
+    EXPECT_EQ(shadow.piece, 1);
+    // On the lower side of the other square, 5 mm into it, as long as the tab.
+    const std::vector<Vec2> expected{{150, 0}, {145, 5}, {105, 5}, {100, 0}};
+    ASSERT_EQ(shadow.line.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_LT((shadow.line[i] - expected[i]).norm(), 1e-9);
+}
+
 TEST(GlueTabs, NoRoomIsReported) {
     Progress progress;
     const pattern::Pattern pattern = two_squares(1.0, 0.0); // sides far shorter than the depth
-    EXPECT_EQ(make_tabs(pattern, 5.0, progress).seams_without, 5);
+    EXPECT_EQ(make_tabs(pattern, {5.0}, progress).seams_without, 5);
 }
 
 TEST(GlueTabs, CanBeCancelled) {
     Progress progress([](double, const char*) { return false; });
-    EXPECT_THROW({ make_tabs(two_squares(50.0, 0.0), 5.0, progress); }, Cancelled);
+    EXPECT_THROW({ make_tabs(two_squares(50.0, 0.0), {5.0}, progress); }, Cancelled);
 }
 
 } // namespace

@@ -92,6 +92,38 @@ TEST(Texts, NamesMayCrossFoldsThatLeaveNoRoom) {
     EXPECT_EQ(pieces[0].names.size(), 1U);
 }
 
+// A dart of 20 mm, and as wide as given at its mouth.
+std::size_t numbers_of_dart(double width) {
+    pattern::Pattern pattern = pattern_of(60.0, 40.0);
+    pattern::PatternPiece& piece = pattern.pieces[0];
+    piece.outer.points = {
+        {0, 0}, {30 - 0.5 * width, 0}, {30, 20}, {30 + 0.5 * width, 0}, {60, 0}, {60, 40}, {0, 40}};
+    pattern::Seam seam;
+    seam.number = 1;
+    seam.label = "1";
+    seam.is_dart = true;
+    const double length = std::hypot(0.5 * width, 20.0);
+    seam.sides[0] = {0, 0, 1, 1, false, length, {}};
+    seam.sides[1] = {0, 0, 2, 1, true, length, {}};
+    pattern.seams = {seam};
+    std::vector<SheetPiece> pieces{strip(60.0, 40.0)};
+    pieces[0].cut = {piece.outer.points};
+    EXPECT_TRUE(add_texts(pattern, {}, numbered(), pieces).seams.empty());
+    return pieces[0].numbers.size();
+}
+
+TEST(Texts, NarrowDartsHaveOneNumber) {
+    EXPECT_EQ(numbers_of_dart(4.0), 1U);
+    EXPECT_EQ(numbers_of_dart(40.0), 2U);
+}
+
+TEST(Texts, NumbersThatAreOthersUpsideDownAreTold) {
+    for (const char* number : {"6", "9", "16", "91", "66", "81", "198"})
+        EXPECT_TRUE(is_ambiguous(number)) << number;
+    for (const char* number : {"1", "8", "11", "69", "60", "26", "7", "6 (3)", "88", "101"})
+        EXPECT_FALSE(is_ambiguous(number)) << number;
+}
+
 // One side of the seam lies in a slot too narrow for a number beside it.
 TEST(Texts, LinesLeadToNumbersThatLieApart) {
     pattern::Pattern pattern = pattern_of(40.0, 30.0);

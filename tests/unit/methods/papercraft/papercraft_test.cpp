@@ -22,6 +22,7 @@ Mesh lumpy_sphere() {
 PapercraftResult segment(const Mesh& mesh, int charts, double slit_threshold = 0.1) {
     PapercraftOptions options;
     options.charts_number = charts;
+    options.deform = Deform::always;
     options.slit_threshold = slit_threshold;
     Progress progress;
     return segment_papercraft(mesh, options, progress);
