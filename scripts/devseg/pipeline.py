@@ -18,7 +18,7 @@ from devseg.frame import Frame
 from devseg.given import Given, keep, make_charts, prepare
 from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, Method
+from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
@@ -68,6 +68,7 @@ class RunOptions:
         keep_texcoords: whether PLY files keep the coordinates of the file beside the new ones.
         given: charts and seams that there are, and the component to take.
         smooth_seams: whether seams become smooth curves, along which the faces are split.
+        effort: of packing, key of EFFORTS.
     """
 
     out: Path
@@ -85,6 +86,7 @@ class RunOptions:
     smooth_seams: bool = False
     weld: float = 0.0  # as the parameter of all filters
     given: Given = field(default_factory=Given)
+    effort: str = "normal"
 
 
 class Session:
@@ -260,7 +262,8 @@ def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
 def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Flattens the charts; measures of them, by kind."""
     with progress.stage("flatten"):
-        session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten])
+        method, effort = FLATTENINGS[options.flatten], EFFORTS[options.effort]
+        session.apply(FLATTEN_FILTER, method=method, effort=effort)
     with progress.stage("measure"):
         return {
             "segmentation": session.apply(SEGMENTATION_MEASURES),

@@ -100,7 +100,7 @@ public:
     Descent(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed,
             const ContactPenalty& penalty, Positions start)
         : problem_(problem), fixed_(fixed), penalty_(penalty), x_(std::move(start)),
-          energy_(value(x_)), gradient_(slope(x_)) {}
+          energy_(value(x_)), gradient_(slope()) {}
 
     const Positions& x() const { return x_; }
     double energy() const { return energy_; }
@@ -113,7 +113,7 @@ public:
         const auto energy_at = [this](const Positions& y) { return value(y); };
         if (!line_search(problem_, energy_at, d, dot(gradient_, d), x_, energy_))
             return false;
-        Positions gradient = slope(x_);
+        Positions gradient = slope();
         step_ = x_ - start;
         change_ = gradient - gradient_;
         gradient_ = std::move(gradient);
@@ -123,10 +123,14 @@ public:
     const Positions& last_change() const { return change_; } // of the gradient
 
 private:
-    double value(const Positions& y) const { return distortion(problem_, y) + penalty_.energy(y); }
-    Positions slope(const Positions& y) const {
-        Positions g = distortion_gradient(problem_, y);
-        penalty_.add_gradient(y, g);
+    double value(const Positions& y) {
+        return distortion_with_gradient(problem_, y, distortion_slope_) + penalty_.energy(y);
+    }
+    // At x, where the energy was looked at last.
+    Positions slope() {
+        Positions g =
+            energy_ < infinite ? std::move(distortion_slope_) : distortion_gradient(problem_, x_);
+        penalty_.add_gradient(x_, g);
         hold_fixed(fixed_, g);
         return g;
     }
@@ -135,6 +139,7 @@ private:
     const std::vector<std::uint8_t>& fixed_;
     const ContactPenalty& penalty_;
     Positions x_;
+    Positions distortion_slope_; // without the penalty, where the energy was looked at last
     double energy_;
     Positions gradient_;
     Positions step_;
