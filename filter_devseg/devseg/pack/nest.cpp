@@ -43,7 +43,7 @@ struct Share {
     double next = 1.0;
     double fine = 1.0;
 };
-constexpr Share usual_share{0.5, 0.5, 0.5};
+constexpr Share usual_share{0.5, 0.75, 0.5};
 constexpr Share few_share{0.25, 0.1, 0.1}; // few charts lie well early, in one of many frames
 
 constexpr SeparationOptions many_moves{12, 4};

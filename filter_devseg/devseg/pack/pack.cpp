@@ -25,7 +25,7 @@ constexpr double enough_use_of_many = 0.6; // where nesting would take seconds
 // threads busy; it is the same whatever the threads.
 constexpr std::size_t chains = 4;
 constexpr std::size_t finished_chains = 2;
-constexpr std::size_t finished_few = 4; // of the rectangles for a few charts, the smallest
+constexpr std::size_t finished_few = 8; // of the rectangles for a few charts, the smallest
 
 // Heights of the rectangle, in widths, that are tried for a few charts.
 constexpr double few_aspects[] = {1.0,  0.92, 0.85, 0.78, 0.71, 0.65, 0.59,

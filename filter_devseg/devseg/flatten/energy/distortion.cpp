@@ -151,7 +151,7 @@ Eigen::Vector4d density_gradient(const Eigen::Matrix2d& j) {
 namespace {
 
 // Adds what face f, with this Jacobian, pulls at its corners.
-void add_force(const FlatteningProblem& problem, std::size_t f, const Eigen::Matrix2d& j,
+inline void add_force(const FlatteningProblem& problem, std::size_t f, const Eigen::Matrix2d& j,
                Positions& gradient) {
     const Eigen::Vector4d stress = density_gradient(j);
     const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
