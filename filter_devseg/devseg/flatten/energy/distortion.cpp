@@ -152,7 +152,7 @@ namespace {
 
 // Adds what face f, with this Jacobian, pulls at its corners.
 inline void add_force(const FlatteningProblem& problem, std::size_t f, const Eigen::Matrix2d& j,
-               Positions& gradient) {
+                      Positions& gradient) {
     const Eigen::Vector4d stress = density_gradient(j);
     const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
                                   Eigen::Map<const Eigen::Matrix2d>(stress.data()) *
