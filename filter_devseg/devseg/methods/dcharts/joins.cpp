@@ -199,6 +199,7 @@ private:
                 effort.wanted_l2 = bounds_of(closing.charts).l2;
                 effort.give_up = true;
                 effort.only_near = !verdict.whole;
+                effort.only_apart = options_.keep_corners;
                 assess(closing,
                        judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
                                         effort, progress, joined_turns(mesh_, draft_, closing)),
