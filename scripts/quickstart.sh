@@ -14,6 +14,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 (
     # shellcheck source=scripts/setup.sh
     source "$here/setup.sh"
+    build_targets=(filter_devseg io_pattern) # a pattern needs no tests, which take as long
     devseg_setup
 )
 exec "$here/../.venv/bin/python" -m devseg.quickstart "$@"

@@ -19,6 +19,9 @@ system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev
     libgtest-dev libcgal-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
     python3-dev fonts-dejavu-core)
 
+# What is built: everything, tests as well.
+build_targets=(all)
+
 # Fresh machines install their own updates for minutes: so many seconds we wait for apt's locks, and
 # look again after each pause.
 lock_timeout=900
@@ -146,9 +149,9 @@ ensure_build() {
         printf '%s\n' "$stamp" >"$build/.devseg-stamp"
     fi
     # ninja -n tells, without building, whether there is anything to say.
-    ninja -C "$build" -n 2>/dev/null | grep -q 'no work to do' && return
+    ninja -C "$build" -n "${build_targets[@]}" 2>/dev/null | grep -q 'no work to do' && return
     say "building the plugins (build/$preset)"
-    or_die "building" cmake --build --preset "$preset"
+    or_die "building" cmake --build --preset "$preset" --target "${build_targets[@]}"
 }
 
 # ensure_main_build: what quickstart.sh and the tests use.

@@ -50,7 +50,7 @@ one_definition() {
     cmake --preset odr >/dev/null && cmake --build --preset odr
 }
 
-check ctest ctest --preset release
+check ctest ctest --preset release --parallel "$(nproc)"
 check "one definition" one_definition
 check walls .venv/bin/python scripts/check_walls.py
 check reference .venv/bin/python scripts/reference.py --check

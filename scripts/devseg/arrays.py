@@ -20,7 +20,7 @@ from devseg.array_session import (
 )
 from devseg.array_types import Atlas, Charts, Preview
 from devseg.errors import DevsegError
-from devseg.methods import FLATTENINGS, METHODS, Method
+from devseg.methods import EFFORTS, FLATTENINGS, METHODS, Method
 from devseg.pipeline import (
     DEFORM_FILTER,
     FLATTEN_FILTER,
@@ -81,6 +81,7 @@ def unwrap(
     charts: ArrayLike | Charts | None = None,
     flatten: str | None = None,
     pack: bool = True,
+    effort: str = "normal",
     progress: ProgressFunction | None = None,
     **options: Any,
 ) -> Atlas:
@@ -95,6 +96,7 @@ def unwrap(
         flatten: symmetric-dirichlet (Smith, Schaefer 2015), lscm, abf, arap or lpfb; None: as
             fits the method.
         pack: whether charts are nested in the unit square; else they stand in rows.
+        effort: of packing: fast, normal or best.
         progress: see the module.
         options: parameters of the method's filter.
 
@@ -104,6 +106,7 @@ def unwrap(
     """
     points, triangles = checked_mesh(vertices, faces)
     flattening = known_word("flatten", flatten or _method(method).flatten, FLATTENINGS)
+    packing = known_word("effort", effort, EFFORTS)
     with array_session(progress) as session:
         if charts is None:
             session.add(points, triangles)
@@ -115,7 +118,7 @@ def unwrap(
                 raise DevsegError(f"{next(iter(options))}: expected no options beside charts")
             session.add(points, triangles, *_given_charts(charts, len(triangles)))
             session.observation.part(0, _BOTH_SHARE)
-        session.apply(FLATTEN_FILTER, method=flattening, pack=pack)
+        session.apply(FLATTEN_FILTER, method=flattening, pack=pack, effort=packing)
         session.observation.part(_BOTH_SHARE, 1 - _BOTH_SHARE)
         measures = session.apply(PARAMETRIZATION_MEASURES)
         uv = session.meshes.current_mesh().wedge_tex_coord_matrix().reshape(-1, 3, 2)

@@ -73,3 +73,6 @@ FLATTENINGS = {
     "lpfb": "LPFB",
     "lpfb-even-areas": "LPFB Even Areas",
 }
+
+# Words of --effort and the values of the filters' parameter "effort".
+EFFORTS = {"fast": "Fast", "normal": "Normal", "best": "Best"}

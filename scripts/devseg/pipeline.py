@@ -18,7 +18,7 @@ from devseg.frame import Frame
 from devseg.given import Given, keep, make_charts, prepare
 from devseg.lengths import shown
 from devseg.load import load_mesh
-from devseg.methods import FLATTENINGS, Method
+from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
@@ -70,6 +70,7 @@ class RunOptions:
         keep_texcoords: whether PLY files keep the coordinates of the file beside the new ones.
         given: charts and seams that there are, and the component to take.
         smooth_seams: whether seams become smooth curves, along which the faces are split.
+        effort: of packing, key of EFFORTS.
     """
 
     out: Path
@@ -89,6 +90,7 @@ class RunOptions:
     given: Given = field(default_factory=Given)
     deforms: bool | None = None
     close_holes: int | None = None
+    effort: str = "normal"
 
 
 class Session:
@@ -269,7 +271,8 @@ def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[
     chosen = options.given.charts_from or options.given.keep_seams
     kept = {"keep": "Seams"} if chosen else {}
     with progress.stage("flatten"):
-        flat = session.apply(FLATTEN_FILTER, method=FLATTENINGS[options.flatten], **kept)
+        method, effort = FLATTENINGS[options.flatten], EFFORTS[options.effort]
+        flat = session.apply(FLATTEN_FILTER, method=method, effort=effort, **kept)
         if flat["overlap_cuts_number"]:
             session.call(COLOR_FILTER)  # charts came apart, and parts are at others now
     with progress.stage("measure"):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from devseg import given
 from devseg.lengths import length, millimetres, number, size
-from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
+from devseg.methods import EFFORTS, FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
 from devseg.pattern_options import (
     PATTERN_FORMATS,
     PRESETS,
@@ -93,6 +93,13 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     _add_input_options(parser)
     given.add_options(parser)
     add_pattern_options(parser)
+    parser.add_argument(
+        "--effort",
+        choices=EFFORTS,
+        default="normal",
+        help="of packing texture coordinates: fast takes milliseconds, best seconds; "
+        "default: normal",
+    )
     parser.add_argument(
         "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
     )
@@ -268,6 +275,7 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         given.check(args, parser),
         method.deforms if args.deform == "auto" else args.deform == "always",
         args.close_holes,
+        args.effort,
     )
 
 

@@ -102,6 +102,17 @@ def test_charts_are_flattened_as_they_are_given() -> None:
     assert (devseg.unwrap(*TUBE, charts=own).chart_id == own.chart_id).all()
 
 
+def test_more_effort_packs_the_same_charts_more_densely() -> None:
+    charts = devseg.segment(*BALL, charts_number=8)
+    packed = {
+        effort: devseg.unwrap(*BALL, charts=charts, effort=effort) for effort in ("fast", "best")
+    }
+    density = {effort: one.measures["packing_efficiency"] for effort, one in packed.items()}
+    assert density["best"] > density["fast"] > 0.2
+    with pytest.raises(devseg.DevsegError, match="effort: expected"):
+        devseg.unwrap(*BALL, effort="most")
+
+
 def test_a_cut_mesh_has_one_coordinate_for_each_vertex(atlas: devseg.Atlas) -> None:
     cut = atlas.cut()
     assert (cut.uv[cut.faces] == atlas.uv).all()

@@ -206,13 +206,15 @@ def test_every_chart_keeps_its_bound(obj: Callable, tmp_path: Path) -> None:
 def test_json_is_all_there_is_on_stdout(obj: Callable, tmp_path: Path) -> None:
     path = obj(meshes.cylinder(radius=1, height=3))
     out = tmp_path / "out"
-    options = ["--json", "--charts", 3, "--seed", 7, "--mm-per-unit", 100]
+    options = ["--json", "--charts", 3, "--seed", 7, "--mm-per-unit", 100, "--effort", "fast"]
     done = run_devseg("run", path, "-o", out, *options)
     assert (done.returncode, done.stderr) == (0, "")
     result = json.loads(done.stdout)
     assert result == json.loads((out / "mesh.json").read_text())
     parameters = result["parameters"]["compute_segmentation_dcharts_per_face"]
     assert parameters["charts_number"] == 3 and parameters["random_seed"] == 7
+    flattening = result["parameters"]["compute_texcoord_parametrization_charts_per_wedge"]
+    assert flattening["effort"] == 0
     assert set(result["versions"]) >= {"devseg", "pymeshlab", "python"}
     assert set(result["seconds"]) >= {"load", "segment", "flatten", "measure", "svg", "ply"}
     assert result["mesh"] == {"vertices": 624, "faces": 1152}

@@ -105,6 +105,21 @@ def test_headers_and_wheel_are_never_mixed(tmp_path: Path) -> None:
     assert found.stdout.split() == ["2022.02", "2022.2.post4"]
 
 
+def test_only_the_targets_asked_for_are_built(tmp_path: Path) -> None:
+    # Of a folder that is configured, with a cmake that only tells what it is asked for.
+    (tmp_path / "build" / "release").mkdir(parents=True)
+    (tmp_path / "build" / "release" / "build.ninja").touch()
+    (tmp_path / "build" / "release" / ".devseg-stamp").write_text(f"{tmp_path} \n")
+    stubs = f"root={tmp_path}; setup_log=$root/log; cmake() {{ echo cmake $*; }}; ninja() {{ :; }}"
+    for targets, expected in (("", "all"), ("build_targets=(one two); ", "one two")):
+        done = shell(f"{stubs}; {targets}ensure_build release")
+        assert done.returncode == 0, done.stderr
+        built = (tmp_path / "log").read_text().splitlines()[-1]
+        assert built == f"cmake --build --preset release --target {expected}"
+    quickstart = (ROOT / "scripts" / "quickstart.sh").read_text()
+    assert "build_targets=(filter_devseg io_pattern)" in quickstart
+
+
 def test_help_needs_no_setup() -> None:
     done = subprocess.run(
         ["bash", "scripts/quickstart.sh", "--help"], cwd=ROOT, capture_output=True, text=True

@@ -18,6 +18,7 @@ namespace {
 struct FlattenOptions {
     flatten::FlattenMethod method = flatten::FlattenMethod::symmetric_dirichlet;
     bool pack = true; // into the unit square; otherwise side by side in model units
+    pack::PackEffort effort = pack::PackEffort::normal;
 };
 
 constexpr const char* flatten_help =
@@ -69,9 +70,9 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
     flatten::FlattenResult flattened =
         flatten::flatten_charts(input.mesh, cuts.charts, options.method, flattening);
     auto packing = progress.part("packing charts", progress.left());
-    const SheetLayout layout =
-        options.pack ? lay_out(input.mesh, flattened.flat, pack::PackOptions{}, 1.0, packing)
-                     : lay_out_in_rows(input.mesh, flattened.flat);
+    const SheetLayout layout = options.pack ? lay_out(input.mesh, flattened.flat,
+                                                      packing_with(options.effort), 1.0, packing)
+                                            : lay_out_in_rows(input.mesh, flattened.flat);
 
     FilterOutput output;
     int mended = 0;
@@ -162,6 +163,7 @@ FilterDeclaration flatten() {
         .boolean(&O::pack, "pack", "Pack into the unit square",
                  "On: all charts in the unit square at one common scale, for textures. Off: side "
                  "by side in rows and in model units, which takes no time.")
+        .choice(&O::effort, "effort", "Effort of packing", effort_names(), effort_help)
         .on_part()
         .keeps()
         .writes(writes_charts | writes_uv)
@@ -187,6 +189,7 @@ FilterDeclaration pack() {
         .boolean(&O::allow_rotation, "allow_rotation", "Allow rotation",
                  "Turn charts to their best box and by quarter turns; off keeps the direction of "
                  "the texture.")
+        .choice(&O::effort, "effort", "Effort", effort_names(), effort_help)
         .needs_uv()
         .on_part()
         .writes(writes_uv)

@@ -245,7 +245,7 @@ FilterOutput run_optimize(const FilterInput& input, const pattern::OptimizeOptio
     auto packing = progress.part("packing charts", 0.3);
     if (is_stacked || layout.reattached > 0 || !layout.is_as_given) {
         const double side = lies_in_unit_square(uv) ? 1.0 : 0.0;
-        SheetLayout sheet = lay_out(mesh, layout.flat, pack::PackOptions{}, side, packing);
+        SheetLayout sheet = lay_out(mesh, layout.flat, packing_with(options.effort), side, packing);
         note_unsettled(sheet, output);
         uv = std::move(sheet.uv);
     }
@@ -281,6 +281,7 @@ FilterDeclaration optimize() {
               "charts together, no unit, from 0 (exactly developable) to 4 (anything).")
         .real(&O::max_dart_angle, {"max_dart_angle", 0.0, 180.0}, "Narrowest dart (degrees)",
               "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
+        .choice(&O::effort, "effort", "Effort of packing", effort_names(), effort_help)
         .needs_uv()
         .writes(writes_charts | writes_uv)
         .result("charts_number", "charts afterwards")

@@ -1,7 +1,6 @@
 #include "devseg/filters/sheet_layout.h"
 
 #include <limits>
-#include <string>
 
 #include "devseg/base/errors.h"
 #include "devseg/flatten/repair/snap.h"
@@ -48,6 +47,16 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
 
 SheetLayout lay_out_in_rows(const Mesh& mesh, std::vector<flatten::FlatChart>& charts) {
     return place(mesh, charts, pack::pack_rows(items_of(charts), pack::PackOptions().padding), 0.0);
+}
+
+std::vector<std::string> effort_names() {
+    return {"Fast", "Normal", "Best"};
+}
+
+pack::PackOptions packing_with(pack::PackEffort effort) {
+    pack::PackOptions options;
+    options.effort = effort;
+    return options;
 }
 
 void note_unsettled(const SheetLayout& layout, FilterOutput& output) {

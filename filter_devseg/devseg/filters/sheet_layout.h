@@ -1,6 +1,7 @@
 // Flat charts → texture coordinates on one sheet, as hosts store them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "devseg/declare/filter.h"
@@ -21,6 +22,15 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
 
 /// The same in rows, in model units and without any search for room.
 SheetLayout lay_out_in_rows(const Mesh& mesh, std::vector<flatten::FlatChart>& charts);
+
+/// What users choose among for a pack::PackEffort, and what they read about it.
+std::vector<std::string> effort_names();
+constexpr const char* effort_help =
+    "How long to look for a dense layout. Fast: charts are fitted in one after the other, in "
+    "milliseconds. Normal: a search, while it pays. Best: it goes on for about twice as long and "
+    "covers some 0.5 % more.";
+
+pack::PackOptions packing_with(pack::PackEffort effort);
 
 /// Tells the user about faces that rounding flattened.
 void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output);

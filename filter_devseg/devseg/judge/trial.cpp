@@ -27,6 +27,8 @@ struct Tuning {
     int few_rounds = 40;
     int many_rounds = 200;
     double near_excess = 10.0; // over the wanted one: a start that is farther is not near
+    // Of the root of the area: parts that overlap by more in a map that is near do not come apart.
+    double deep_overlap = 1e-3;
 };
 constexpr Tuning tuning;
 
@@ -57,6 +59,10 @@ public:
         } else if (effort_.only_near && !is_near(start)) {
             return {};
         }
+        if (effort_.only_apart && is_near(start) &&
+            flatten::overlaps_itself(surface_, start,
+                                     tuning.deep_overlap * std::sqrt(problem_.total_area)))
+            return {};
         std::vector<Vec2> uv = polish(start);
         flatten::scale_to_area(problem_, uv);
         return uv;

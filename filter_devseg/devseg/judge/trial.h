@@ -35,6 +35,7 @@ struct TrialEffort {
     bool give_up = false;    // stop early if it will be above; what is measured then is too much
     bool push_apart = false; // try to push overlapping parts apart
     bool only_near = false;  // not flat where `turns` do not nearly fit together
+    bool only_apart = false; // not flat where parts overlap deeply in a map near to the best one
 };
 
 /// Flattens the faces as one chart, cut open along the marked edges (`seam`, 3 #F of the mesh;

@@ -24,6 +24,7 @@ struct NestProblem {
     std::vector<Outline> outlines;
     double padding = 0.0;          // share of the square's side
     bool allow_rotation = true;    // by any angle
+    bool is_thorough = false;      // goes on where twice the work gains 0.5 %
     double side = 1.0;             // a guess of the square's
     double cell = 1.0;             // of the coarse grid
     std::vector<ChartPoses> poses; // on the coarse grid

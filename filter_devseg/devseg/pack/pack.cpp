@@ -25,6 +25,7 @@ constexpr double enough_use_of_many = 0.6; // where nesting would take seconds
 // threads busy; it is the same whatever the threads.
 constexpr std::size_t chains = 4;
 constexpr std::size_t finished_chains = 2;
+constexpr std::size_t finished_few = 8; // of the rectangles for a few charts, the smallest
 
 // Heights of the rectangle, in widths, that are tried for a few charts.
 constexpr double few_aspects[] = {1.0,  0.92, 0.85, 0.78, 0.71, 0.65, 0.59,
@@ -86,13 +87,13 @@ std::vector<Placement> find_placements(const NestProblem& problem, Progress& pro
                                      static_cast<std::uint64_t>(k) + 1, beginning);
         },
         beginning);
-    if (!few) {
+    if (!few || !problem.is_thorough) {
         const auto bad = [](const CoarseLayout& c) {
             return badness(Vec2(c.frame.width, c.frame.height));
         };
         std::stable_sort(begun.begin(), begun.end(),
                          [&](const auto& a, const auto& b) { return bad(a) < bad(b); });
-        begun.resize(finished_chains);
+        begun.resize(few ? finished_few : finished_chains);
     }
     std::vector<std::vector<Placement>> found(begun.size());
     auto finishing = progress.part(0.6);
@@ -162,6 +163,7 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     NestProblem problem;
     problem.padding = options.padding;
     problem.allow_rotation = options.allow_rotation;
+    problem.is_thorough = options.effort == PackEffort::best;
     problem.outlines.resize(items.size());
     auto outlining = progress.part(0.05);
     parallel_for(
@@ -172,6 +174,8 @@ PackResult pack_charts(const std::vector<PackItem>& items, const PackOptions& op
     problem.side = guess_side(problem.outlines, options);
     if (items.size() == 1)
         result.placements = {lay_down(problem.outlines.front(), options.allow_rotation)};
+    else if (options.effort == PackEffort::fast)
+        result.placements = pack_first_fit(problem.outlines, options, problem.side, placing);
     else if (items.size() > many_charts)
         result.placements = fit_or_nest(problem, options, placing);
     else

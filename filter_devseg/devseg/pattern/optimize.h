@@ -9,6 +9,7 @@
 
 #include "devseg/atlas/texture.h"
 #include "devseg/flatten/flatten.h"
+#include "devseg/pack/pack.h"
 
 namespace devseg::pattern {
 
@@ -19,6 +20,7 @@ struct OptimizeOptions {
     double merge_threshold = 0.01; // largest mean fitting error of a small chart with a neighbour's
                                    // proxy, no unit
     double max_dart_angle = 3.0;   // degrees: narrower darts are glued; 0 = none
+    pack::PackEffort effort = pack::PackEffort::normal; // where charts have to be packed anew
 };
 
 /// Charts in the plane with their face numbers: chart c is flat[c].

@@ -250,6 +250,35 @@ TEST(Pack, VeryManyChartsAreLaidOutAsWell) {
     }
 }
 
+TEST(Pack, EveryEffortKeepsThePromisesAndMoreOfItIsDenser) {
+    double sum_of_fast = 0.0;
+    double sum_of_normal = 0.0;
+    double sum_of_best = 0.0;
+    for (const int count : {3, 8, 12}) {
+        const std::vector<Shape> shapes = stars(count, 5);
+        const auto side = [&](PackEffort effort) {
+            return expect_promises(shapes, PackOptions{0.004, true, effort}).side;
+        };
+        const double best = side(PackEffort::best);
+        sum_of_best += 1.0;
+        sum_of_normal += side(PackEffort::normal) / best;
+        sum_of_fast += side(PackEffort::fast) / best;
+    }
+    EXPECT_GT(sum_of_fast, 1.02 * sum_of_best);
+    EXPECT_LT(sum_of_normal, 0.99 * sum_of_fast);
+    EXPECT_LT(sum_of_normal, 1.02 * sum_of_best);
+}
+
+TEST(Pack, TheLeastEffortTakesMilliseconds) {
+    const std::vector<Shape> shapes = stars(12, 5);
+    const auto time = [&](PackEffort effort) {
+        const std::clock_t start = std::clock(); // of the processor: the machine may be busy
+        pack(shapes, PackOptions{0.002, true, effort});
+        return static_cast<double>(std::clock() - start);
+    };
+    EXPECT_LT(5.0 * time(PackEffort::fast), time(PackEffort::normal));
+}
+
 TEST(Pack, ATurnedRectangleIsPutUpright) {
     Shape shape = rectangle(3.0, 3.0);
     const Eigen::Rotation2Dd turn(0.6);

@@ -23,6 +23,8 @@ namespace {
 struct Tuning {
     double sufficient_decrease = 1e-4; // Armijo's constant
     double safe_step = 0.8;            // share of the step at which the first triangle collapses
+    double farthest_step =
+        1.3; // of the first triangle's collapse that matters: safe_step of it > 1
     double smallest_step = 1e-12;
     // Rigid motions do not change the energy: this share of the mean diagonal keeps H definite.
     double shift_share = 1e-10;
@@ -146,19 +148,43 @@ Eigen::Vector4d density_gradient(const Eigen::Matrix2d& j) {
     return {stress(0, 0), stress(1, 0), stress(0, 1), stress(1, 1)};
 }
 
+namespace {
+
+// Adds what face f, with this Jacobian, pulls at its corners.
+inline void add_force(const FlatteningProblem& problem, std::size_t f, const Eigen::Matrix2d& j,
+                      Positions& gradient) {
+    const Eigen::Vector4d stress = density_gradient(j);
+    const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
+                                  Eigen::Map<const Eigen::Matrix2d>(stress.data()) *
+                                  problem.inverse[f].transpose();
+    const Triangle& t = problem.faces[f];
+    gradient.row(t[1]) += force.col(0).transpose();
+    gradient.row(t[2]) += force.col(1).transpose();
+    gradient.row(t[0]) -= (force.col(0) + force.col(1)).transpose();
+}
+
+} // namespace
+
 Positions distortion_gradient(const FlatteningProblem& problem, const Positions& x) {
     Positions gradient = Positions::Zero(x.rows(), 2);
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Vector4d stress = density_gradient(jacobian(problem, x, f));
-        const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
-                                      Eigen::Map<const Eigen::Matrix2d>(stress.data()) *
-                                      problem.inverse[f].transpose();
-        const Triangle& t = problem.faces[f];
-        gradient.row(t[1]) += force.col(0).transpose();
-        gradient.row(t[2]) += force.col(1).transpose();
-        gradient.row(t[0]) -= (force.col(0) + force.col(1)).transpose();
-    }
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        add_force(problem, f, jacobian(problem, x, f), gradient);
     return gradient;
+}
+
+double distortion_with_gradient(const FlatteningProblem& problem, const Positions& x,
+                                Positions& gradient) {
+    gradient.setZero(x.rows(), 2);
+    double sum = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d j = jacobian(problem, x, f);
+        const double det = j.determinant();
+        if (!(det > 0.0))
+            return infinite;
+        sum += problem.area[f] * j.squaredNorm() * (1.0 + 1.0 / (det * det));
+        add_force(problem, f, j, gradient);
+    }
+    return sum / (4.0 * problem.total_area);
 }
 
 Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& j) {
@@ -193,16 +219,20 @@ Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& j) {
     return hessian;
 }
 
-double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d) {
+double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d,
+                     double limit) {
     double step = infinite;
     for (const Triangle& t : problem.faces) {
         const Eigen::Vector2d p = (x.row(t[1]) - x.row(t[0])).transpose();
         const Eigen::Vector2d q = (x.row(t[2]) - x.row(t[0])).transpose();
         const Eigen::Vector2d dp = (d.row(t[1]) - d.row(t[0])).transpose();
         const Eigen::Vector2d dq = (d.row(t[2]) - d.row(t[0])).transpose();
-        step = std::min(step,
-                        first_root(plane::cross(dp, dq), plane::cross(p, dq) + plane::cross(dp, q),
-                                   plane::cross(p, q)));
+        const double a = plane::cross(dp, dq);
+        const double b = plane::cross(p, dq) + plane::cross(dp, q);
+        const double c = plane::cross(p, q);
+        // Most triangles keep an area up to the limit whatever the signs of a and b.
+        if (!(c > limit * (std::abs(b) + limit * std::abs(a))))
+            step = std::min(step, first_root(a, b, c));
     }
     return step;
 }
@@ -212,7 +242,8 @@ bool line_search(const FlatteningProblem& problem,
                  double slope, Positions& x, double& energy) {
     if (!(slope < 0.0))
         return false;
-    double step = std::min(1.0, tuning.safe_step * collapse_step(problem, x, d));
+    double step =
+        std::min(1.0, tuning.safe_step * collapse_step(problem, x, d, tuning.farthest_step));
     for (; step > tuning.smallest_step; step *= 0.5) {
         Positions next = x + step * d;
         const double next_energy = value(next);

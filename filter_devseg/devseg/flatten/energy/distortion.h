@@ -34,6 +34,10 @@ inline Eigen::Matrix2d jacobian(const FlatteningProblem& problem, const Position
 /// Σ A (σ₁² + σ₂² + σ₁⁻² + σ₂⁻²) / (4 Σ A); infinite where a face is flipped or has no area.
 double distortion(const FlatteningProblem& problem, const Positions& x);
 
+/// The same, and its gradient (#v by 2), which is left unfinished where the energy is infinite.
+double distortion_with_gradient(const FlatteningProblem& problem, const Positions& x,
+                                Positions& gradient);
+
 /// Its gradient, #v by 2.
 Positions distortion_gradient(const FlatteningProblem& problem, const Positions& x);
 
@@ -41,8 +45,10 @@ Positions distortion_gradient(const FlatteningProblem& problem, const Positions&
 /// negative eigenvalues set to zero.
 Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& jacobian);
 
-/// The step along direction d at which the first triangle has no area left.
-double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d);
+/// The step along direction d at which the first triangle has no area left. Where it is above
+/// `limit`, any number above `limit`.
+double collapse_step(const FlatteningProblem& problem, const Positions& x, const Positions& d,
+                     double limit = infinite);
 
 /// Goes from x along d, whose product with the gradient is `slope`, as far as pays: before the
 /// first triangle would collapse, with the decrease of `energy` that Armijo's rule asks for. False

@@ -1,5 +1,7 @@
 #include "devseg/flatten/energy/laplacian.h"
 
+#include <algorithm>
+
 #include "devseg/base/errors.h"
 
 namespace devseg::flatten {
@@ -12,7 +14,7 @@ constexpr double immovable = 1e20; // stiffness of vertices that stay: their ste
 
 Laplacian::Laplacian(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed) {
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(12 * problem.faces.size());
+    entries.reserve(9 * problem.faces.size() + at(problem.vertex_count));
     const double scale = 0.5 / problem.total_area;
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
         for (Index k = 0; k < 3; ++k) {
@@ -21,8 +23,7 @@ Laplacian::Laplacian(const FlatteningProblem& problem, const std::vector<std::ui
             const double w = scale * problem.cotangent[f][k];
             entries.emplace_back(i, i, w);
             entries.emplace_back(j, j, w);
-            entries.emplace_back(i, j, -w);
-            entries.emplace_back(j, i, -w);
+            entries.emplace_back(std::max(i, j), std::min(i, j), -w); // the lower half counts
         }
     double shift = 1e-8 / problem.total_area;
     for (Vertex v = 0; v < problem.vertex_count; ++v)

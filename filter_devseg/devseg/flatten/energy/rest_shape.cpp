@@ -82,6 +82,11 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     // Faces whose corners coincide get a size as well: a billionth of the chart's longest edge, and
     // one whose fourth power does not vanish where the chart is a point.
     const double floor = std::max(1e-9 * longest, 1e-60 * problem.model_size);
+    problem.edges.reserve(surface.faces.size());
+    problem.inverse.reserve(surface.faces.size());
+    problem.area.reserve(surface.faces.size());
+    problem.given_area.reserve(surface.faces.size());
+    problem.cotangent.reserve(surface.faces.size());
     for (const Face f : surface.all_faces()) {
         std::array<double, 3> length{};
         for (const HalfEdge h : half_edges_of(f))

@@ -100,10 +100,11 @@ public:
     Descent(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed,
             const ContactPenalty& penalty, Positions start)
         : problem_(problem), fixed_(fixed), penalty_(penalty), x_(std::move(start)),
-          energy_(value(x_)), gradient_(slope(x_)) {}
+          energy_(value(x_)), shape_(looked_at_), gradient_(slope()) {}
 
     const Positions& x() const { return x_; }
     double energy() const { return energy_; }
+    double shape() const { return shape_; } // the energy without the penalty
     const Positions& gradient() const { return gradient_; }
 
     /// Goes along a descent direction as far as pays; false if there is no such step.
@@ -113,7 +114,8 @@ public:
         const auto energy_at = [this](const Positions& y) { return value(y); };
         if (!line_search(problem_, energy_at, d, dot(gradient_, d), x_, energy_))
             return false;
-        Positions gradient = slope(x_);
+        shape_ = looked_at_;
+        Positions gradient = slope();
         step_ = x_ - start;
         change_ = gradient - gradient_;
         gradient_ = std::move(gradient);
@@ -123,10 +125,15 @@ public:
     const Positions& last_change() const { return change_; } // of the gradient
 
 private:
-    double value(const Positions& y) const { return distortion(problem_, y) + penalty_.energy(y); }
-    Positions slope(const Positions& y) const {
-        Positions g = distortion_gradient(problem_, y);
-        penalty_.add_gradient(y, g);
+    double value(const Positions& y) {
+        looked_at_ = distortion_with_gradient(problem_, y, distortion_slope_);
+        return looked_at_ + penalty_.energy(y);
+    }
+    // At x, where the energy was looked at last.
+    Positions slope() {
+        Positions g =
+            energy_ < infinite ? std::move(distortion_slope_) : distortion_gradient(problem_, x_);
+        penalty_.add_gradient(x_, g);
         hold_fixed(fixed_, g);
         return g;
     }
@@ -135,7 +142,11 @@ private:
     const std::vector<std::uint8_t>& fixed_;
     const ContactPenalty& penalty_;
     Positions x_;
+    // Without the penalty, where the energy was looked at last.
+    Positions distortion_slope_;
+    double looked_at_ = infinite;
     double energy_;
+    double shape_;
     Positions gradient_;
     Positions step_;
     Positions change_;
@@ -150,7 +161,7 @@ bool is_hopeless(double energy, double last_gain, const SymmetricDirichletOption
 void approach(const FlatteningProblem& problem, const SymmetricDirichletOptions& options,
               const Progress& progress, Descent& descent, SymmetricDirichletResult& result) {
     // A penalty is none of the Hessian's business.
-    const auto is_near = [&] { return distortion(problem, descent.x()) < tuning.near_isometry; };
+    const auto is_near = [&] { return descent.shape() < tuning.near_isometry; };
     if (is_near())
         return;
     ProjectedNewton newton(problem, options.fixed);
@@ -229,7 +240,7 @@ SymmetricDirichletResult minimise_symmetric_dirichlet(const FlatteningProblem& p
     Descent descent(problem, options.fixed, penalty, positions_of(start));
     approach(problem, options, progress, descent, result);
     polish(problem, options, progress, descent, result);
-    result.energy = distortion(problem, descent.x());
+    result.energy = descent.shape();
     result.uv = points_of(descent.x());
     return result;
 }

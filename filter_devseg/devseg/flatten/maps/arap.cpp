@@ -53,6 +53,19 @@ std::vector<Vec2> global_step(const FlatteningProblem& problem, const Laplacian&
     return next;
 }
 
+// The turns of all faces, and the energy.
+double turn_faces(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                  std::vector<Vec2>& turns) {
+    turns.resize(problem.faces.size());
+    double sum = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        const Eigen::Matrix2d j = jacobian(problem, uv, f);
+        turns[f] = nearest_turn(j);
+        sum += problem.area[f] * (j - rotation_of(turns[f])).squaredNorm();
+    }
+    return sum / problem.total_area;
+}
+
 } // namespace
 
 std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
@@ -66,11 +79,12 @@ std::vector<Vec2> face_turns(const FlatteningProblem& problem, const std::vector
 std::vector<Vec2> stitch(const FlatteningProblem& problem, const Laplacian& laplacian,
                          const std::vector<Vec2>& turns, const StitchOptions& options) {
     std::vector<Vec2> uv = global_step(problem, laplacian, turns);
-    double energy = arap_energy(problem, uv);
+    std::vector<Vec2> own;
+    double energy = turn_faces(problem, uv, own);
     for (int i = 0; i < options.rounds || (i < options.most_rounds && count_flips(problem, uv) > 0);
          ++i) {
-        uv = global_step(problem, laplacian, face_turns(problem, uv));
-        const double gain = energy - arap_energy(problem, uv);
+        uv = global_step(problem, laplacian, own);
+        const double gain = energy - turn_faces(problem, uv, own);
         energy -= gain;
         if (energy - gains_to_come * gain > options.give_up_energy)
             return {};
@@ -79,12 +93,8 @@ std::vector<Vec2> stitch(const FlatteningProblem& problem, const Laplacian& lapl
 }
 
 double arap_energy(const FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-    double sum = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        const Eigen::Matrix2d j = jacobian(problem, uv, f);
-        sum += problem.area[f] * (j - rotation_of(nearest_turn(j))).squaredNorm();
-    }
-    return sum / problem.total_area;
+    std::vector<Vec2> turns;
+    return turn_faces(problem, uv, turns);
 }
 
 ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec2>& start,
@@ -92,11 +102,12 @@ ArapResult minimise_arap(const FlatteningProblem& problem, const std::vector<Vec
     const Laplacian laplacian(problem);
     ArapResult result;
     result.uv = start;
-    result.energy = arap_energy(problem, start);
+    std::vector<Vec2> turns;
+    result.energy = turn_faces(problem, start, turns);
     while (result.rounds < options.max_rounds && !result.converged) {
         progress.check();
-        std::vector<Vec2> next = global_step(problem, laplacian, face_turns(problem, result.uv));
-        const double energy = arap_energy(problem, next);
+        std::vector<Vec2> next = global_step(problem, laplacian, turns);
+        const double energy = turn_faces(problem, next, turns);
         result.converged = result.energy - energy <= options.relative_tolerance * result.energy;
         if (!(energy < result.energy))
             break; // at the limit of rounding

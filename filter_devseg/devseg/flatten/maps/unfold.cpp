@@ -21,10 +21,11 @@ double direction(const Vec2& v) {
     return std::atan2(v.y(), v.x());
 }
 
-// Lengths of all edges, which is more than two triangles agree on: the sheet closes.
-bool keeps_lengths(const FlatteningProblem& problem, const std::vector<Vec2>& uv, double bound) {
-    for (HalfEdge h = 0; h < static_cast<Index>(problem.twin.size()); ++h) {
-        const Triangle& t = problem.faces[face_of(h)];
+// Lengths of all edges of a face, which is more than two triangles agree on: the sheet closes.
+bool keeps_lengths(const FlatteningProblem& problem, const std::vector<Vec2>& uv, Face f,
+                   double bound) {
+    for (const HalfEdge h : half_edges_of(f)) {
+        const Triangle& t = problem.faces[f];
         const double found = (uv[t[corner_of(Mesh::next(h))]] - uv[t[corner_of(h)]]).norm();
         if (!(std::abs(found - rest_edge(problem, h).norm()) <= bound))
             return false;
@@ -44,6 +45,10 @@ std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double
     std::vector<double> turn(problem.faces.size(), 0.0);
     // Across the longest edge first: its direction is known best.
     std::priority_queue<std::pair<double, Index>> edges;
+    // Corners stay where they are once they lie: most charts show early that they do not unfold.
+    const double bound = tolerance * std::sqrt(problem.total_area);
+    std::size_t laid = 0;
+    bool keeps = true;
     const auto place = [&](HalfEdge anchor) {
         const Face f = face_of(anchor);
         const Eigen::Rotation2Dd rotation(turn[f]);
@@ -55,13 +60,15 @@ std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double
             placed[to] = 1;
         }
         seen[f] = 1;
+        ++laid;
+        keeps = keeps_lengths(problem, uv, f, bound);
         for (const HalfEdge h : half_edges_of(f))
             if (twin[h] >= 0 && seen[face_of(twin[h])] == 0)
                 edges.emplace(rest_edge(problem, h).squaredNorm(), -h);
     };
     placed[problem.faces.front()[0]] = 1;
     place(0);
-    while (!edges.empty()) {
+    while (keeps && !edges.empty()) {
         const HalfEdge h = -edges.top().second;
         edges.pop();
         const HalfEdge other = twin[h];
@@ -71,8 +78,7 @@ std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double
                                direction(rest_edge(problem, other));
         place(other);
     }
-    if (!keeps_lengths(problem, uv, tolerance * std::sqrt(problem.total_area)) ||
-        count_flips(problem, uv) > 0)
+    if (!keeps || laid < problem.faces.size() || count_flips(problem, uv) > 0)
         return std::nullopt;
     return uv;
 }

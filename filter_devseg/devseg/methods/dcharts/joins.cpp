@@ -1,15 +1,13 @@
 #include "devseg/methods/dcharts/joins.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
 #include <map>
 #include <utility>
 
 #include "devseg/base/parallel.h"
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/judge/final_map.h"
+#include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
 
@@ -27,6 +25,7 @@ struct Verdict {
     double added = 0.0; // excess
     double saved = 0.0; // length of seam, internal units
     bool whole = false; // the whole border of two charts
+    bool tried = false;
     bool fresh = false; // found with the charts as they are now
     bool confirmed = false;
 };
@@ -43,11 +42,13 @@ public:
         const Index joins_before = draft_.joins;
         while (draft_.charts_number() > options_.enough_charts) {
             auto trying = progress.part(0.0); // joins say how far it is
-            for (propose(); !untried_.empty(); propose())
-                try_again(untried_, trying);
-            Entry* best = choose(progress);
-            if (best == nullptr && try_old_again(trying))
+            Entry* best = nullptr;
+            do {
+                try_promising(trying);
                 best = choose(progress);
+                if (best == nullptr && try_old_again(trying))
+                    best = choose(progress);
+            } while (is_any_promising(best)); // what seemed the best is not
             const bool may_part = draft_.charts_number() > options_.parts_above;
             if (best != nullptr)
                 close(best->first, best->second);
@@ -124,7 +125,7 @@ private:
             std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
         if (is_new)
             entry->second.second.whole = whole;
-        if (is_known)
+        if (is_known && entry->second.second.tried)
             return &entry->second;
         if (is_new)
             untried_.push_back(&entry->second);
@@ -149,6 +150,46 @@ private:
 
     bool is_open(Index chart) const { return open_.empty() || open_[at(chart)] != 0; }
 
+    // Tries what may be better than the best closing known, a few at a time: what they find makes
+    // most of the others needless.
+    void try_promising(Progress& progress) {
+        for (bool found = true; found;) {
+            found = false;
+            propose();
+            for (auto few = most_promising(); !few.empty(); few = most_promising()) {
+                try_again(few, progress);
+                found = true;
+            }
+        }
+    }
+
+    std::vector<Entry*> most_promising() {
+        const double excess = draft_.excess();
+        double best = infinite;
+        for (const auto& item : verdicts_)
+            best = std::min(best, price(item.second, excess));
+        std::vector<std::pair<double, Entry*>> order;
+        for (Entry* entry : untried_)
+            if (const double least = least_price(entry->first);
+                !entry->second.tried && least <= best && least < infinite)
+                order.emplace_back(least, entry);
+        std::stable_sort(order.begin(), order.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        order.resize(std::min(order.size(), tuning.tried_at_once));
+        std::vector<Entry*> few;
+        for (const auto& item : order)
+            few.push_back(item.second);
+        return few;
+    }
+
+    bool is_any_promising(const Entry* best) const {
+        const double known = best != nullptr ? price(*best, draft_.excess()) : infinite;
+        return std::any_of(untried_.begin(), untried_.end(), [&](const Entry* entry) {
+            const double least = least_price(entry->first);
+            return !entry->second.tried && least <= known && least < infinite;
+        });
+    }
+
     void try_again(const std::vector<Entry*>& entries, Progress& progress) {
         parallel_for(
             static_cast<int>(entries.size()),
@@ -158,9 +199,10 @@ private:
                 effort.wanted_l2 = bounds_of(closing.charts).l2;
                 effort.give_up = true;
                 effort.only_near = !verdict.whole;
+                effort.only_apart = options_.keep_corners;
                 assess(closing,
                        judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
-                                        effort, progress, turns_of(closing)),
+                                        effort, progress, joined_turns(mesh_, draft_, closing)),
                        verdict);
             },
             progress);
@@ -170,7 +212,8 @@ private:
     bool try_old_again(Progress& progress) {
         std::vector<Entry*> old;
         for (auto& item : verdicts_)
-            if (item.second.second.whole && !item.second.second.fresh)
+            if (item.second.second.whole && !item.second.second.fresh &&
+                least_price(item.second.first) < infinite)
                 old.push_back(&item.second);
         try_again(old, progress);
         return !old.empty();
@@ -185,7 +228,7 @@ private:
         verdict.saved = length_of(closing.edges) - map.cut_length + a.cut_length +
                         (is_join ? b.cut_length : 0.0);
         verdict.map = std::move(map);
-        verdict.fresh = true;
+        verdict.tried = verdict.fresh = true;
         verdict.confirmed = false;
     }
 
@@ -197,61 +240,6 @@ private:
         std::vector<Index> faces(a.size() + b.size());
         std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
         return faces;
-    }
-
-    // Of the faces of both charts, those of the second turned so that the closed edges lie along
-    // each other; empty where a chart has no map.
-    std::vector<Vec2> turns_of(const Closing& closing) const {
-        const auto [a, b] = closing.charts;
-        const std::vector<Vec2>& turns_a = draft_.map[a].turns;
-        const std::vector<Vec2>& turns_b = draft_.map[b].turns;
-        if (a == b || turns_a.empty() || turns_b.empty())
-            return a == b ? turns_a : std::vector<Vec2>();
-        const auto turn_of = [&](Index chart, Face f) {
-            const std::vector<Index>& faces = draft_.faces[chart];
-            return draft_.map[chart].turns[at(static_cast<Index>(
-                std::lower_bound(faces.begin(), faces.end(), Index{f}) - faces.begin()))];
-        };
-        // As complex numbers: the sum over the edges of their direction on one side over that on
-        // the other.
-        std::complex<double> between = 0.0;
-        for (const HalfEdge edge : closing.edges) {
-            const HalfEdge ha = draft_.chart[face_of(edge)] == a ? edge : mesh_.twin[edge];
-            const HalfEdge hb = mesh_.twin[ha];
-            between +=
-                laid(turn_of(a, face_of(ha)), ha) * std::conj(-laid(turn_of(b, face_of(hb)), hb));
-        }
-        const double size = std::abs(between);
-        const std::complex<double> turn = size > 0.0 ? between / size : 1.0;
-        std::vector<Vec2> turns;
-        auto ia = draft_.faces[a].begin();
-        auto ib = draft_.faces[b].begin();
-        auto ta = turns_a.begin();
-        auto tb = turns_b.begin();
-        while (ia != draft_.faces[a].end() || ib != draft_.faces[b].end()) {
-            if (ib == draft_.faces[b].end() || (ia != draft_.faces[a].end() && *ia < *ib)) {
-                turns.push_back(*ta++);
-                ++ia;
-            } else {
-                const std::complex<double> turned = turn * std::complex<double>(tb->x(), tb->y());
-                turns.emplace_back(turned.real(), turned.imag());
-                ++tb;
-                ++ib;
-            }
-        }
-        return turns;
-    }
-
-    // A half-edge in the plane, its face turned so.
-    std::complex<double> laid(const Vec2& turn, HalfEdge h) const {
-        const Face f = face_of(h);
-        std::array<double, 3> length{};
-        for (const HalfEdge e : half_edges_of(f))
-            length[corner_of(e)] = mesh_.edge_length(e);
-        const Eigen::Matrix2d edges = flatten::make_rest_triangle(length, 0.0).edges;
-        const std::array<Vec2, 3> corner{Vec2(0.0, 0.0), edges.col(0), edges.col(1)};
-        const Vec2 edge = corner[corner_of(Mesh::next(h))] - corner[corner_of(h)];
-        return std::complex<double>(turn.x(), turn.y()) * std::complex<double>(edge.x(), edge.y());
     }
 
     // The cuts inside the joined chart: those of both, and what is left of the border.
@@ -306,21 +294,33 @@ private:
     // Stretch for each length of seam that the closing saves; infinite where it may not be.
     double price(const Entry& entry, double excess) const {
         const auto& [closing, verdict] = entry;
-        const auto [first, second] = closing.charts;
-        const double least =
-            first == second
-                ? 0.0
-                : options_.least_neck *
-                      std::sqrt(std::min(draft_.map[first].area, draft_.map[second].area));
         const bool may_overlap = !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
             !bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) ||
-            !(verdict.saved > tuning.negligible * std::sqrt(mesh_.total_area)) ||
-            verdict.saved < least)
+            !is_worth(closing.charts, verdict.saved))
             return infinite;
-        return (std::max(0.0, verdict.added) + tuning.negligible * mesh_.total_area) /
-               verdict.saved;
+        return price_of(verdict.added, verdict.saved);
+    }
+
+    double price_of(double added, double saved) const {
+        return (std::max(0.0, added) + tuning.negligible * mesh_.total_area) / saved;
+    }
+
+    // No trial finds a lower price: as if the map added no stretch, and needed no cut.
+    double least_price(const Closing& closing) const {
+        const auto [first, second] = closing.charts;
+        const double saved = length_of(closing.edges) + draft_.map[first].cut_length +
+                             (first != second ? draft_.map[second].cut_length : 0.0);
+        return is_worth(closing.charts, saved) ? price_of(0.0, saved) : infinite;
+    }
+
+    // Whether it saves enough seam.
+    bool is_worth(const Pair& pair, double saved) const {
+        const double smaller = std::min(draft_.map[pair.first].area, draft_.map[pair.second].area);
+        const double least =
+            pair.first == pair.second ? 0.0 : options_.least_neck * std::sqrt(smaller);
+        return saved > tuning.negligible * std::sqrt(mesh_.total_area) && !(saved < least);
     }
 
     // The seam that is bought off at the lowest price, none if there is none. Overlaps are worth

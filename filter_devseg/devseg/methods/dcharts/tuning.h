@@ -34,6 +34,7 @@ struct Tuning {
     double corner_defect = 0.2;
     double least_part = 0.1;     // of a border, over √area, that is closed on its own
     std::size_t tried_again = 4; // parts at a time, the best of those with old verdicts
+    std::size_t tried_at_once = 8; // closings, before the best of them makes others needless
     // Parts between creases, joined one by one. Where there are more, creases are no guide.
     Index most_regions = 1000;
     Index few_regions = 100;      // flat faces of such a part that are joined one by one

@@ -52,6 +52,12 @@ TEST(Distortion, TheGradientIsThatOfTheEnergy) {
         const Disk disk(raw);
         Positions x = positions(flatten_tutte(disk.problem));
         const Positions gradient = distortion_gradient(disk.problem, x);
+        Positions with_energy;
+        EXPECT_EQ(distortion_with_gradient(disk.problem, x, with_energy),
+                  distortion(disk.problem, x));
+        EXPECT_EQ(with_energy, gradient);
+        EXPECT_EQ(distortion_with_gradient(disk.problem, -x.rowwise().reverse(), with_energy),
+                  infinite); // flipped
         const double scale = gradient.cwiseAbs().maxCoeff();
         for (Eigen::Index v = 0; v < x.rows(); ++v)
             for (Eigen::Index c = 0; c < 2; ++c) {
@@ -113,6 +119,9 @@ TEST(Distortion, TheCollapseStepIsWhereTheFirstTriangleHasNoArea) {
         const double step = collapse_step(disk.problem, x, d);
         ASSERT_TRUE(step > 0.0 && std::isfinite(step));
         EXPECT_NEAR(least_area(x + step * d), 0.0, 1e-12);
+        for (const double limit : {0.3 * step, 0.99 * step})
+            EXPECT_GT(collapse_step(disk.problem, x, d, limit), limit);
+        EXPECT_EQ(collapse_step(disk.problem, x, d, 1.01 * step), step);
         for (int i = 0; i < 50; ++i)
             EXPECT_GT(least_area(x + 0.02 * i * step * d), 0.0);
     }

@@ -1,0 +1,49 @@
+#include "devseg/judge/trial.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "unit/checks.h"
+#include "unit/shapes.h"
+
+namespace devseg::judge {
+
+namespace {
+
+// Like a spiral staircase three faces wide: laid flat, it runs over itself from the second turn on.
+Mesh staircase(double turns) {
+    mesh::RawMesh raw = shapes::grid(60, 3);
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : raw.points)
+        box.extend(p);
+    for (Vec3& p : raw.points) {
+        const Vec3 share = (p - box.min()).cwiseQuotient(box.sizes().cwiseMax(1.0e-9));
+        const double angle = 2.0 * pi * turns * share.x();
+        const double radius = 1.0 + 0.5 * share.y();
+        p = Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.2 * turns * share.x());
+    }
+    return checks::gated(raw);
+}
+
+TEST(Trial, ChartsThatLieOnThemselvesAreRefusedWhereThatIsAskedFor) {
+    Progress progress;
+    for (const double turns : {0.5, 1.5}) {
+        const Mesh mesh = staircase(turns);
+        std::vector<Index> faces(mesh.faces.size());
+        std::iota(faces.begin(), faces.end(), 0);
+        const std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+        TrialEffort effort;
+        const TrialMap any = try_chart(mesh, faces, seam, effort, progress);
+        ASSERT_TRUE(any.flat) << turns;
+        EXPECT_EQ(any.overlaps, turns > 1.0);
+        effort.only_apart = true;
+        EXPECT_EQ(try_chart(mesh, faces, seam, effort, progress, any.turns).flat, turns < 1.0);
+    }
+}
+
+} // namespace
+
+} // namespace devseg::judge
