@@ -10,10 +10,10 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    double sharp = 25.0 * degrees; // curvature of vertices that seams never leave
-    double curved = 6.0 * degrees; // and of those that they go back to
-    double firm = 2.0 * degrees;   // the same on firm seams, which never leave the former
-    double near = 0.35;            // of an edge: how far from these curves are drawn to them
+    double sharp = 40.0 * degrees;  // curvature of vertices that seams never leave
+    double curved = 15.0 * degrees; // and of those that they go back to
+    double firm = 2.0 * degrees;    // the same on firm seams, which never leave the former
+    double near = 0.2;              // of an edge: how far from these curves are drawn to them
 };
 constexpr Tuning tuning;
 

@@ -64,7 +64,8 @@ bool is_above_strain(const Mesh& mesh, const std::vector<Index>& faces,
     judge::ClothLimits limits;
     limits.max_strain = bound;
     limits.is_search = false;
-    return !judge::try_cloth(mesh, faces, seam, limits, false, progress).accepted;
+    const judge::ClothTrial trial = judge::try_cloth(mesh, faces, seam, limits, false, progress);
+    return !trial.has_map || trial.strain.most_of_it > bound;
 }
 
 // Which of the charts are above a bound.
