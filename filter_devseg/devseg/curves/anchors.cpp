@@ -26,7 +26,7 @@ Anchors::Anchors(const Network& network, const std::vector<std::uint8_t>& firm)
     for (Index c = 0; c < static_cast<Index>(network.curves.size()); ++c) {
         const Curve& curve = network.curves[c];
         firm_.push_back(firm[curve.path.front()]);
-        const double least = firm_.back() != 0 ? tuning.curved : tuning.sharp;
+        const double least = firm_.back() != 0 ? tuning.firm : tuning.sharp;
         for (std::size_t i = curve.is_closed() ? 0 : 1; !curve.held && i < curve.path.size(); ++i) {
             const Vertex v = network.mesh.origin(curve.path[i]);
             if (defect_[v] > least)
