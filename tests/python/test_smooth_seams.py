@@ -167,9 +167,9 @@ def test_the_bound_on_charts_is_kept_while_seams_are_smoothed(tmp_path: Path) ->
     session = Session(tmp_path, None)
     for bound, expected in ((1.02, {"max_chart_l2_stretch": 1.02}), (0.0, {})):
         session.parameters[method.filter] = {"max_chart_l2_stretch": bound}
-        assert pipeline._chart_bound(session, options) == expected
+        assert pipeline._smoothing(session, options) == expected
     session.parameters.clear()
-    assert pipeline._chart_bound(session, options) == {}
+    assert pipeline._smoothing(session, options) == {}
 
 
 def test_seams_stay_on_edges_where_smooth_ones_break_a_bound(
