@@ -240,7 +240,7 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         with progress.stage("smooth"):
             if _bounds(options) and made.get("bounds_kept", True):
                 kept = _copy(session)
-            found["smoothing"] = session.apply(SMOOTH_FILTER, **_chart_bound(session, options))
+            found["smoothing"] = session.apply(SMOOTH_FILTER, **_smoothing(session, options))
     if options.method.deforms if options.deforms is None else options.deforms:
         with progress.stage("deform"):
             found["deformation"] = _deform(session)
@@ -282,11 +282,11 @@ def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[
         }
 
 
-def _chart_bound(session: Session, options: RunOptions) -> dict[str, float]:
-    """The bound on each chart that the segmentation kept, for the filter that smooths its seams."""
-    name = "max_chart_l2_stretch"
+def _smoothing(session: Session, options: RunOptions) -> dict[str, Any]:
+    """The bounds on each chart that the segmentation kept, and mirror images where it made some."""
     used = session.parameters.get(options.method.filter, {})
-    return {name: used[name]} if used.get(name) else {}
+    bounds = {name: used[name] for name in ("max_chart_l2_stretch", "max_strain") if used.get(name)}
+    return {**bounds, **({"symmetric": True} if options.method.name == "plush" else {})}
 
 
 def _bounds(options: RunOptions) -> dict[str, float]:

@@ -51,6 +51,24 @@ def sources(before: Any, after: Any) -> tuple[np.ndarray, np.ndarray]:
     return found, weights
 
 
+def test_a_bound_on_strain_is_kept(meshset: Callable[[meshes.Mesh], Any]) -> None:
+    def made(**parameters: Any) -> tuple[dict[str, Any], float]:
+        ms = meshset(meshes.sphere(48, 24))
+        ms.compute_segmentation_dcharts_per_face(charts_number=6)
+        results = ms.apply_filter(FILTER, **parameters) if parameters else {}
+        ms.compute_texcoord_parametrization_charts_per_wedge(method="LPFB")
+        return results, ms.get_parametrization_measures()["strain_99"]
+
+    _, on_edges = made()
+    bound = 1.01 * on_edges
+    free, strain = made(max_strain=1.0)
+    assert free["kept_charts_number"] == 0
+    assert strain > bound
+    results, strain = made(max_strain=bound)
+    assert results["kept_charts_number"] > 0
+    assert strain <= bound
+
+
 def test_everything_on_the_mesh_is_carried_over(segmented: Any) -> None:
     ms = segmented
     ms.compute_texcoord_parametrization_charts_per_wedge()
@@ -149,9 +167,9 @@ def test_the_bound_on_charts_is_kept_while_seams_are_smoothed(tmp_path: Path) ->
     session = Session(tmp_path, None)
     for bound, expected in ((1.02, {"max_chart_l2_stretch": 1.02}), (0.0, {})):
         session.parameters[method.filter] = {"max_chart_l2_stretch": bound}
-        assert pipeline._chart_bound(session, options) == expected
+        assert pipeline._smoothing(session, options) == expected
     session.parameters.clear()
-    assert pipeline._chart_bound(session, options) == {}
+    assert pipeline._smoothing(session, options) == {}
 
 
 def test_seams_stay_on_edges_where_smooth_ones_break_a_bound(

@@ -12,24 +12,17 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    int attempts = 6;     // each keeps the curves on their edges that failed before
-    double crease = 4.0;  // scales: shorter creases are bumps, and hold nothing
-    double rounds = 12.0; // for each edge in one scale: curves pass one vertex in each
+    int attempts = 8;       // each keeps what failed before on its edges
+    int whole_attempts = 3; // the last ones, which keep whole curves
+    double around = 1.5;    // mean edges: what is kept around a place that failed; twice each time
+    double crease = 4.0;    // scales: shorter creases are bumps, and hold nothing
+    double rounds = 12.0;   // for each edge in one scale: curves pass one vertex in each
     double least_rounds = 24.0;
     double most_rounds = 120.0;
+    double symmetric_within = 0.03; // of the diagonal: nine tenths of a model's points
     double least_edges = 1.0; // mean edges of the seams: the least scale, below which edges show
 };
 constexpr Tuning tuning;
-
-double diagonal(const Mesh& mesh) {
-    Vec3 low = Vec3::Constant(infinite);
-    Vec3 high = Vec3::Constant(-infinite);
-    for (const Vec3& p : mesh.points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    return (high - low).norm();
-}
 
 bool is_seam(const Mesh& mesh, const atlas::ChartMap& charts, HalfEdge h) {
     return charts.seam[h] != 0 && mesh.twin[h] >= 0 && h < mesh.twin[h];
@@ -76,27 +69,53 @@ double mean_edge(const Mesh& mesh, const atlas::ChartMap& charts) {
     return edges > 0 ? length / edges : 0.0;
 }
 
+// Keeps the edges of a path that are near to the face, at least the nearest one; all of them where
+// there is no face.
+void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face, double reach,
+                 std::vector<std::uint8_t>& held) {
+    const auto distance = [&](HalfEdge h) {
+        const Vec3 middle = 0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)]);
+        return face < 0 ? 0.0 : (middle - mesh.face_centers[face]).norm();
+    };
+    double nearest = infinite;
+    for (const HalfEdge h : path)
+        nearest = std::min(nearest, distance(h));
+    for (const HalfEdge h : path)
+        if (distance(h) <= std::max(nearest, reach))
+            held[h] = held[mesh.twin[h]] = 1;
+}
+
 } // namespace
 
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                          const SmoothOptions& options, Progress& progress,
-                         const std::vector<std::uint8_t>& held_too) {
+                         const std::vector<Firmness>& firmness) {
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
-    const double scale = std::max(options.smoothness * diagonal(mesh), tuning.least_edges * edge);
+    const double scale =
+        std::max(options.smoothness * mesh::mesh_diagonal(mesh), tuning.least_edges * edge);
     const int rounds = edge > 0.0
                            ? static_cast<int>(std::clamp(tuning.rounds * scale / edge,
                                                          tuning.least_rounds, tuning.most_rounds))
                            : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
-    for (std::size_t h = 0; h < held_too.size(); ++h)
-        held[h] = held[h] != 0 || held_too[h] != 0 ? 1 : 0;
+    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), {}};
+    for (std::size_t h = 0; h < firmness.size(); ++h) {
+        held[h] = held[h] != 0 || firmness[h] == Firmness::held ? 1 : 0;
+        aims.firm[h] = firmness[h] == Firmness::close ? 1 : 0;
+    }
+    if (options.symmetric) {
+        auto finding = progress.part("finding the mirror plane", 0.2);
+        aims.plane = mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
+    }
     SmoothSeams result;
+    result.has_plane = aims.plane.has_value();
+    double reach = tuning.around * edge;
     bool done = false;
     for (int attempt = 0; attempt < tuning.attempts && !done; ++attempt) {
-        auto part = progress.part("smoothing seams", attempt == 0 ? 0.7 : 0.5 * progress.left());
+        auto part = progress.part("smoothing seams", (attempt == 0 ? 0.7 : 0.5) * progress.left());
         Network network(mesh, charts, held);
-        smooth(network, scale, rounds, part);
+        smooth(network, aims, part);
         SplitMesh split = split_along(network, charts, progress);
         done = split.failed.empty();
         result.smooth_seams = result.kept_seams = 0;
@@ -106,9 +125,11 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
             result.refinement = std::move(split.refinement);
             result.charts = std::move(split.charts);
         }
-        for (const Index c : split.failed)
-            for (const HalfEdge h : network.curves[c].path)
-                held[h] = held[mesh.twin[h]] = 1;
+        const bool whole = attempt + tuning.whole_attempts >= tuning.attempts;
+        for (const Failure& failure : split.failed)
+            hold_around(network.curves[failure.curve].path, mesh, whole ? -1 : failure.face, reach,
+                        held);
+        reach *= 2.0;
     }
     if (!done) { // the mesh as it is
         result.refinement = mesh::refine(mesh, {}, {});

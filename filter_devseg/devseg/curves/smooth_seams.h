@@ -20,6 +20,7 @@ namespace devseg::curves {
 struct SmoothOptions {
     double smoothness = 0.01;   // length of the waves that go, as a share of the diagonal
     double keep_creases = 30.0; // degrees: seams on edges that bend by more stay where they are
+    bool symmetric = false;     // seams that nearly mirror each other do so exactly
 
     static auto ranges() {
         using O = SmoothOptions;
@@ -33,13 +34,21 @@ struct SmoothSeams {
     atlas::ChartMap charts;      // of the finer mesh, with the labels that the charts had
     Index smooth_seams = 0;      // curves between junctions, darts and slits
     Index kept_seams = 0;        // that stay on their edges, those on creases included
+    bool has_plane = false;      // in which seams were made symmetric
     double old_length = 0.0;     // of all seams, internal units
     double new_length = 0.0;
 };
 
-/// `held` (3 #F, or empty) marks further seams that stay on their edges.
+/// How free a seam is.
+enum class Firmness : std::uint8_t {
+    free,  // a smooth curve
+    close, // the same, through all of its vertices that are curved
+    held,  // stays on its edges
+};
+
+/// `firmness` (3 #F, or empty): of each seam edge, both half-edges.
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                          const SmoothOptions& options, Progress& progress,
-                         const std::vector<std::uint8_t>& held = {});
+                         const std::vector<Firmness>& firmness = {});
 
 } // namespace devseg::curves

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "devseg/curves/anchors.h"
+#include "devseg/curves/bending.h"
 #include "devseg/curves/chains.h"
+#include "devseg/curves/mirroring.h"
 #include "devseg/curves/strip.h"
 
 namespace devseg::curves {
@@ -12,12 +15,14 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    double samples = 5.0;        // of the smooth curve, in one scale
-    double stiffness = 0.5;      // scales: waves of 2 π of these shrink by a factor of e
     double farthest_end = 0.999; // of an edge: how near crossings come to its ends
     double margin = 6.0;         // scales: how far closed curves are smoothed beyond their ends
     double apart = 0.01;         // of an edge: how near curves come to each other on it
     double inside = 0.05;        // barycentric: how near junctions come to the edges of a face
+    double image = 2.0;          // scales: how far from each other mirror images lie at most
+    double image_spacing = 0.25; // scales: of the points along mirror images
+    double last_rounds = 0.4;    // of the rounds, with the vertices near the curves
+    double half_way = 0.5;       // to the mirror image, which comes the other half
 };
 constexpr Tuning tuning;
 
@@ -35,114 +40,22 @@ Vec3 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
     return {1.0 - second - third, second, third};
 }
 
-// Solves (1 + b T²) y = x with T = tridiagonal(−1, 2, −1), in place; the ends have no curvature.
-// By L D Lᵀ of a band of two.
-void solve_bending(std::vector<Vec2>& x, double b) {
-    const std::size_t n = x.size();
-    std::vector<double> d(n);
-    std::vector<double> l1(n, 0.0);
-    std::vector<double> l2(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-        const bool at_end = i == 0 || i + 1 == n;
-        d[i] = 1.0 + (at_end ? 5.0 : 6.0) * b;
-        if (i >= 2) {
-            l2[i] = b / d[i - 2];
-            d[i] -= l2[i] * l2[i] * d[i - 2];
-            x[i] -= l2[i] * x[i - 2];
-        }
-        if (i >= 1) {
-            const double other = i >= 2 ? l2[i] * d[i - 2] * l1[i - 1] : 0.0;
-            l1[i] = (-4.0 * b - other) / d[i - 1];
-            d[i] -= l1[i] * l1[i] * d[i - 1];
-            x[i] -= l1[i] * x[i - 1];
-        }
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        x[i] /= d[i];
-        if (i + 1 < n)
-            x[i] -= l1[i + 1] * x[i + 1];
-        if (i + 2 < n)
-            x[i] -= l2[i + 2] * x[i + 2];
-    }
-}
-
-// A smooth curve in the plane of a strip, sampled at equal distances.
-struct SmoothCurve {
-    std::vector<Vec2> samples;
-    double step = 1.0;
-
-    Vec2 place(double along) const {
-        const double k = std::clamp(along / step, 0.0, static_cast<double>(samples.size() - 1));
-        const auto i = std::min(static_cast<std::size_t>(k), samples.size() - 2);
-        const double s = k - static_cast<double>(i);
-        return (1.0 - s) * samples[i] + s * samples[i + 1];
-    }
-};
-
-SmoothCurve smooth_curve(const std::vector<FlatStop>& stops, double scale, int rounds) {
-    SmoothCurve curve;
-    const double length = stops.back().along;
-    const auto pieces = std::max(2, static_cast<int>(std::ceil(tuning.samples * length / scale)));
-    curve.step = length / pieces;
-    std::size_t i = 0;
-    for (int k = 0; k <= pieces; ++k) {
-        const double along = curve.step * k;
-        while (i + 2 < stops.size() && stops[i + 1].along < along)
-            ++i;
-        const double part = stops[i + 1].along - stops[i].along;
-        const double s = part > 0.0 ? std::clamp((along - stops[i].along) / part, 0.0, 1.0) : 0.0;
-        curve.samples.push_back((1.0 - s) * stops[i].point + s * stops[i + 1].point);
-    }
-    // Straight lines stay as they are, so the ends can be taken for zero.
-    const Vec2 from = curve.samples.front();
-    const Vec2 slope = (curve.samples.back() - from) / pieces;
-    std::vector<Vec2> inner;
-    for (int k = 1; k < pieces; ++k)
-        inner.push_back(curve.samples[at(k)] - from - slope * k);
-    const double units = scale / curve.step;
-    solve_bending(inner, std::pow(tuning.stiffness * units, 4.0) / rounds);
-    for (int k = 1; k < pieces; ++k)
-        curve.samples[at(k)] = inner[at(k - 1)] + from + slope * k;
-    return curve;
-}
-
-// Where the smooth curve meets the line of an edge, from its right end (0) to its left (1), nearest
-// to where the curve met it before. None where it does not come near.
-std::optional<double> meet(const SmoothCurve& curve, const FlatStop& stop) {
-    const Vec2 edge = stop.left - stop.right;
-    const double squared = edge.squaredNorm();
-    const auto count = static_cast<std::ptrdiff_t>(curve.samples.size()) - 1;
-    const auto middle = std::clamp<std::ptrdiff_t>(
-        static_cast<std::ptrdiff_t>(stop.along / curve.step), 0, count - 1);
-    const auto reach = static_cast<std::ptrdiff_t>(2.0 * std::sqrt(squared) / curve.step) + 2;
-    const auto side = [&](std::ptrdiff_t k) {
-        const Vec2 d = curve.samples[static_cast<std::size_t>(k)] - stop.right;
-        return edge.x() * d.y() - edge.y() * d.x();
-    };
-    for (std::ptrdiff_t away = 0; away <= reach; ++away)
-        for (const std::ptrdiff_t k : {middle - away, middle + away}) {
-            if (k < 0 || k >= count)
-                continue;
-            const double a = side(k);
-            const double b = side(k + 1);
-            // From the left of the edge to its right, as the strip goes.
-            if (!(a >= 0.0 && b < 0.0))
-                continue;
-            const double s = a / (a - b);
-            const Vec2 p = (1.0 - s) * curve.samples[static_cast<std::size_t>(k)] +
-                           s * curve.samples[static_cast<std::size_t>(k + 1)];
-            return (p - stop.right).dot(edge) / squared;
-        }
-    return {};
-}
-
 class Smoother {
 public:
-    Smoother(Network& network, double scale, int rounds)
-        : net_(network), scale_(scale), rounds_(rounds), chains_(make_chains(network, scale)) {}
+    Smoother(Network& network, const SmoothingAims& aims)
+        : net_(network), scale_(aims.scale), rounds_(aims.rounds),
+          chains_(make_chains(network, aims.scale)), anchors_(network, aims.firm),
+          plane_(aims.plane) {}
 
-    void round(const Progress& progress) {
+    void hold_near_vertices() { anchors_.add_near(net_); }
+
+    void round(bool mirrored, const Progress& progress) {
         pulls_.assign(net_.nodes.size(), {});
+        image_.reset();
+        if (mirrored && plane_) {
+            image_.emplace(net_, *plane_, tuning.image * scale_, tuning.image_spacing * scale_);
+            pull_to_images();
+        }
         for (const Chain& chain : chains_) {
             progress.check();
             move_chain(chain);
@@ -154,6 +67,8 @@ private:
     std::vector<Stop> stops_of(const Chain& chain) const;
     void add_stops(Index curve, bool forwards, std::vector<Stop>& stops) const;
     void move_chain(const Chain& chain);
+    void shift_to_image(const std::vector<Stop>& stops, std::vector<FlatStop>& flat) const;
+    void pull_to_images();
     void slide(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
                const SmoothCurve& curve, std::size_t first, std::size_t end);
     void pass_vertices(const std::vector<Stop>& stops, const std::vector<double>& met, bool left,
@@ -168,6 +83,9 @@ private:
     double scale_;
     int rounds_;
     std::vector<Chain> chains_;
+    Anchors anchors_;
+    std::optional<mesh::MirrorPlane> plane_;
+    std::optional<MirrorImage> image_; // of the curves as they were before the round
     std::vector<Pull> pulls_;
 };
 
@@ -217,12 +135,64 @@ void Smoother::move_chain(const Chain& chain) {
     }
     if (stops.size() < 3)
         return;
-    const std::vector<FlatStop> flat = unfold(net_, stops);
+    std::vector<FlatStop> flat = unfold(net_, stops);
     if (!(flat.back().along > 0.0))
         return;
-    const SmoothCurve curve = smooth_curve(flat, scale_, rounds_);
+    const std::vector<Hold> holds = anchors_.holds(net_, stops, flat);
+    if (image_)
+        shift_to_image(stops, flat);
+    const SmoothCurve curve = smooth_curve(flat, holds, scale_, rounds_);
     pull_junctions(chain, stops, flat, curve, first, end);
     slide(stops, flat, curve, first, end);
+}
+
+// Half the way to the mirror image, across the curve.
+void Smoother::shift_to_image(const std::vector<Stop>& stops, std::vector<FlatStop>& flat) const {
+    std::vector<Vec3> places;
+    for (const Stop& stop : stops)
+        places.push_back(stop.crossing >= 0 ? place_of_crossing(net_, stop.crossing)
+                                            : place_of_node(net_, stop.node));
+    std::vector<Vec2> shifts(stops.size(), Vec2::Zero());
+    for (std::size_t i = 1; i + 1 < stops.size(); ++i) {
+        const Vec3 along = (places[i + 1] - places[i - 1]).normalized();
+        const Vec2 flat_along = (flat[i + 1].point - flat[i - 1].point).normalized();
+        const std::optional<Vec3> way = image_->way(places[i], along);
+        if (!way)
+            continue;
+        const Face f = stops[i].crossing >= 0                    ? face_of(stops[i].leaving)
+                       : net_.nodes[stops[i].node].is_junction() ? net_.nodes[stops[i].node].face
+                                                                 : Face();
+        if (f < 0)
+            continue;
+        const double across = tuning.half_way * way->dot(net_.mesh.face_normals[f].cross(along));
+        shifts[i] = across * Vec2(-flat_along.y(), flat_along.x());
+    }
+    for (std::size_t i = 0; i < flat.size(); ++i)
+        if (shifts[i].allFinite())
+            flat[i].point += shifts[i];
+}
+
+// Junctions that end a curve go half the way to their mirror images; others move with the curve.
+void Smoother::pull_to_images() {
+    for (Index n = 0; n < static_cast<Index>(net_.nodes.size()); ++n) {
+        const Node& node = net_.nodes[n];
+        if (!node.is_junction())
+            continue;
+        const std::optional<Vec3> way = image_->way_of_junction(place_of_node(net_, n));
+        if (!way)
+            continue;
+        const Triangle& t = net_.mesh.faces[node.face];
+        const Vec3& a = net_.mesh.points[t[0]];
+        const Vec3 b = net_.mesh.points[t[1]] - a;
+        const Vec3 c = net_.mesh.points[t[2]] - a;
+        const Vec3& normal = net_.mesh.face_normals[node.face];
+        const double twice = b.cross(c).dot(normal);
+        const Vec3 step = tuning.half_way * *way;
+        const double second = step.cross(c).dot(normal) / twice;
+        const double third = b.cross(step).dot(normal) / twice;
+        pulls_[n].target += node.weights + Vec3(-second - third, second, third);
+        ++pulls_[n].count;
+    }
 }
 
 void Smoother::slide(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
@@ -349,11 +319,14 @@ void Smoother::move_junction(Index number, const Vec3& target) {
 
 } // namespace
 
-void smooth(Network& network, double scale, int rounds, Progress& progress) {
-    Smoother smoother(network, scale, rounds);
-    for (int k = 0; k < rounds; ++k) {
-        smoother.round(progress);
-        progress.update(static_cast<double>(k + 1) / rounds);
+void smooth(Network& network, const SmoothingAims& aims, Progress& progress) {
+    Smoother smoother(network, aims);
+    const int last = static_cast<int>(tuning.last_rounds * aims.rounds);
+    for (int k = 0; k < aims.rounds; ++k) {
+        if (k == aims.rounds - last)
+            smoother.hold_near_vertices();
+        smoother.round(k >= aims.rounds - 2 * last, progress);
+        progress.update(static_cast<double>(k + 1) / aims.rounds);
     }
 }
 

@@ -46,9 +46,12 @@ public:
         SplitMesh result;
         if (failed_.empty())
             finish(result);
-        std::sort(failed_.begin(), failed_.end());
-        failed_.erase(std::unique(failed_.begin(), failed_.end()), failed_.end());
-        result.failed = failed_;
+        for (const Index c : failed_)
+            result.failed.push_back({c, -1});
+        result.failed.insert(result.failed.end(), unsound_.begin(), unsound_.end());
+        std::sort(result.failed.begin(), result.failed.end());
+        result.failed.erase(std::unique(result.failed.begin(), result.failed.end()),
+                            result.failed.end());
         return result;
     }
 
@@ -264,7 +267,7 @@ private:
             parts = cut_face(cut);
         if (!parts.sound)
             for (const Index c : curves_in(f, first, end))
-                unsound_.push_back(c);
+                unsound_.push_back({c, f});
         split.parts = std::move(parts.parts);
         if (split.parts.size() > 1) {
             angles_.push_back(parts.smallest_angle);
@@ -330,12 +333,11 @@ private:
             if (is_needle(i, tuning.worst_needle))
                 for (const HalfEdge h : half_edges_of(splits_[i].face))
                     for (const Index c : net_.on_edge(h))
-                        unsound_.push_back(net_.crossings[c].curve);
+                        unsound_.push_back({net_.crossings[c].curve, splits_[i].face});
     }
 
     void finish(SplitMesh& result) {
-        failed_.insert(failed_.end(), unsound_.begin(), unsound_.end());
-        if (!failed_.empty())
+        if (!unsound_.empty())
             return;
         renumber();
         result.refinement = mesh::refine(mesh_, std::move(points_), splits_);
@@ -390,7 +392,7 @@ private:
     std::vector<double> angles_; // of each split face: its smallest, radians
     std::vector<mesh::Refinement::Point> points_;
     std::vector<Index> failed_;
-    std::vector<Index> unsound_; // curves in faces that could not be cut
+    std::vector<Failure> unsound_; // curves in faces that could not be cut
 };
 
 } // namespace

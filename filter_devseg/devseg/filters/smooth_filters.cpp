@@ -4,6 +4,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
+#include "devseg/judge/cloth.h"
 #include "devseg/judge/trial.h"
 
 namespace devseg::filters {
@@ -25,75 +26,110 @@ constexpr const char* smooth_help =
     "Bildverarbeitung f&uuml;r die Medizin, 2005, doi:10.1007/3-540-26431-0_43";
 
 struct Tuning {
-    int rounds = 3; // of smoothing, where charts come out above the bound
+    int rounds = 5; // of smoothing, where charts come out above a bound
 };
 constexpr Tuning tuning;
 
 struct Options : curves::SmoothOptions {
     double max_chart_l2_stretch = 0.0; // none
+    double max_strain = 0.0;           // none
+
+    bool has_bounds() const { return max_chart_l2_stretch > 0.0 || max_strain > 0.0; }
 
     static OptionRanges<Options> ranges() {
         return {{&Options::smoothness, {"smoothness", 0.0, 0.2}},
                 {&Options::keep_creases, {"keep_creases", 0.0, 180.0}},
-                {&Options::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}}};
+                {&Options::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}},
+                {&Options::max_strain, {"max_strain", 0.0, 10.0}}};
     }
 };
 
-// Which of the charts stretch by more than the bound.
-std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts, double bound,
-                                Progress& progress) {
-    const Buckets<Index> faces = atlas::group_faces(charts);
-    std::vector<std::uint8_t> result(at(charts.count), 0);
+bool is_above_stretch(const Mesh& mesh, const std::vector<Index>& faces,
+                      const std::vector<std::uint8_t>& seam, double bound,
+                      const Progress& progress) {
     judge::TrialEffort effort;
     effort.wanted_l2 = bound;
     effort.push_apart = true;
+    try {
+        const judge::TrialMap map = judge::try_chart(mesh, faces, seam, effort, progress);
+        return !map.flat || map.l2_squared > bound * bound;
+    } catch (const NumericalFailure&) { // no way to flatten it at all
+        return true;
+    }
+}
+
+bool is_above_strain(const Mesh& mesh, const std::vector<Index>& faces,
+                     const std::vector<std::uint8_t>& seam, double bound,
+                     const Progress& progress) {
+    judge::ClothLimits limits;
+    limits.max_strain = bound;
+    limits.is_search = false;
+    const judge::ClothTrial trial = judge::try_cloth(mesh, faces, seam, limits, false, progress);
+    return !trial.has_map || trial.strain.most_of_it > bound;
+}
+
+// Which of the charts are above a bound.
+std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
+                                const Options& options, Progress& progress) {
+    const Buckets<Index> faces = atlas::group_faces(charts);
+    std::vector<std::uint8_t> result(at(charts.count), 0);
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
-            try {
-                const judge::TrialMap map = judge::try_chart(
-                    mesh, {faces[c].begin(), faces[c].end()}, charts.seam, effort, progress);
-                result[at(c)] = !map.flat || map.l2_squared > bound * bound ? 1 : 0;
-            } catch (const NumericalFailure&) { // no way to flatten it at all
-                result[at(c)] = 1;
-            }
+            const std::vector<Index> own(faces[c].begin(), faces[c].end());
+            const double stretch = options.max_chart_l2_stretch;
+            const double strain = options.max_strain;
+            const bool is_above =
+                (stretch > 0.0 && is_above_stretch(mesh, own, charts.seam, stretch, progress)) ||
+                (strain > 0.0 && is_above_strain(mesh, own, charts.seam, strain, progress));
+            result[at(c)] = is_above ? 1 : 0;
         },
         progress);
     return result;
 }
 
-// Smooth seams; those of charts that are above the bound then, and were not before, stay.
+// The seams of a chart that is above come nearer to where they were, and then all the way.
+bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts,
+                 const std::vector<std::uint8_t>& is_above, bool is_last,
+                 std::vector<curves::Firmness>& firmness) {
+    using curves::Firmness;
+    bool changed = false;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (mesh.twin[h] < 0 || charts.seam[h] == 0 || firmness[h] == Firmness::held)
+            continue;
+        if (is_above[charts.chart[face_of(h)]] == 0 && is_above[charts.chart[mesh.across(h)]] == 0)
+            continue;
+        firmness[h] = is_last || firmness[h] == Firmness::close ? Firmness::held : Firmness::close;
+        changed = true;
+    }
+    return changed;
+}
+
+// Smooth seams; those of charts that are above a bound then, and were not before, stay.
 curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& charts,
                                   const Options& options, int& kept_charts, Progress& progress) {
     const double bound = options.max_chart_l2_stretch;
     if (bound > 0.0 && bound <= 1.0)
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
-    if (bound == 0.0)
+    if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
-    std::vector<std::uint8_t> kept(at(charts.count), 0);
     auto judging = progress.part("judging charts", 0.2);
-    const std::vector<std::uint8_t> before = above(mesh, charts, bound, judging);
-    std::vector<std::uint8_t> held(mesh.twin.size(), 0);
-    for (int round = 0;; ++round) {
+    const std::vector<std::uint8_t> before = above(mesh, charts, options, judging);
+    std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
+    std::vector<std::uint8_t> kept(before.size(), 0);
+    for (int round = 1;; ++round) {
         auto smoothing = progress.part(0.5 * progress.left());
-        curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, held);
+        curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
         auto again = progress.part("judging charts", 0.5 * progress.left());
-        const std::vector<std::uint8_t> after =
-            above(made.refinement.mesh, made.charts, bound, again);
-        bool more = false;
-        for (std::size_t c = 0; c < kept.size(); ++c)
-            if (after[c] != 0 && before[c] == 0 && kept[c] == 0) {
-                kept[c] = 1;
-                more = true;
-            }
+        std::vector<std::uint8_t> after = above(made.refinement.mesh, made.charts, options, again);
+        for (std::size_t c = 0; c < after.size(); ++c) {
+            after[c] = after[c] != 0 && before[c] == 0 ? 1 : 0;
+            kept[c] = kept[c] != 0 || after[c] != 0 ? 1 : 0;
+        }
         kept_charts = static_cast<int>(std::count(kept.begin(), kept.end(), 1));
-        if (!more)
+        const bool is_last = round + 1 >= tuning.rounds;
+        if (!make_firmer(mesh, charts, is_last ? kept : after, is_last, firmness))
             return made;
-        for (const HalfEdge h : mesh.all_half_edges())
-            if (mesh.twin[h] >= 0 && charts.seam[h] != 0 &&
-                (round + 2 >= tuning.rounds || kept[charts.chart[face_of(h)]] != 0 ||
-                 kept[charts.chart[mesh.across(h)]] != 0))
-                held[h] = 1;
     }
 }
 
@@ -112,6 +148,9 @@ FilterOutput run_smooth(const FilterInput& input, const Options& options, Progre
         {"seam_length_before", made.old_length * unit},
         {"seam_length", made.new_length * unit},
     };
+    if (options.symmetric && !made.has_plane)
+        output.notes.emplace_back("the model is not its own mirror image: both sides got seams of "
+                                  "their own");
     output.charts = std::move(made.charts);
     output.refinement = std::move(made.refinement);
     return output;
@@ -130,15 +169,23 @@ std::vector<FilterDeclaration> smooth_filters() {
             .real(&O::keep_creases, "Keep creases (degrees)",
                   "Seams on edges where the surface bends by more, in degrees, stay where they "
                   "are. 180 = none.")
+            .boolean(
+                &O::symmetric, "symmetric", "Symmetric",
+                "Where the model is nearly its own mirror image, seams that nearly mirror each "
+                "other do so exactly, whatever its faces are.")
             .real(
                 &O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
                 "Seams of a chart stay on their edges where smooth ones bring its root mean "
                 "square stretch, which has no unit, above this bound. 0 = none, which saves the trial "
                 "flattenings.")
+            .real(&O::max_strain, "Largest strain of a chart",
+                  "The same for cloth: seams of a chart stay where smooth ones strain 99 % of its "
+                  "area by more than this share in any direction. 0 = none.")
             .on_part()
             .writes(writes_charts | writes_mesh)
             .result("charts_number", "charts, as many as before")
-            .result("kept_charts_number", "charts whose seams stay because of the bound")
+            .result("kept_charts_number",
+                    "charts whose seams stay nearer to edges because of a bound")
             .result("smooth_seams_number", "seams, darts and slits that are smooth curves now")
             .result("kept_seams_number", "those that stay on their edges")
             .result("new_faces_number", "faces that splitting added")

@@ -260,6 +260,97 @@ TEST(SmoothSeams, SlitsKeepTheirTips) {
         EXPECT_EQ(fine_degree[tip], 1);
 }
 
+// A seam along the ridge of a plate takes up the curvature of its peak: it stays there.
+TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
+    mesh::RawMesh plate = shapes::grid(40, 40);
+    const Mesh flat = checks::gated(plate);
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers)
+        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    const std::vector<std::uint8_t> seam = atlas::make_chart_map(flat, label, {}, false).seam;
+    Vertex peak;
+    for (const HalfEdge h : flat.all_half_edges())
+        if (seam[h] != 0 &&
+            (peak < 0 || flat.points[flat.origin(h)].norm() < flat.points[peak].norm()))
+            peak = flat.origin(h);
+    plate.points[peak].z() = 0.02;
+    const Mesh mesh = checks::gated(plate);
+    ASSERT_EQ(mesh.faces, flat.faces);
+    const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+    const auto passes_peak = [&](const Mesh& surface, const ChartMap& map) {
+        bool found = false;
+        for (const HalfEdge h : surface.all_half_edges())
+            found = found || (map.seam[h] != 0 && surface.origin(h) == peak);
+        return found;
+    };
+    ASSERT_TRUE(passes_peak(mesh, charts));
+    SmoothOptions options;
+    options.smoothness = 0.05;
+    options.keep_creases = 180.0;
+    const SmoothSeams made = smoothed(mesh, charts, options);
+    expect_sound(mesh, charts, made);
+    EXPECT_EQ(made.smooth_seams, 1);
+    EXPECT_TRUE(passes_peak(made.refinement.mesh, made.charts));
+    EXPECT_LT(made.new_length, 0.9 * made.old_length);
+}
+
+// An egg whose triangles know nothing of its mirror plane, with a cap on each side.
+mesh::RawMesh egg() {
+    mesh::RawMesh mesh = shapes::sphere(4);
+    const Eigen::AngleAxisd turn(0.7, Vec3(1.0, 2.0, 3.0).normalized());
+    for (Vec3& p : mesh.points) {
+        const Vec3 q = turn * p;
+        p = {1.5 * q.x(), q.y() * (1.0 + 0.2 * q.y()), 0.8 * q.z() * (1.0 + 0.3 * q.y())};
+    }
+    return mesh;
+}
+
+double farthest_from_image(const SmoothSeams& made) {
+    const Mesh& fine = made.refinement.mesh;
+    std::vector<Vec3> places;
+    for (const HalfEdge h : fine.all_half_edges())
+        if (made.charts.seam[h] != 0)
+            for (int k = 0; k < 8; ++k)
+                places.push_back(fine.points[fine.origin(h)] +
+                                 k / 8.0 *
+                                     (fine.points[fine.target(h)] - fine.points[fine.origin(h)]));
+    double low = infinite;
+    double high = -infinite;
+    for (const Vec3& p : fine.points) {
+        low = std::min(low, p.x());
+        high = std::max(high, p.x());
+    }
+    double farthest = 0.0;
+    for (const Vec3& p : places) {
+        const Vec3 image(low + high - p.x(), p.y(), p.z());
+        double nearest = infinite;
+        for (const Vec3& q : places)
+            nearest = std::min(nearest, (q - image).norm());
+        farthest = std::max(farthest, nearest);
+    }
+    return farthest;
+}
+
+TEST(SmoothSeams, MirrorEachOtherWhateverTheTriangles) {
+    const Mesh mesh = checks::gated(egg());
+    std::vector<Index> label;
+    for (const Vec3& p : mesh.face_centers) {
+        const double x = p.x() * mesh.unit_length;
+        const double edge = 0.75 + 0.1 * std::sin(5.0 * std::atan2(p.z(), p.y()));
+        label.push_back(x > edge ? 2 : x < -edge ? 1 : 0);
+    }
+    const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+    ASSERT_EQ(charts.count, 3);
+    SmoothOptions options;
+    options.symmetric = true;
+    const SmoothSeams made = smoothed(mesh, charts, options);
+    expect_sound(mesh, charts, made);
+    EXPECT_EQ(made.smooth_seams, 2);
+    const double edge = mesh.edge_length(HalfEdge(0));
+    EXPECT_LT(farthest_from_image(made), 0.25 * edge);
+    EXPECT_GT(farthest_from_image(smoothed(mesh, charts)), 0.5 * edge);
+}
+
 TEST(SmoothSeams, WithoutSeamsNothingChanges) {
     const Mesh mesh = checks::gated(shapes::sphere(2));
     const ChartMap charts = checks::components(mesh);

@@ -171,6 +171,12 @@ bool needs_more_than_a_mesh(const std::string& name) {
     return name == "skeleton_file" || name == "material_borders" || name == "weld";
 }
 
+// Bounds of smooth seams work between what charts have before and afterwards:
+// run_filter_refinement_test and test_smooth_seams.py look for that.
+bool needs_a_close_bound(const FilterDeclaration& filter, const std::string& name) {
+    return filter.python_name == "meshing_smooth_chart_seams" && name.rfind("max_", 0) == 0;
+}
+
 // Parameters that work only together with another value.
 ParameterValues needed_for(const std::string& name) {
     if (name == "keep_unfinished")
@@ -218,7 +224,7 @@ TEST(DeclaredFilters, EveryParameterChangesTheResult) {
             return place->second;
         };
         for (const Parameter& p : filter.parameters) {
-            if (needs_more_than_a_mesh(p.name))
+            if (needs_more_than_a_mesh(p.name) || needs_a_close_bound(filter, p.name))
                 continue;
             bool changes = false;
             for (std::size_t i = 0; i < hosts.size() && !changes; ++i)

@@ -85,13 +85,6 @@ std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& sea
     return on_border;
 }
 
-double mesh_diagonal(const Mesh& mesh) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : mesh.points)
-        box.extend(p);
-    return box.diagonal().norm();
-}
-
 std::vector<double> edge_lengths(const Mesh& mesh) {
     std::vector<double> lengths;
     for (const HalfEdge h : mesh.all_half_edges())

@@ -7,6 +7,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/mesh/mesh.h"
+#include "devseg/mesh/mirror_plane.h"
 
 namespace devseg::plush {
 
@@ -28,8 +29,7 @@ inline bool is_border(const Mesh& mesh, const SeamMarks& seam, HalfEdge h) {
 /// 1 for the vertices (#V) on the borders of patches.
 std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam);
 
-/// Of the box around the mesh, internal units.
-double mesh_diagonal(const Mesh& mesh);
+using mesh::mesh_diagonal;
 
 /// Of all half-edges (3 #F), their mean, and the sum of some; internal units.
 std::vector<double> edge_lengths(const Mesh& mesh);

@@ -20,11 +20,7 @@ struct Tuning {
     double speck = 2e-3; // smaller pieces are left out, and smaller ends are no limbs
 
     // Symmetry.
-    double symmetric_within = 0.03;   // animals that stand still are nearer to their mirror images
-    Index plane_samples = 1500;       // points; a sixth of them while planes are compared
-    std::size_t promising_planes = 3; // that are fitted to all samples
-    int fitting_rounds = 30;
-    double trusted_points = 0.8; // the nearest, that a plane is fitted to: the rest may differ
+    double symmetric_within = 0.03; // animals that stand still are nearer to their mirror images
 
     // The surface on which seams are decided. Numbers of faces.
     Index mirrored_faces = 6000; // with its mirror image; half as many again without

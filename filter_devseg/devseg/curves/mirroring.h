@@ -1,0 +1,43 @@
+// Curves drawn to the mirror images of others, so that both sides of a model get the same seams.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "devseg/curves/network.h"
+#include "devseg/mesh/mirror_plane.h"
+#include "devseg/mesh/nearest_points.h"
+
+namespace devseg::curves {
+
+class MirrorImage {
+public:
+    /// The curves as they are now. `reach`: how far images may lie from each other; `spacing`: of
+    /// the points along them; internal units.
+    MirrorImage(const Network& network, const mesh::MirrorPlane& plane, double reach,
+                double spacing);
+
+    /// From a point of a curve to the mirror image of another, or of itself; nothing where none is
+    /// near that runs the same way. `direction`: of the curve, a unit vector.
+    std::optional<Vec3> way(const Vec3& point, const Vec3& direction) const;
+
+    /// The same from a junction to the image of a junction.
+    std::optional<Vec3> way_of_junction(const Vec3& point) const;
+
+private:
+    void add_line(const Vec3& from, const Vec3& to, double spacing);
+
+    mesh::MirrorPlane plane_;
+    double reach_;
+    std::vector<Vec3> points_; // of the images
+    std::vector<Vec3> directions_;
+    std::vector<Vec3> junctions_;
+    std::optional<mesh::NearestPoints> nearest_;
+    std::optional<mesh::NearestPoints> nearest_junction_;
+};
+
+/// Where a crossing or a node is.
+Vec3 place_of_crossing(const Network& network, Index crossing);
+Vec3 place_of_node(const Network& network, Index node);
+
+} // namespace devseg::curves
