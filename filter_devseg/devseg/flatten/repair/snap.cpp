@@ -19,6 +19,9 @@ struct Tuning {
     // and on the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
     int boundary_reach = 2;
     double widened = 1.02; // area of a needle as flattened over that on the surface
+    // Least height of a needle, of the model's size: a dozen steps of 32 bits in a packed square.
+    // Needles in a row leave each other no room on that grid, and would be turned over by it.
+    double needle_height = 1e-6;
 };
 constexpr Tuning tuning;
 
@@ -186,6 +189,7 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
 }
 
 void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
+    const double least = tuning.needle_height * problem.model_size;
     for (Face f = 0; f < static_cast<Index>(problem.faces.size()); ++f) {
         const double area = problem.given_area[f];
         if (!(area > 0.0) || problem.area[f] < tuning.widened * area)
@@ -204,7 +208,10 @@ void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
         const Vec2 along = (q - p) / length(longest);
         const Vec2 inwards = plane::left_of(along);
         const double height = inwards.dot(home - p);
-        apex = home + (2.0 * area / length(longest) - height) * inwards;
+        const double wanted = std::max(2.0 * area / length(longest), least);
+        if (wanted >= height)
+            continue;
+        apex = home + (wanted - height) * inwards;
         if (!is_positive_around(problem.faces, problem.twin, uv, leaving))
             apex = home;
     }
