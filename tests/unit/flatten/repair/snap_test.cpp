@@ -158,12 +158,14 @@ TEST(Snap, LayoutsOfAnySizeAreHandled) {
 // A crack in a small part of a large model, which needles fill: without a width of their own they
 // are turned over by rounding, one beside another.
 TEST(RestoreNeedles, LeavesRoomForRounding) {
-    mesh::RawMesh raw = shapes::grid(24, 3, 24.0, 3.0);
-    for (Vec3& p : raw.points)
-        if (p.y() == 2.0) {
-            p.y() = 1.0 + 1e-9;
-            p.x() += p.x() > 0.0 && p.x() < 24.0 ? 0.4 : 0.0;
-        }
+    mesh::RawMesh raw = shapes::grid(24, 8, 24.0, 8.0);
+    for (Vec3& p : raw.points) {
+        const double row = p.y();
+        if (row < 2.0 || row > 6.0)
+            continue;
+        p.y() = 2.0 + 1e-9 * row;
+        p.x() += p.x() > 0.0 && p.x() < 24.0 ? 0.3 * std::fmod(row, 3.0) : 0.0;
+    }
     const checks::Disk disk(raw);
     FlatteningProblem problem = disk.problem;
     problem.model_size *= 500.0;
