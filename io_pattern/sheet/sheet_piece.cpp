@@ -137,9 +137,11 @@ void merge_slits(const pattern::Pattern& pattern, Index index, std::vector<Outli
             merged.skipped[outline.at_index(side_point(b, i))] = 1;
         }
         merged.skipped[outline.at_index(side_point(b, mouth))] = 1;
-        // Holes may vanish: a slit is all that there is of them.
+        // Holes may vanish: a slit is all that there is of them. A piece does not: where its whole
+        // border is one cut, the sheet is folded double, and stays open.
         if (a.path == 0 &&
-            plane::signed_area(merged.ring()) < kept_area * plane::signed_area(outline.ring()))
+            (merged.has_vanished() ||
+             plane::signed_area(merged.ring()) < kept_area * plane::signed_area(outline.ring())))
             continue;
         outline = std::move(merged);
         slits.push_back(std::move(slit));
@@ -363,11 +365,6 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index, const Glu
     for (const Outline& outline : outlines)
         if (!outline.has_vanished())
             result.cut.push_back(outline.ring());
-    if (result.cut.empty())
-        throw InvalidMesh(
-            "expected pieces with an outline, found " + piece.name +
-            ", whose border lies on itself all around; join it to a neighbour, or use "
-            "fewer charts");
     const AllowanceWidths allowance = options.allowance();
     if (allowance.largest() > 0.0) {
         result.sew = std::move(result.cut);

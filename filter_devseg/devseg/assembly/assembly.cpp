@@ -15,19 +15,16 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
-bool joins(const pattern::Seam& seam, Index a, Index b) {
-    const Index p = seam.sides[0].piece;
-    const Index q = seam.sides[1].piece;
-    return (p == a && q == b) || (p == b && q == a);
-}
-
 // Whether the pieces hang together by their seams.
 bool hang_together(const PieceGraph& graph, const std::vector<Index>& pieces) {
     graph::Unions unions(graph.area.size());
+    std::vector<std::uint8_t> is_one(graph.area.size(), 0);
+    for (const Index a : pieces)
+        is_one[at(a)] = 1;
     std::size_t parts = pieces.size();
     for (const Index a : pieces)
-        for (const Index b : pieces)
-            if (graph.mm[at(a)][at(b)] > 0.0 && unions.find(a) != unions.find(b)) {
+        for (const auto& [b, length] : graph.mm[at(a)])
+            if (is_one[at(b)] != 0 && length > 0.0 && unions.find(a) != unions.find(b)) {
                 unions.join(unions.find(a), unions.find(b));
                 --parts;
             }
@@ -41,10 +38,16 @@ public:
         plan_.seam_step.assign(pattern.seams.size(), 0);
         plan_.section.assign(pattern.pieces.size(), -1);
         waits_.assign(pattern.seams.size(), 0);
+        seams_of_.resize(pattern.pieces.size());
+        for (std::size_t s = 0; s < pattern.seams.size(); ++s)
+            for (const pattern::SeamSide& side : pattern.seams[s].sides)
+                if (std::vector<Index>& own = seams_of_[at(side.piece)];
+                    own.empty() || own.back() != static_cast<Index>(s))
+                    own.push_back(static_cast<Index>(s));
     }
 
     Assembly plan() {
-        raw_section_ = find_sections(graph_);
+        raw_section_ = find_sections(graph_, progress_);
         progress_.check();
         if (craft_ == Craft::sewing)
             plan_.openings = find_openings(pattern_, graph_, progress_);
@@ -52,8 +55,11 @@ public:
             waits_[at(opening.seam)] = opening.is_whole ? 1 : 0;
         for (Index p = 0; p < graph_.piece_count; ++p)
             add_darts(p);
+        std::vector<std::vector<Index>> components(at(graph_.component_count));
+        for (Index p = 0; p < graph_.piece_count; ++p)
+            components[at(graph_.component[at(p)])].push_back(p);
         for (Index c = 0; c < graph_.component_count; ++c)
-            plan_component(c);
+            plan_component(c, std::move(components[at(c)]));
         for (AssemblyStep& step : plan_.steps)
             if (step.kind == StepKind::dart)
                 step.section = plan_.section[at(step.pieces.front())];
@@ -69,53 +75,88 @@ private:
                 plan_.seam_step[at(s)] = static_cast<Index>(plan_.steps.size());
     }
 
+    // Seams of the pieces that are still to be done, in their order.
     template <class Wanted>
-    std::vector<Index> seams_where(Wanted wanted) const {
+    std::vector<Index> seams_where(const std::vector<Index>& pieces, Wanted wanted) const {
         std::vector<Index> seams;
-        for (std::size_t s = 0; s < pattern_.seams.size(); ++s)
-            if (plan_.seam_step[s] == 0 && waits_[s] == 0 && wanted(pattern_.seams[s]))
-                seams.push_back(static_cast<Index>(s));
+        for (const Index p : pieces)
+            for (const Index s : seams_of_[at(p)])
+                if (plan_.seam_step[at(s)] == 0 && waits_[at(s)] == 0 &&
+                    wanted(pattern_.seams[at(s)]))
+                    seams.push_back(s);
+        std::sort(seams.begin(), seams.end());
+        seams.erase(std::unique(seams.begin(), seams.end()), seams.end());
         return seams;
     }
     std::vector<Index> seams_between(const std::vector<Index>& built,
                                      const std::vector<Index>& added) const {
-        return seams_where([&](const pattern::Seam& seam) {
-            return std::any_of(built.begin(), built.end(), [&](Index a) {
-                return std::any_of(added.begin(), added.end(),
-                                   [&](Index b) { return joins(seam, a, b); });
-            });
+        std::vector<std::uint8_t> side(seams_of_.size(), 0);
+        for (const Index p : built)
+            side[at(p)] = 1;
+        for (const Index p : added)
+            side[at(p)] = 2;
+        return seams_where(added, [&](const pattern::Seam& seam) {
+            return side[at(seam.sides[0].piece)] + side[at(seam.sides[1].piece)] == 3;
         });
     }
-    double shared(const std::vector<Index>& a, const std::vector<Index>& b) const {
-        double sum = 0.0;
-        for (const Index p : a)
-            for (const Index q : b)
-                sum += graph_.mm[at(p)][at(q)];
-        return sum;
+    // The piece's seams with itself.
+    std::vector<Index> own_seams(Index piece) const {
+        return seams_where({piece}, [](const pattern::Seam& seam) {
+            return seam.sides[0].piece == seam.sides[1].piece;
+        });
     }
 
     void add_darts(Index piece) {
-        const std::vector<Index> darts = seams_where([&](const pattern::Seam& seam) {
+        const std::vector<Index> darts = seams_where({piece}, [&](const pattern::Seam& seam) {
             return seam.is_dart && seam.sides[0].piece == piece;
         });
         if (!darts.empty())
             add_step(StepKind::dart, 0, darts, {piece});
     }
 
-    // Joins the one of `rest` that shares the most with what is built; −1 where none shares any.
-    template <class Parts>
-    Index nearest(const std::vector<Index>& built, const Parts& rest) const {
-        Index best = -1;
-        double most = 0.0;
-        for (std::size_t i = 0; i < rest.size(); ++i) {
-            const double length = shared(built, rest[i]);
-            if (length > most) {
-                most = length;
-                best = static_cast<Index>(i);
-            }
+    // What is left to join to what is built, by the length that it shares with that.
+    class Rest {
+    public:
+        Rest(const PieceGraph& graph, std::vector<std::vector<Index>> parts)
+            : graph_(graph), parts_(std::move(parts)), shared_(parts_.size(), 0.0),
+              part_of_(at(graph.piece_count), -1) {
+            for (std::size_t i = 0; i < parts_.size(); ++i)
+                for (const Index p : parts_[i])
+                    part_of_[at(p)] = static_cast<Index>(i);
         }
-        return best;
-    }
+
+        void build(const std::vector<Index>& pieces) {
+            for (const Index p : pieces)
+                for (const auto& [q, length] : graph_.mm[at(p)])
+                    if (part_of_[at(q)] >= 0)
+                        shared_[at(part_of_[at(q)])] += length;
+        }
+        // Takes out the one that shares the most with what is built; nothing where none shares any.
+        std::vector<Index> take() {
+            const auto most = std::max_element(shared_.begin(), shared_.end());
+            if (most == shared_.end() || !(*most > 0.0))
+                return {};
+            *most = 0.0;
+            std::vector<Index> part =
+                std::move(parts_[static_cast<std::size_t>(most - shared_.begin())]);
+            for (const Index p : part)
+                part_of_[at(p)] = -1;
+            return part;
+        }
+        // All that was not taken.
+        std::vector<Index> left() const {
+            std::vector<Index> pieces;
+            for (const std::vector<Index>& part : parts_)
+                pieces.insert(pieces.end(), part.begin(), part.end());
+            return pieces;
+        }
+
+    private:
+        const PieceGraph& graph_;
+        std::vector<std::vector<Index>> parts_; // empty when taken
+        std::vector<double> shared_;            // mm, of each part
+        std::vector<Index> part_of_;            // of each piece, −1 = none
+    };
 
     // The piece to begin with: the one with the longest seams to others of the section.
     static std::size_t first_of(const PieceGraph& graph, const std::vector<Index>& pieces) {
@@ -124,7 +165,7 @@ private:
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             double sum = 0.0;
             for (const Index q : pieces)
-                sum += q == pieces[i] ? 0.0 : graph.mm[at(pieces[i])][at(q)];
+                sum += q == pieces[i] ? 0.0 : graph.shared(pieces[i], q);
             if (sum > most) {
                 most = sum;
                 best = i;
@@ -136,14 +177,15 @@ private:
     // Makes one section that hangs together; returns what of the pieces does not.
     std::vector<Index> make_section(const std::vector<Index>& pieces, std::vector<Index>& made) {
         const Index section = plan_.section_count++;
-        std::vector<std::vector<Index>> rest;
+        std::vector<std::vector<Index>> others;
         const std::size_t first = first_of(graph_, pieces);
         for (std::size_t i = 0; i < pieces.size(); ++i)
             if (i != first)
-                rest.push_back({pieces[i]});
+                others.push_back({pieces[i]});
+        Rest rest(graph_, std::move(others));
         made = {pieces[first]};
-        for (Index next = nearest(made, rest); next >= 0; next = nearest(made, rest)) {
-            const std::vector<Index> added = rest[at(next)];
+        rest.build(made);
+        for (std::vector<Index> added = rest.take(); !added.empty(); added = rest.take()) {
             const std::vector<Index> seams = seams_between(made, added);
             std::vector<Index> named = added;
             if (made.size() == 1)
@@ -151,19 +193,15 @@ private:
             if (!seams.empty()) // else the opening is all that joins it
                 add_step(StepKind::join, section, seams, named);
             made.push_back(added.front());
-            rest.erase(rest.begin() + next);
+            rest.build(added);
         }
         for (const Index p : made) {
             plan_.section[at(p)] = section;
-            const std::vector<Index> own =
-                seams_where([&](const pattern::Seam& seam) { return joins(seam, p, p); });
+            const std::vector<Index> own = own_seams(p);
             if (!own.empty())
                 add_step(StepKind::tube, section, own, {p});
         }
-        std::vector<Index> left;
-        for (const std::vector<Index>& piece : rest)
-            left.push_back(piece.front());
-        return left;
+        return rest.left();
     }
 
     // The last piece of a closed solid to glue; −1 where there is none.
@@ -175,12 +213,7 @@ private:
             if (rest.empty() || !hang_together(graph_, rest))
                 continue;
             const auto radius = [&](Index q) { return pattern_.pieces[at(q)].label_radius; };
-            const auto seams = [&](Index q) {
-                return std::count_if(
-                    pattern_.seams.begin(), pattern_.seams.end(), [&](const pattern::Seam& seam) {
-                        return seam.sides[0].piece == q || seam.sides[1].piece == q;
-                    });
-            };
+            const auto seams = [&](Index q) { return seams_of_[at(q)].size(); };
             // Of those with room for a finger the one with the fewest seams.
             const bool fits = radius(p) >= tuning.finger;
             if (best < 0 || (fits != (radius(best) >= tuning.finger) ? fits
@@ -191,29 +224,23 @@ private:
         return best;
     }
 
-    void plan_component(Index component) {
+    void plan_component(Index component, std::vector<Index> pieces) {
         progress_.check();
-        std::vector<Index> pieces;
-        for (Index p = 0; p < graph_.piece_count; ++p)
-            if (graph_.component[at(p)] == component)
-                pieces.push_back(p);
         const bool is_glued_shut = craft_ == Craft::papercraft && graph_.is_closed[at(component)];
         const Index lid = is_glued_shut ? choose_lid(pieces) : -1;
-        const Index last_seam = is_glued_shut && lid < 0 ? longest_seam(pieces) : -1;
+        const Index last_seam = is_glued_shut && lid < 0 ? longest_seam(component) : -1;
         if (last_seam >= 0)
             waits_[at(last_seam)] = 1;
         pieces.erase(std::remove(pieces.begin(), pieces.end(), lid), pieces.end());
-        std::vector<std::vector<Index>> sections = make_sections(pieces);
-        attach_all(sections);
+        attach_all(make_sections(pieces));
         close(component, lid, last_seam, pieces);
     }
 
-    Index longest_seam(const std::vector<Index>& pieces) const {
+    Index longest_seam(Index component) const {
         Index best = -1;
         for (std::size_t s = 0; s < pattern_.seams.size(); ++s) {
             const pattern::Seam& seam = pattern_.seams[s];
-            if (std::count(pieces.begin(), pieces.end(), seam.sides[0].piece) > 0 &&
-                plan_.seam_step[s] == 0 &&
+            if (graph_.component[at(seam.sides[0].piece)] == component && plan_.seam_step[s] == 0 &&
                 (best < 0 || seam.sides[0].length > pattern_.seams[at(best)].sides[0].length))
                 best = static_cast<Index>(s);
         }
@@ -252,27 +279,27 @@ private:
         return sections;
     }
 
-    void attach_all(std::vector<std::vector<Index>>& sections) {
+    void attach_all(std::vector<std::vector<Index>> sections) {
         if (sections.empty())
             return;
         std::vector<Index> built = std::move(sections.back());
         sections.pop_back();
-        for (Index next = nearest(built, sections); next >= 0; next = nearest(built, sections)) {
-            const std::vector<Index> added = sections[at(next)];
+        Rest rest(graph_, std::move(sections));
+        rest.build(built);
+        for (std::vector<Index> added = rest.take(); !added.empty(); added = rest.take()) {
             const std::vector<Index> seams = seams_between(built, added);
             const Index section = plan_.section[at(added.front())];
             if (!seams.empty())
                 add_step(StepKind::attach, section, seams, added);
             built.insert(built.end(), added.begin(), added.end());
-            sections.erase(sections.begin() + next);
+            rest.build(added);
         }
     }
 
     void close(Index component, Index lid, Index last_seam, const std::vector<Index>& built) {
         if (lid >= 0) {
             plan_.section[at(lid)] = plan_.section_count++;
-            const std::vector<Index> own =
-                seams_where([&](const pattern::Seam& seam) { return joins(seam, lid, lid); });
+            const std::vector<Index> own = own_seams(lid);
             if (!own.empty())
                 add_step(StepKind::tube, plan_.section[at(lid)], own, {lid});
             add_step(StepKind::close, plan_.section[at(lid)], seams_between(built, {lid}), {lid});
@@ -292,7 +319,8 @@ private:
     const Progress& progress_;
     PieceGraph graph_;
     std::vector<Index> raw_section_;
-    std::vector<std::uint8_t> waits_; // #seams: 1 until the last step
+    std::vector<std::vector<Index>> seams_of_; // of each piece, in their order
+    std::vector<std::uint8_t> waits_;          // #seams: 1 until the last step
     Assembly plan_;
 };
 

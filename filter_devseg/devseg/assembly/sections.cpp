@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
+#include <set>
+#include <tuple>
 
 #include "devseg/assembly/assembly.h"
 #include "devseg/graph/unions.h"
@@ -13,99 +16,152 @@ namespace {
 struct Tuning {
     // P² / 4πA of a limb: a tube with a closed end, from a third of its width in length on.
     double limb = 0.35;
-    double holes = 0.1;      // of the surface: a solid with so much of hems is a garment
-    int many_neighbours = 3; // a body: it has limbs, and is none
+    double holes = 0.1;              // of the surface: a solid with so much of hems is a garment
+    std::size_t many_neighbours = 3; // a body: it has limbs, and is none
 };
 constexpr Tuning tuning;
 
 // Sections while they grow; those that were joined to others are empty.
 class Clusters {
 public:
-    explicit Clusters(const PieceGraph& graph) : area_(graph.area), mm_(graph.mm) {
+    explicit Clusters(const PieceGraph& graph)
+        : area_(graph.area), mm_(graph.mm), version_(graph.area.size(), 0) {
         for (Index i = 0; i < graph.piece_count; ++i) {
-            of_piece_.push_back(i);
-            mm_[at(i)][at(i)] = 0.0;
+            into_.push_back(i);
+            mm_[at(i)].erase(i);
         }
     }
 
     Index count() const { return static_cast<Index>(area_.size()); }
-    bool is_there(Index a) const { return area_[at(a)] > 0.0; }
-    double shared(Index a, Index b) const { return mm_[at(a)][at(b)]; }
+    bool is_there(Index a) const { return into_[at(a)] == a && area_[at(a)] > 0.0; }
+    bool is_open(Index a) const { return is_there(a) && !is_limb(a); }
     double area(Index a) const { return area_[at(a)]; }
-    const std::vector<Index>& of_piece() const { return of_piece_; }
+    // Counts what was joined to it.
+    Index version(Index a) const { return version_[at(a)]; }
+    // Those that it shares seams with, and their lengths.
+    const std::map<Index, double>& neighbours(Index a) const { return mm_[at(a)]; }
 
     // Length of the seams to others.
     double border(Index a) const {
         double sum = 0.0;
-        for (const double length : mm_[at(a)])
+        for (const auto& [c, length] : mm_[at(a)])
             sum += length;
         return sum;
     }
-    int neighbours(Index a) const {
-        return static_cast<int>(std::count_if(mm_[at(a)].begin(), mm_[at(a)].end(),
-                                              [](double length) { return length > 0.0; }));
-    }
     static double openness(double border, double area) { return border * border / (4 * pi * area); }
-    bool is_limb(Index a) const { return openness(border(a), area(a)) < tuning.limb; }
     double openness_of_union(Index a, Index b) const {
-        return openness(border(a) + border(b) - 2.0 * shared(a, b), area(a) + area(b));
+        return openness(border(a) + border(b) - 2.0 * mm_[at(a)].at(b), area(a) + area(b));
     }
 
     void join(Index a, Index b) {
-        for (Index c = 0; c < count(); ++c) {
-            mm_[at(a)][at(c)] = mm_[at(c)][at(a)] = shared(a, c) + shared(b, c);
-            mm_[at(b)][at(c)] = mm_[at(c)][at(b)] = 0.0;
+        for (const auto& [c, length] : mm_[at(b)]) {
+            mm_[at(c)].erase(b);
+            if (c == a)
+                continue;
+            const double both = mm_[at(a)][c] + length;
+            mm_[at(a)][c] = mm_[at(c)][a] = both;
         }
-        mm_[at(a)][at(a)] = 0.0;
+        mm_[at(b)].clear();
         area_[at(a)] += area_[at(b)];
-        area_[at(b)] = 0.0;
-        std::replace(of_piece_.begin(), of_piece_.end(), b, a);
+        into_[at(b)] = a;
+        ++version_[at(a)];
+    }
+
+    // The section of each piece.
+    std::vector<Index> of_piece() const {
+        std::vector<Index> result;
+        for (Index i : into_) {
+            while (into_[at(i)] != i)
+                i = into_[at(i)];
+            result.push_back(i);
+        }
+        return result;
     }
 
 private:
+    bool is_limb(Index a) const { return openness(border(a), area(a)) < tuning.limb; }
+
     std::vector<double> area_;
-    std::vector<std::vector<double>> mm_;
-    std::vector<Index> of_piece_;
+    std::vector<std::map<Index, double>> mm_;
+    std::vector<Index> version_;
+    std::vector<Index> into_; // itself where it is there
 };
 
-// The most closed union of two that are no limbs; false where there is none.
-bool join_best(Clusters& clusters) {
-    std::vector<Index> open;
-    for (Index a = 0; a < clusters.count(); ++a)
-        if (clusters.is_there(a) && !clusters.is_limb(a))
-            open.push_back(a);
-    double least = infinite;
-    std::pair<Index, Index> best{-1, -1};
-    for (const Index a : open)
-        for (const Index b : open)
-            if (a < b && clusters.shared(a, b) > 0.0 && clusters.openness_of_union(a, b) < least) {
-                least = clusters.openness_of_union(a, b);
-                best = {a, b};
-            }
-    if (best.first < 0)
-        return false;
-    clusters.join(best.first, best.second);
-    return true;
-}
+// Unions of two that are no limbs, the most closed one first.
+class Unions {
+public:
+    explicit Unions(Clusters& clusters) : clusters_(clusters) {
+        for (Index a = 0; a < clusters.count(); ++a)
+            add(a, a);
+    }
 
-// Small leftovers are parts of what they share the longest seams with.
-void join_leftovers(Clusters& clusters) {
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (Index a = 0; a < clusters.count() && !changed; ++a) {
-            if (!clusters.is_there(a) || clusters.is_limb(a) ||
-                clusters.neighbours(a) >= tuning.many_neighbours)
+    // Makes the most closed one; false where there is none.
+    bool join_best() {
+        while (!candidates_.empty()) {
+            const Candidate best = candidates_.top();
+            candidates_.pop();
+            if (!is_current(best.a, best.version_a) || !is_current(best.b, best.version_b))
                 continue;
-            Index best = -1;
-            for (Index b = 0; b < clusters.count(); ++b)
-                if (clusters.shared(a, b) > 0.0 &&
-                    (best < 0 || clusters.shared(a, b) > clusters.shared(a, best)))
-                    best = b;
-            if (best < 0 || clusters.area(best) < clusters.area(a))
-                continue;
-            clusters.join(best, a);
-            changed = true;
+            clusters_.join(best.a, best.b);
+            add(best.a, -1);
+            return true;
         }
+        return false;
+    }
+
+private:
+    struct Candidate {
+        double openness;
+        Index a, b, version_a, version_b;
+        bool operator<(const Candidate& other) const { // the largest comes first
+            return std::tie(openness, a, b) > std::tie(other.openness, other.a, other.b);
+        }
+    };
+
+    bool is_current(Index a, Index version) const {
+        return clusters_.is_there(a) && clusters_.version(a) == version;
+    }
+    // Unions with neighbours above `least`.
+    void add(Index a, Index least) {
+        if (!clusters_.is_open(a))
+            return;
+        for (const auto& [c, length] : clusters_.neighbours(a))
+            if (c > least && length > 0.0 && clusters_.is_open(c)) {
+                const auto [low, high] = std::minmax(a, c);
+                candidates_.push({clusters_.openness_of_union(low, high), low, high,
+                                  clusters_.version(low), clusters_.version(high)});
+            }
+    }
+
+    Clusters& clusters_;
+    std::priority_queue<Candidate> candidates_;
+};
+
+// Small leftovers are parts of what they share the longest seams with. The lowest number first;
+// a union makes others of what it touches.
+void join_leftovers(Clusters& clusters, const Progress& progress) {
+    std::set<Index> waiting;
+    for (Index a = 0; a < clusters.count(); ++a)
+        waiting.insert(a);
+    while (!waiting.empty()) {
+        progress.check();
+        const Index a = *waiting.begin();
+        waiting.erase(waiting.begin());
+        if (!clusters.is_open(a) || clusters.neighbours(a).size() >= tuning.many_neighbours)
+            continue;
+        Index best = -1;
+        double most = 0.0;
+        for (const auto& [b, length] : clusters.neighbours(a))
+            if (length > most) {
+                most = length;
+                best = b;
+            }
+        if (best < 0 || clusters.area(best) < clusters.area(a))
+            continue;
+        clusters.join(best, a);
+        waiting.insert(best);
+        for (const auto& [c, length] : clusters.neighbours(best))
+            waiting.insert(c);
     }
 }
 
@@ -113,7 +169,7 @@ void join_leftovers(Clusters& clusters) {
 
 PieceGraph::PieceGraph(const pattern::Pattern& pattern) {
     piece_count = static_cast<Index>(pattern.pieces.size());
-    mm.assign(at(piece_count), std::vector<double>(at(piece_count), 0.0));
+    mm.resize(at(piece_count));
     graph::Unions unions(at(piece_count));
     for (const pattern::PatternPiece& piece : pattern.pieces)
         area.push_back(piece.area);
@@ -121,9 +177,9 @@ PieceGraph::PieceGraph(const pattern::Pattern& pattern) {
         const Index a = seam.sides[0].piece;
         const Index b = seam.sides[1].piece;
         const double length = 0.5 * (seam.sides[0].length + seam.sides[1].length);
-        mm[at(a)][at(b)] += length;
+        mm[at(a)][b] += length;
         if (a != b)
-            mm[at(b)][at(a)] += length;
+            mm[at(b)][a] += length;
         if (unions.find(a) != unions.find(b))
             unions.join(unions.find(a), unions.find(b));
     }
@@ -181,11 +237,12 @@ void PieceGraph::measure_solids(const pattern::Pattern& pattern) {
     }
 }
 
-std::vector<Index> find_sections(const PieceGraph& graph) {
+std::vector<Index> find_sections(const PieceGraph& graph, const Progress& progress) {
     Clusters clusters(graph);
-    while (join_best(clusters)) {
-    }
-    join_leftovers(clusters);
+    Unions unions(clusters);
+    while (unions.join_best())
+        progress.check();
+    join_leftovers(clusters, progress);
     return clusters.of_piece();
 }
 

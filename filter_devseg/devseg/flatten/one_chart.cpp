@@ -327,11 +327,17 @@ std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatCh
     auto apart = push_apart(problem, surface, chart.uv, pairs, tolerance, progress);
     if (!apart)
         return cut_between(mesh, surface, pairs);
-    chart.uv = std::move(*apart);
     chart.pushed = true;
-    relieve_peaks(problem, true, chart.uv, progress);
-    finish();
-    return {};
+    // Peaks and slits that close again may need room that pushing has left to other parts.
+    for (const bool relieved : {true, false}) {
+        chart.uv = *apart;
+        if (relieved)
+            relieve_peaks(problem, true, chart.uv, progress);
+        finish();
+        if (!overlaps_itself(surface, chart.uv, tolerance))
+            return {};
+    }
+    return cut_between(mesh, surface, overlapping_pairs(surface, chart.uv, tolerance));
 }
 
 } // namespace devseg::flatten

@@ -10,12 +10,17 @@
 #include "devseg/base/errors.h"
 #include "devseg/graph/unions.h"
 #include "devseg/mesh/coherent_faces.h"
+#include "devseg/mesh/empty_parts.h"
 #include "devseg/mesh/inside_out.h"
 #include "devseg/mesh/weld.h"
 
 namespace devseg::mesh {
 
 namespace {
+
+// Of the model's size: narrower parts have no area. A pattern of a metre shows them 1 µm wide, and
+// coordinates of 32 bits tell them from a line by a few steps only.
+constexpr double narrow_part = 1e-6;
 
 std::string counted(Index count, const char* one, const char* many) {
     return std::to_string(count) + ' ' + (count == 1 ? one : many);
@@ -112,6 +117,38 @@ void turn_over(GatedMesh& gated, const std::vector<std::uint8_t>& turned) {
             gated.flipped[f] ^= 1;
             std::swap(mesh.faces[f][1], mesh.faces[f][2]);
         }
+}
+
+// Leaves out marked faces (#F), which have no neighbours among the others. Returns how many.
+Index leave_out(GatedMesh& gated, const std::vector<std::uint8_t>& marked) {
+    Mesh& mesh = gated.mesh;
+    std::vector<Index> number(mesh.faces.size(), -1);
+    Index count = 0;
+    for (const Face f : mesh.all_faces())
+        if (marked[f] == 0)
+            number[f] = count++;
+    for (const Face f : mesh.all_faces()) {
+        const Index to = number[f];
+        if (to < 0)
+            continue;
+        mesh.faces[to] = mesh.faces[f];
+        gated.source_face[to] = gated.source_face[f];
+        gated.flipped[to] = gated.flipped[f];
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge moved = half_edge_of(to, corner_of(h));
+            const HalfEdge twin = mesh.twin[h];
+            mesh.twin[moved] =
+                twin < 0 ? HalfEdge(-1) : half_edge_of(number[face_of(twin)], corner_of(twin));
+            gated.cut[moved] = gated.cut[h];
+        }
+    }
+    const auto left_out = static_cast<Index>(mesh.faces.size()) - count;
+    mesh.faces.resize(at(count));
+    gated.source_face.resize(at(count));
+    gated.flipped.resize(at(count));
+    mesh.twin.resize(3 * at(count));
+    gated.cut.resize(3 * at(count));
+    return left_out;
 }
 
 // Gives every fan of faces around a vertex a vertex of its own, and one alone. Returns how many
@@ -213,6 +250,7 @@ struct Found {
     Index joined = 0; // vertices that there are less
     Index repeated = 0;
     Index duplicates = 0;
+    Index without_area = 0; // faces of parts without area
     Index crowded = 0;
     Index turned = 0;
     Index one_sided = 0;
@@ -235,6 +273,8 @@ std::vector<std::string> notes_of(const Found& found, const GateOptions& options
     note(found.duplicates, "face lies on the vertices of another one and was",
          "faces lie on the vertices of another one and were",
          " left out ('Remove Duplicate Faces' drops such faces)");
+    note(found.without_area, "face belongs to a part without area and was",
+         "faces belong to parts without area and were", " left out");
     note(found.crowded, "edge has more than two faces and was",
          "edges have more than two faces and were",
          " cut ('Repair non Manifold Edges' mends them)");
@@ -319,6 +359,8 @@ GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progre
         mesh.faces.push_back(faces[f]);
     progress.check();
     connect(welded > 0, options, tolerance, gated, found, progress);
+    progress.check();
+    found.without_area = leave_out(gated, find_empty_parts(mesh, narrow_part * frame.size));
     progress.check();
     const auto [split, joined] = split_fans(mesh, gated.source_vertex);
     found.joined = welded + joined;

@@ -27,6 +27,10 @@ namespace {
 constexpr double smallest_layout_mm = 1e-10;
 constexpr double largest_layout_mm = 1e12;
 
+// Of the root of the whole area: narrower charts are degenerate faces that some atlas gave a chart
+// of their own. On a sheet of a square metre they are 1 µm wide.
+constexpr double narrow_chart = 1e-6;
+
 // A chart that covers less than this share of its own area has collapsed_chart in the plane.
 constexpr double collapsed_chart = 1e-6;
 
@@ -86,19 +90,24 @@ void check_coordinates(const CornerUv& uv) {
 }
 
 struct ChartAreas {
-    std::vector<double> surface; // of each chart, internal units squared
-    std::vector<double> plane;   // of each chart, signed, uv units squared
-    std::vector<double> covered; // the same, faces counted without sign
+    std::vector<double> surface;      // of each chart, internal units squared
+    std::vector<double> plane;        // of each chart, signed, uv units squared
+    std::vector<double> covered;      // the same, faces counted without sign
+    std::vector<double> surface_edge; // longest of each chart, internal units
+    std::vector<double> plane_edge;   // the same in the plane, uv units
     double surface_total = 0.0;
     double plane_total = 0.0; // of all faces, without sign
     Index left_out = 0; // small charts that have collapsed_chart: their area in the plane is 0
+    Index crumbs = 0;   // charts without an area worth cutting
 
     double scale = 1.0; // internal units for one unit of the texture coordinates
-    // A degenerate face that some atlas gave a chart of its own. On a sheet of a square metre it is
-    // 1 µm wide.
     bool is_crumb(std::size_t c) const {
-        return surface[c] <= vanishing * surface_total &&
-               std::abs(plane[c]) <= vanishing * plane_total;
+        return is_narrow(surface[c], surface_edge[c], surface_total) &&
+               is_narrow(std::abs(plane[c]), plane_edge[c], plane_total);
+    }
+    static bool is_narrow(double area, double edge, double total) {
+        const double width = narrow_chart * std::sqrt(total);
+        return area <= width * std::max(edge, width);
     }
     // Signed areas in the plane, 0 for crumbs.
     std::vector<double> worth_cutting() const {
@@ -117,12 +126,20 @@ ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::Cha
     areas.surface.assign(at(charts.count), 0.0);
     areas.plane.assign(at(charts.count), 0.0);
     areas.covered.assign(at(charts.count), 0.0);
+    areas.surface_edge.assign(at(charts.count), 0.0);
+    areas.plane_edge.assign(at(charts.count), 0.0);
     areas.surface_total = mesh.total_area;
     for (const Face f : mesh.all_faces()) {
         const double area = plane::uv_area(uv, f);
         areas.surface[charts.chart[f]] += mesh.face_areas[f];
         areas.plane[charts.chart[f]] += area;
         areas.covered[charts.chart[f]] += std::abs(area);
+        for (const HalfEdge h : half_edges_of(f)) {
+            double& longest = areas.surface_edge[charts.chart[f]];
+            double& flat = areas.plane_edge[charts.chart[f]];
+            longest = std::max(longest, mesh.edge_length(h));
+            flat = std::max(flat, (uv[Mesh::next(h)] - uv[h]).norm());
+        }
         areas.plane_total += std::abs(area);
     }
     if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
@@ -139,13 +156,15 @@ void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
     std::vector<std::uint8_t> is_bad(at(charts.count), 0);
     Index count = 0;
     double lost = 0.0;
-    for (std::size_t c = 0; c < is_bad.size(); ++c)
+    for (std::size_t c = 0; c < is_bad.size(); ++c) {
+        areas.crumbs += areas.is_crumb(c) ? 1 : 0;
         if (!areas.is_crumb(c) &&
             !(std::abs(areas.plane[c]) * scale * scale >= collapsed_chart * areas.surface[c])) {
             is_bad[c] = 1;
             ++count;
             lost += areas.surface[c];
         }
+    }
     if (lost <= left_out_share * areas.surface_total) {
         for (std::size_t c = 0; c < is_bad.size(); ++c)
             if (is_bad[c] != 0)
@@ -179,6 +198,10 @@ void note_folds(Pattern& pattern, const ChartAreas& areas) {
             (areas.left_out == 1 ? " small chart covers" : " small charts cover") +
             " no area in the texture coordinates: left out "
             "('Charts: Flatten' unfolds all)");
+    if (areas.crumbs > 0)
+        pattern.notes.push_back(std::to_string(areas.crumbs) +
+                                (areas.crumbs == 1 ? " chart is" : " charts are") +
+                                " narrower than a millionth of the model: left out");
     const auto is_folded = [&](const PatternPiece& piece) {
         const double whole = areas.covered[piece.chart];
         return whole - std::abs(areas.plane[piece.chart]) > fold_tolerance * whole;

@@ -121,14 +121,41 @@ TEST(HolesInThePlane, OverlapsAcrossAHoleAreFound) {
     std::vector<Vec2> uv;
     for (const Vertex v : surface.vertex)
         uv.emplace_back(mesh.points[v].head<2>());
-    EXPECT_FALSE(boundary_crosses_itself(surface, uv));
+    EXPECT_TRUE(is_one_to_one(surface, uv));
     EXPECT_TRUE(overlapping_pairs(surface, uv, 1e-9).empty());
     // Twice around: the angle is doubled.
     for (Vec2& p : uv) {
         const double angle = 2.0 * std::atan2(p.y(), p.x());
         p = p.norm() * Vec2(std::cos(angle), std::sin(angle));
     }
-    EXPECT_TRUE(boundary_crosses_itself(surface, uv));
+    EXPECT_FALSE(is_one_to_one(surface, uv));
+}
+
+// A plate with a slit, whose lips lie on each other.
+mesh::RawMesh lips(double overlap) {
+    mesh::RawMesh raw;
+    const double y = 0.5 * overlap;
+    raw.points = {{-3, -2, 0}, {3, -2, 0}, {3, 2, 0},         {-3, 2, 0},
+                  {-1, 0, 0},  {1, 0, 0},  {0, -y, 0.25 * y}, {0, y, -0.25 * y}};
+    raw.faces = {{0, 1, 7}, {1, 5, 7}, {1, 2, 5}, {2, 6, 5},
+                 {2, 3, 6}, {3, 4, 6}, {3, 0, 4}, {0, 7, 4}};
+    return raw;
+}
+
+// No edge of the boundary crosses another where lips close over their whole length.
+TEST(HolesInThePlane, TurnedInsideOutTheyAreOverlaps) {
+    const Mesh mesh = checks::gated(lips(0.1));
+    const auto surface = atlas::extract_charts(mesh, checks::components(mesh)).at(0);
+    ASSERT_TRUE(atlas::is_sound(mesh, surface));
+    std::vector<Vec2> uv;
+    for (const Vertex v : surface.vertex)
+        uv.emplace_back(mesh.points[v].head<2>());
+    ASSERT_EQ(checks::count_flips(surface.faces, uv), 0);
+    EXPECT_FALSE(is_one_to_one(surface, uv));
+    EXPECT_FALSE(overlapping_pairs(surface, uv, 1e-9).empty());
+    for (const FlattenMethod method : methods)
+        for (const FlatChart& chart : flatten(mesh, method).flat)
+            expect_one_to_one(mesh, chart);
 }
 
 } // namespace

@@ -143,6 +143,30 @@ TEST(Gate, AFaceWithoutAnyNeighbourHasAStandIn) {
     EXPECT_EQ(gate_mesh(raw).stand_in.at(4), 0);
 }
 
+// Exporters leave them behind: a face whose corners lie on one line, and one in a point.
+TEST(Gate, PartsWithoutAreaAreLeftOut) {
+    RawMesh raw = shapes::grid(2, 1); // 4 faces, 6 vertices
+    for (const double x : {5.0, 6.0, 8.0})
+        raw.points.emplace_back(x, x, 0.0);
+    for (int i = 0; i < 3; ++i)
+        raw.points.emplace_back(7.0, 0.0, 0.0);
+    for (const double y : {0.0, 1.0, 1e-4})
+        raw.points.emplace_back(9.0 + (y == 1.0 ? 1.0 : 0.0), y, 0.0); // narrow, but no line
+    raw.faces.insert(raw.faces.begin(), Triangle{6, 7, 8});
+    raw.faces.push_back({9, 10, 11});
+    raw.faces.push_back({12, 13, 14});
+    const GatedMesh gated = gate_mesh(raw);
+    EXPECT_TRUE(is_valid(gated.mesh));
+    EXPECT_EQ(gated.source_face, (std::vector<Index>{1, 2, 3, 4, 6}));
+    EXPECT_EQ(gated.mesh.vertex_count(), 9);
+    EXPECT_EQ(only_note(gated), "2 faces belong to parts without area and were left out");
+    expect_way_back(raw, gated);
+    // The sliver beside a face with an area stays: its edges are those of its neighbour.
+    raw = shapes::grid(2, 2);
+    raw.points[4] = raw.points[3];
+    EXPECT_EQ(gate_mesh(raw, {-1.0, false}).mesh.faces.size(), raw.faces.size());
+}
+
 TEST(Gate, EdgesWithThreeFacesAreCut) {
     const RawMesh fins = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                           {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};

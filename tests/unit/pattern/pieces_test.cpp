@@ -318,6 +318,17 @@ TEST(Pieces, CollapsedChartsAreCountedAndNamed) {
     }
 }
 
+// Atlases give charts of their own to faces without area, which no knife can cut out.
+TEST(Pieces, NeedlesAreNoPieces) {
+    Model model = letter_l(Vec2::Zero(), flat);
+    model.add({0, 0, 0}, {0.5, -1e-9, 0}, {1, 0, 0},
+              [](const Vec3& p) { return Vec2(flat(p) + Vec2(5, 5)); });
+    const Pattern pattern = pattern_of(model);
+    EXPECT_EQ(pattern.pieces.size(), 1u);
+    ASSERT_EQ(pattern.notes.size(), 1u);
+    EXPECT_TRUE(contains(pattern.notes.front(), "1 chart is narrower")) << pattern.notes.front();
+}
+
 TEST(Pieces, AClosedSurfaceWithoutSeamsFallsIntoFrontAndBack) {
     Model model;
     const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0.3, 0.3, 1);

@@ -77,6 +77,19 @@ bool any_crossing(std::vector<Segment> segments) {
     return false;
 }
 
+// Loops that run around what lies on their left: the rim, and holes that are turned inside out.
+Index outer_loops(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
+    Index count = 0;
+    for (const std::vector<Index>& loop : surface.loops) {
+        const Vec2& base = uv[surface.origin(loop.front())];
+        double twice_area = 0.0;
+        for (const HalfEdge h : loop)
+            twice_area += plane::cross(uv[surface.origin(h)] - base, uv[surface.target(h)] - base);
+        count += twice_area > 0.0 ? 1 : 0;
+    }
+    return count;
+}
+
 // Faces that take part in an overlap, split between the two faces of the first pair: each goes to
 // the one from which it is reached first through such faces.
 std::vector<graph::CutSide> two_sides(const atlas::ChartSurface& surface, const Pairs& pairs) {
@@ -293,21 +306,20 @@ CornerUv corners_of(const atlas::ChartSurface& surface, const std::vector<Vec2>&
 
 } // namespace
 
-bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
-    return any_crossing(boundary_segments(surface, uv));
+bool is_one_to_one(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv) {
+    return outer_loops(surface, uv) <= 1 && !any_crossing(boundary_segments(surface, uv));
 }
 
 Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                         double tolerance) {
-    if (!boundary_crosses_itself(surface, uv))
+    if (is_one_to_one(surface, uv))
         return {};
     return plane::find_overlapping_pairs(corners_of(surface, uv), tolerance);
 }
 
 bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                      double tolerance) {
-    return boundary_crosses_itself(surface, uv) &&
-           plane::any_overlap(corners_of(surface, uv), tolerance);
+    return !is_one_to_one(surface, uv) && plane::any_overlap(corners_of(surface, uv), tolerance);
 }
 
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,

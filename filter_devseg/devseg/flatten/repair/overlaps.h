@@ -18,14 +18,15 @@ namespace devseg::flatten {
 /// Faces that overlap, two by two.
 using Pairs = std::vector<std::pair<Index, Index>>;
 
-/// Whether the boundary of a map without flips crosses itself: exact orientation tests of boundary
-/// edges against boundary edges over a grid. A map of a disk without flips whose boundary does not
-/// cross itself is one-to-one. So is that of a disk with holes: its boundary turns by 2π (2 − n) in
-/// all, so one of the n loops runs around the others, which turn the other way, one beside another.
-bool boundary_crosses_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv);
+/// Whether a map without flips is one-to-one, read off its boundary: it does not cross itself, by
+/// exact orientation tests of edges against edges, and only one of its loops runs counterclockwise.
+/// The boundary of n loops turns by 2π (2 − n), and by 2π more for each corner of more than a full
+/// turn, which also two sides of a hole can have that is turned inside out and crosses nothing.
+/// Without such corners, one of the loops runs around the others, which lie beside each other.
+bool is_one_to_one(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv);
 
 /// Pairs of faces that overlap by more than `tolerance` (a length in the plane); empty when the
-/// boundary does not cross itself.
+/// map is one-to-one.
 Pairs overlapping_pairs(const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
                         double tolerance);
 

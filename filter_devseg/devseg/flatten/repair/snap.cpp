@@ -19,6 +19,12 @@ struct Tuning {
     // and on the boundary: inside, moves that flip nothing keep a map one-to-one, but not there.
     int boundary_reach = 2;
     double widened = 1.02; // area of a needle as flattened over that on the surface
+    // Least height of a needle, of the model's size: a dozen steps of 32 bits in a packed square.
+    // Needles in a row leave each other no room on that grid, and would be turned over by it.
+    double needle_height = 1e-6;
+    double needle_length = 4.0; // of that height, at least: shorter faces are specks
+    int needle_sweeps = 8;      // as many needles side by side make room for each other
+    double least_step = 0.125;  // of the height that is missing
 };
 constexpr Tuning tuning;
 
@@ -144,6 +150,92 @@ private:
     Stars stars_;
 };
 
+// A face with its longest edge as base.
+struct Needle {
+    HalfEdge leaving; // of the face, from the apex
+    double length;    // of the base
+    double height;
+    Vec2 upwards; // unit normal of the base, to the side of the face
+};
+
+class Needles {
+public:
+    Needles(const FlatteningProblem& problem, std::vector<Vec2>& uv)
+        : problem_(problem), uv_(uv), least_(tuning.needle_height * problem.model_size) {}
+
+    // To the height on the surface, or the least, those that were widened.
+    void lower() const {
+        for (Face f = 0; f < face_count(); ++f) {
+            if (problem_.area[f] < tuning.widened * problem_.given_area[f])
+                continue;
+            const Needle needle = of_face(f);
+            const double wanted = std::max(2.0 * problem_.given_area[f] / needle.length, least_);
+            if (!(wanted < needle.height))
+                continue;
+            Vec2& apex = uv_[origin(needle.leaving)];
+            const Vec2 home = apex;
+            apex += (wanted - needle.height) * needle.upwards;
+            if (!is_positive_around(problem_.faces, problem_.twin, uv_, needle.leaving))
+                apex = home;
+        }
+    }
+
+    // Towards the least height, where that makes no other face as low; whether it helped.
+    bool raise() const {
+        bool raised = false;
+        for (Face f = 0; f < face_count(); ++f) {
+            const Needle needle = of_face(f);
+            if (needle.length < tuning.needle_length * least_ || needle.height >= least_)
+                continue;
+            Vec2& apex = uv_[origin(needle.leaving)];
+            const Vec2 home = apex;
+            const double before = lowest_around(needle.leaving);
+            for (double step = 1.0; step >= tuning.least_step; step *= 0.5) {
+                apex = home + step * (least_ - needle.height) * needle.upwards;
+                if (lowest_around(needle.leaving) > before) {
+                    raised = true;
+                    break;
+                }
+                apex = home;
+            }
+        }
+        return raised;
+    }
+
+private:
+    Index face_count() const { return static_cast<Index>(problem_.faces.size()); }
+    Vertex origin(HalfEdge h) const { return problem_.faces[face_of(h)][corner_of(h)]; }
+
+    Needle of_face(Face f) const {
+        const Triangle& t = problem_.faces[f];
+        Needle needle{};
+        for (Index k = 0; k < 3; ++k) {
+            const Vec2 base = uv_[t[(k + 1) % 3]] - uv_[t[k]];
+            if (k > 0 && base.norm() <= needle.length)
+                continue;
+            needle.length = base.norm();
+            needle.leaving = half_edge_of(f, (k + 2) % 3);
+            needle.upwards = plane::left_of(Vec2(base / needle.length));
+            needle.height = needle.upwards.dot(uv_[t[(k + 2) % 3]] - uv_[t[k]]);
+        }
+        return needle;
+    }
+    // At most the least height; faces without length have no say, but must not turn over.
+    double lowest_around(HalfEdge leaving) const {
+        double lowest = least_;
+        mesh::visit_star(problem_.twin, leaving, [&](HalfEdge h) {
+            const Needle needle = of_face(face_of(h));
+            if (needle.length >= tuning.needle_length * least_ || !(needle.height > 0.0))
+                lowest = std::min(lowest, needle.height);
+        });
+        return lowest;
+    }
+
+    const FlatteningProblem& problem_;
+    std::vector<Vec2>& uv_;
+    double least_; // height, in the plane
+};
+
 } // namespace
 
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) {
@@ -186,27 +278,9 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
 }
 
 void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
-    for (Face f = 0; f < static_cast<Index>(problem.faces.size()); ++f) {
-        const double area = problem.given_area[f];
-        if (!(area > 0.0) || problem.area[f] < tuning.widened * area)
-            continue;
-        const Triangle& t = problem.faces[f];
-        Index longest = 0; // edge k → k + 1
-        const auto length = [&](Index k) { return (uv[t[(k + 1) % 3]] - uv[t[k]]).norm(); };
-        for (Index k = 1; k < 3; ++k)
-            if (length(k) > length(longest))
-                longest = k;
-        const Vec2& p = uv[t[longest]];
-        const Vec2& q = uv[t[(longest + 1) % 3]];
-        const HalfEdge leaving = half_edge_of(f, (longest + 2) % 3);
-        Vec2& apex = uv[t[corner_of(leaving)]];
-        const Vec2 home = apex;
-        const Vec2 along = (q - p) / length(longest);
-        const Vec2 inwards = plane::left_of(along);
-        const double height = inwards.dot(home - p);
-        apex = home + (2.0 * area / length(longest) - height) * inwards;
-        if (!is_positive_around(problem.faces, problem.twin, uv, leaving))
-            apex = home;
+    const Needles needles(problem, uv);
+    needles.lower();
+    for (int sweep = 0; sweep < tuning.needle_sweeps && needles.raise(); ++sweep) {
     }
 }
 

@@ -15,8 +15,8 @@ namespace devseg::flatten {
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv);
 
 /// Gives faces that were widened to be flattened (see make_flattening_problem) the height that they
-/// have on the surface, by moving the corner opposite to their longest edge, where no face around
-/// it is flipped by that.
+/// have on the surface, and all needles at least a height that 32 bits hold in a packed square, by
+/// moving the corner opposite to their longest edge, where no face around it is flipped by that.
 void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv);
 
 } // namespace devseg::flatten

@@ -7,6 +7,7 @@
 
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
+#include "unit/shapes.h"
 
 namespace devseg::flatten {
 namespace {
@@ -152,6 +153,34 @@ TEST(Snap, LayoutsOfAnySizeAreHandled) {
         EXPECT_EQ(snap_to_single(map.faces, uv), 0);
         EXPECT_EQ(checks::count_flips(map.faces, uv), 0);
     }
+}
+
+// A crack in a small part of a large model, which needles fill: without a width of their own they
+// are turned over by rounding, one beside another.
+TEST(RestoreNeedles, LeavesRoomForRounding) {
+    mesh::RawMesh raw = shapes::grid(24, 8, 24.0, 8.0);
+    for (Vec3& p : raw.points) {
+        const double row = p.y();
+        if (row < 2.0 || row > 6.0)
+            continue;
+        p.y() = 2.0 + 1e-9 * row;
+        p.x() += p.x() > 0.0 && p.x() < 24.0 ? 0.3 * std::fmod(row, 3.0) : 0.0;
+    }
+    const checks::Disk disk(raw);
+    FlatteningProblem problem = disk.problem;
+    problem.model_size *= 500.0;
+    std::vector<Vec2> given;
+    for (const Vertex v : disk.surface.vertex)
+        given.emplace_back(disk.mesh.points[v].head<2>());
+    std::vector<Vec2> uv = given;
+    restore_needles(problem, uv);
+    const double moved = 1e-5 * problem.model_size;
+    for (std::size_t v = 0; v < uv.size(); ++v)
+        EXPECT_LT((uv[v] - given[v]).norm(), moved);
+    for (Vec2& p : uv)
+        p = Vec2(0.7, 0.6) + p / problem.model_size;
+    EXPECT_EQ(snap_to_single(problem.faces, uv), 0);
+    EXPECT_EQ(checks::count_flips(problem.faces, uv), 0);
 }
 
 } // namespace
