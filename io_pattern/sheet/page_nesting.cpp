@@ -40,27 +40,21 @@ Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
         .sizes();
 }
 
-// Angles at which the piece is tried: around that of its least box, or the two that keep the grain.
-std::vector<double> angles_of(const SheetPiece& piece, const pack::Outline& outline,
-                              bool keep_grain, int turns) {
-    const Vec2 grain = piece.grain_line[1] - piece.grain_line[0];
-    const bool is_fixed = keep_grain && grain != Vec2::Zero();
-    const double base =
-        is_fixed ? 0.5 * pi - std::atan2(grain.y(), grain.x()) : pack::best_box_angle(outline);
-    const int count = is_fixed ? 2 : turns;
+// Angles at which the piece is tried, around that of its least box.
+std::vector<double> angles_of(const pack::Outline& outline, int turns) {
+    const double base = pack::best_box_angle(outline);
     std::vector<double> angles;
-    for (int i = 0; i < count; ++i)
-        angles.push_back(base + 2.0 * pi * i / count);
+    for (int i = 0; i < turns; ++i)
+        angles.push_back(base + 2.0 * pi * i / turns);
     return angles;
 }
 
 // The images of a piece on one page; of one that fits on none, all images.
-void draw_poses(const SheetPiece& piece, bool keep_grain, PageProblem& problem, std::size_t i) {
+void draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
     const pack::Outline outline = pack::outline_of(piece.cut);
     const Vec2 room = problem.page.printable() + Vec2::Constant(problem.cell);
     for (const bool large : {false, true}) {
-        for (const double angle :
-             angles_of(piece, outline, keep_grain, large ? tuning.large_turns : tuning.turns)) {
+        for (const double angle : angles_of(outline, large ? tuning.large_turns : tuning.turns)) {
             const bool fits = (room - turned_size(outline.hull, angle)).minCoeff() >= 0.0;
             if (!large && !fits)
                 continue;
@@ -71,6 +65,8 @@ void draw_poses(const SheetPiece& piece, bool keep_grain, PageProblem& problem, 
         }
         if (!problem.poses[i].empty()) {
             problem.is_large[i] = large ? 1 : 0;
+            if (large)
+                problem.footprints[i] = find_footprints(problem, problem.poses[i]);
             return;
         }
     }
@@ -98,7 +94,7 @@ void check_scale(const std::vector<SheetPiece>& pieces, const PageFormat& page) 
 }
 
 PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                         bool keep_grain, Progress& progress) {
+                         Progress& progress) {
     PageProblem problem;
     problem.page = page;
     problem.cell = page.printable().minCoeff() / tuning.cells;
@@ -106,12 +102,13 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     problem.columns = problem.cells_down(room.x());
     problem.rows = problem.cells_down(room.y());
     problem.poses.resize(pieces.size());
+    problem.footprints.resize(pieces.size());
     problem.is_large.assign(pieces.size(), 0);
     for (const SheetPiece& piece : pieces)
         problem.area.push_back(outline_area(piece));
     parallel_for(
-        static_cast<int>(pieces.size()),
-        [&](int i) { draw_poses(pieces[at(i)], keep_grain, problem, at(i)); }, progress);
+        static_cast<int>(pieces.size()), [&](int i) { draw_poses(pieces[at(i)], problem, at(i)); },
+        progress);
     for (const auto& poses : problem.poses)
         for (const pack::FitImage& image : poses)
             for (const pack::CellRun& run : image.runs)
@@ -176,7 +173,8 @@ void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, 
     PageSheet::LargePlace best;
     std::size_t chosen = filling.sheets.size();
     for (std::size_t s = 0; s < filling.sheets.size(); ++s) {
-        const PageSheet::LargePlace place = filling.sheets[s].place_of(poses, tried, random);
+        const PageSheet::LargePlace place =
+            filling.sheets[s].place_of(poses, tried, problem.footprints[i], random);
         if (place.is_better_than(best)) {
             best = place;
             chosen = s;
@@ -191,7 +189,8 @@ void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, 
     std::optional<PageSheet> added;
     for (Index columns = 1; columns <= most; ++columns) {
         PageSheet fresh(problem, columns, work);
-        const PageSheet::LargePlace place = fresh.place_of(poses, tried, random);
+        const PageSheet::LargePlace place =
+            fresh.place_of(poses, tried, problem.footprints[i], random);
         const bool instead = random != nullptr && numbers() % 2 == 0;
         if (place.found && (!best.found || place.new_pages < best.new_pages ||
                             (instead && place.new_pages == best.new_pages))) {
@@ -215,7 +214,7 @@ void put_small(const PageProblem& problem, std::size_t i, std::int64_t& work, Fi
         }
     filling.sheets.emplace_back(problem, 1, work);
     const PageSheet::LargePlace place = filling.sheets.back().place_of(
-        problem.poses[i], chosen_poses(problem.poses[i].size(), nullptr), nullptr);
+        problem.poses[i], chosen_poses(problem.poses[i].size(), nullptr), {}, nullptr);
     filling.put(problem, i, filling.sheets.size() - 1, place.spot);
 }
 
@@ -305,10 +304,10 @@ std::vector<Index> ranks_of(const Filling& filling) {
 } // namespace
 
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                          bool keep_grain, bool tiling, Progress& progress) {
+                          bool tiling, Progress& progress) {
     check_scale(pieces, page);
     auto drawing = progress.part(0.1);
-    const PageProblem problem = make_problem(pieces, page, keep_grain, drawing);
+    const PageProblem problem = make_problem(pieces, page, drawing);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (problem.is_large[i] != 0 && !tiling)
             refuse_size(pieces[i], page);
