@@ -23,6 +23,7 @@ struct Footprint {
     Vec2 offset = Vec2::Zero();              // mm
     std::array<bool, 2> at_border{};         // lies in the strip that a page before would show
     std::vector<std::array<Index, 2>> pages; // columns and rows, 0 = the first
+    Index across = 1;                        // columns of pages
 };
 
 /// All that is the same for every order of the pieces.
@@ -69,8 +70,19 @@ public:
         return least;
     }
 
-    /// The best place for a piece in one of its poses on one page that is in use.
-    bool put_on_page(const std::vector<pack::FitImage>& poses, pack::Spot& spot);
+    Index columns() const { return columns_; }
+    /// Whether a piece of the sheet lies on its page with the fewest cells.
+    bool needs_emptiest(const pack::FitImage& image, const pack::Spot& spot) const;
+    /// Pages in use with fewer cells than that on them.
+    Index pages_below(Index least) const {
+        return static_cast<Index>(std::count_if(covered_.begin(), covered_.end(), [&](Index cells) {
+            return cells > 0 && cells < least;
+        }));
+    }
+
+    /// The best place for a piece in one of some poses on one page that is in use.
+    bool put_on_page(const std::vector<pack::FitImage>& poses,
+                     const std::vector<std::size_t>& chosen, pack::Spot& spot);
 
     struct LargePlace {
         pack::Spot spot;
