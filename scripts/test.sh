@@ -13,9 +13,9 @@ source "$root/scripts/build_meshlab.sh"
 # MeshLab with its batch server, an X server without a screen, used with mouse and keyboard, and a
 # reader of PDF files.
 system_packages+=(meshlab xvfb xauth xdotool poppler-utils)
-# A browser for the page of a pattern; elsewhere the package is not the browser itself.
+# Browsers for the page of a pattern; elsewhere the packages are not the browsers themselves.
 if [[ $(. /etc/os-release && echo "${ID:-}") == debian ]]; then
-    system_packages+=(chromium chromium-driver)
+    system_packages+=(chromium chromium-driver firefox-esr)
 fi
 devseg_setup
 if [[ ${DEVSEG_GUI_TESTS:-} == 1 ]]; then

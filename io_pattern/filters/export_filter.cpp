@@ -114,9 +114,10 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
                  "cutter can leave out.")
         .boolean(&O::edge_numbers, "edge_numbers", "Seam numbers",
                  "Write the number of each seam next to both of its sides.")
-        .boolean(&O::grain_line, "grain_line", "Grain line",
-                 "Draw an arrow along the threads of the cloth into each piece, and lay pieces "
-                 "with their arrows upright where they are laid out anew.")
+        .boolean(
+            &O::grain_line, "grain_line", "Grain line",
+            "Draw an arrow along the threads of the cloth into each piece. Without pages, pieces "
+            "that are laid out anew have it upright; on pages it turns with its piece.")
         .boolean(
             &O::mirror, "mirror", "Mirror",
             "Draw each sheet as seen from its back, which is the inside of the model: mountain folds "

@@ -83,8 +83,7 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
         document.pages = sheet::cover_pages(pattern, layout, printed, options, document.title);
     progress.check();
     if (options.cover && layout.page && printed.size() > 1)
-        document.pages.push_back(
-            sheet::overview_page(layout, document.drawing, printed, document.title));
+        sheet::add_overview(layout, document.drawing, printed, document.title, document.pages);
     for (writers::DocumentPage& page :
          sheet::page_sheets(layout, document.drawing, printed, document.title))
         document.pages.push_back(std::move(page));

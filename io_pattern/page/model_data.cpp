@@ -85,6 +85,7 @@ public:
             data["color"] = array_of(color);
             data["length"] = rounded(piece.long_side);
             data["width"] = rounded(piece.short_side);
+            data["label"] = flat({on_sheet(layout_.pieces[i], piece.label_position)});
             data["area"] = rounded(1e-2 * piece.area);
             data["extension"] = rounded(100.0 * piece.strain.extension);
             data["compression"] = rounded(100.0 * piece.strain.compression);
@@ -208,12 +209,15 @@ private:
         return points;
     }
 
+    // Where a point of a piece lies in the drawing, y down.
+    Vec2 on_sheet(const sheet::SheetPiece& piece, const Vec2& point) const {
+        const Vec2 p = piece.frame(point) + drawing_.sheet_low(piece.sheet);
+        return {p.x(), drawing_.height - p.y()};
+    }
+
     std::vector<Vec2> on_sheet(const pattern::SeamSide& side) const {
-        const sheet::SheetPiece& piece = layout_.pieces[at(side.piece)];
-        const Vec2 low = drawing_.sheet_low(piece.sheet);
         return along(side, [&](const pattern::PiecePath& path, std::size_t i) {
-            const Vec2 p = piece.frame(path.points[i]) + low;
-            return Vec2(p.x(), drawing_.height - p.y());
+            return on_sheet(layout_.pieces[at(side.piece)], path.points[i]);
         });
     }
 

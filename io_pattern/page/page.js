@@ -53,9 +53,9 @@ const stepOfPiece = DATA.pieces.map((_, p) =>
 // ---------------------------------------------------------------- the model
 
 class ModelView {
-  constructor(canvas) {
+  constructor(canvas, context) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(35, 1, 1, 1000);
     this.meshes = [];
@@ -166,7 +166,7 @@ class ModelView {
   }
 
   reset() {
-    const distance = this.radius / Math.sin((this.camera.fov / 2) * Math.PI / 180);
+    const distance = 0.88 * this.radius / Math.sin((this.camera.fov / 2) * Math.PI / 180);
     this.controls.target.copy(this.middle).multiplyScalar(this.size).add(this.low);
     this.camera.position.set(-0.5, 0.3, 0.8).normalize().multiplyScalar(distance)
       .add(this.controls.target);
@@ -226,8 +226,7 @@ class ModelView {
     }
     this.waiting = false;
     this.meshes.forEach(({ group, uniforms }, p) => {
-      const { color, section } = DATA.pieces[p];
-      const [r, g, b] = state.colors === "bySection" ? sectionColor(section) : color;
+      const [r, g, b] = colorOf(p);
       uniforms.color.value.setRGB(r / 255, g / 255, b / 255, "srgb-linear");
       uniforms.by_strain.value = state.colors === "byStrain" ? 1 : 0;
       uniforms.lit.value = isLit(p) ? 0.75 : 0;
@@ -247,7 +246,7 @@ class ModelView {
 function sectionColor(section) {
   let number = 0;
   for (const letter of section) number = 26 * number + letter.charCodeAt(0) - 64;
-  const hue = (number * 137.5) % 360;
+  const hue = (60 + number * 137.5) % 360; // the first ones are not the yellow of what is lit
   const part = (n) => {
     const k = (n + hue / 30) % 12;
     return 255 * (0.62 - 0.27 * Math.max(-1, Math.min(k - 3, 9 - k, 1)));
@@ -255,6 +254,8 @@ function sectionColor(section) {
   return [part(0), part(8), part(4)];
 }
 
+const colorOf = (p) => (state.colors === "bySection"
+  ? sectionColor(DATA.pieces[p].section) : DATA.pieces[p].color);
 const currentSeams = () => (state.step > 0 ? DATA.steps[state.step - 1].seams : []);
 const isLit = (p) => p === state.piece ||
   (state.seam >= 0 && DATA.seams[state.seam].sides.some((side) => side.piece === p)) ||
@@ -271,11 +272,18 @@ class SheetView {
     const under = document.createElementNS(SVG, "g");
     this.svg.prepend(under);
     const pages = DATA.pages.length > 0 ? DATA.pages : [[0, 0, ...DATA.size]];
-    pages.forEach(([x, y, width, height], i) => {
-      element("rect", { class: "page", x, y, width, height }, under);
-      if (DATA.pages.length > 0)
-        element("text", { class: "number", x: x + 4, y: y + 8 }, under).textContent = TEXT.page(i + 1);
-    });
+    // Pages that are glued overlap: the borders of all lie above their paper.
+    for (const kind of ["paper", "border"])
+      for (const [x, y, width, height] of pages)
+        element("rect", { class: kind, x, y, width, height }, under);
+    this.labels = [];
+    const label = (text, x, y, room, name, parent) => {
+      const made = element("text", { class: name, x, y }, parent);
+      made.textContent = text;
+      this.labels.push({ made, room });
+    };
+    if (DATA.pages.length > 0)
+      pages.forEach(([x, y, width], i) => label(TEXT.page(i + 1), x, y, width, "number", under));
     this.groups = DATA.pieces.map((piece, p) => {
       const group = this.svg.querySelector(`[id="${piece.name}"]`);
       group.dataset.piece = p;
@@ -285,6 +293,8 @@ class SheetView {
       return group;
     });
     const over = element("g", {}, this.svg);
+    this.names = element("g", { "aria-hidden": true }, this.svg);
+    DATA.pieces.forEach((piece) => label(piece.name, ...piece.label, piece.length, "name", this.names));
     this.sides = DATA.seams.map((seam, s) => seam.sides.map((side) =>
       element("polyline", { class: "side", points: side.sheet.join(" "), "data-seam": s }, over)));
     this.marks = element("g", {}, this.svg);
@@ -296,6 +306,13 @@ class SheetView {
   show(x, y, width, height) {
     this.view = { x, y, width, height };
     this.svg.setAttribute("viewBox", `${x} ${y} ${width} ${height}`);
+    // Names stay as large on the screen, until those of the drawing can be read.
+    const size = Math.max(width, height) / 45;
+    for (const { made, room } of this.labels) {
+      made.style.fontSize = `${size}px`;
+      made.style.display = room < 2 * size ? "none" : "";
+    }
+    this.names.style.display = size < 5 ? "none" : "";
   }
   fit() {
     const [width, height] = DATA.size;
@@ -387,7 +404,9 @@ class SheetView {
     this.groups.forEach((group, p) => {
       group.classList.toggle("piece-lit", isLit(p));
       group.classList.toggle("piece-later", state.step > 0 && stepOfPiece[p] > state.step);
+      group.style.setProperty("--tint", `rgb(${colorOf(p).map(Math.round).join()})`);
     });
+    this.svg.classList.toggle("tinted", state.colors !== "byStrain");
     this.sides.forEach((lines, s) => {
       const now = s === state.seam || currentSeams().includes(s);
       const done = state.step > 0 && DATA.seams[s].step < state.step;
@@ -600,14 +619,15 @@ setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 fillLists();
 sheet = new SheetView(byId("paper"));
 goTo(0);
-// The pattern is on the screen before the model is made.
-requestAnimationFrame(() => setTimeout(() => {
-  try {
-    model = new ModelView(byId("canvas"));
-  } catch (error) {
-    byId("view").textContent = TEXT.noWebgl;
-  }
-  listen();
-  draw();
+const context = byId("canvas").getContext("webgl2", { antialias: true });
+if (context) model = new ModelView(byId("canvas"), context);
+else byId("view").textContent = TEXT.noWebgl;
+listen();
+draw();
+// The model is on the screen before the sheet is painted: a browser that draws in software paints
+// outlines and texts far longer than a model, and a new WebGL context would wait for them.
+requestAnimationFrame(() => requestAnimationFrame(() => {
+  performance.mark("model");
+  byId("paper").classList.add("shown");
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
 }));

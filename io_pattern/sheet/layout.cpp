@@ -169,7 +169,7 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
     auto laying = progress.part("laying out sheets", 0.8);
     if (layout.page) {
         const PageNesting nesting =
-            nest_on_pages(layout.pieces, *layout.page, options.grain_line, options.tiling, laying);
+            nest_on_pages(layout.pieces, *layout.page, options.tiling, laying);
         layout.sheets = nesting.sheets;
         for (std::size_t i = 0; i < layout.pieces.size(); ++i) {
             layout.pieces[i].move(nesting.placements[i]);

@@ -19,15 +19,18 @@ namespace {
 
 struct Tuning {
     double cells = 200.0;             // along the shorter side of a page: about 1 mm of an A4 page
-    int turns = 8;                    // of a piece on one page, all around
-    int large_turns = 24;             // of a piece on several pages, of which
-    int large_tries = 4;              // so many are tried at a time
+    int turns = 16;                   // of a piece on one page, all around
+    int large_turns = 36;             // of a piece on several pages, of which
+    std::size_t tries = 4;            // so many are tried at a time
     double most_pages_across = 200.0; // of one piece: more is a wrong scale
     // Rows of images that are compared with rows of sheets: about two seconds, and where one
     // attempt takes longer than that, one attempt.
     std::int64_t work = 1'200'000'000;
-    int attempts = 600; // orders that are tried at most
-    double full = 0.9;  // share of the paper that no nesting covers
+    int attempts = 800;    // at most
+    unsigned restart = 12; // one of so many attempts lays all pieces anew
+    double full = 0.9;     // share of the paper that no nesting covers
+    // Share of a page below which it is hardly worth the paper.
+    double almost_empty = 0.05;
 };
 constexpr Tuning tuning;
 
@@ -40,27 +43,21 @@ Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
         .sizes();
 }
 
-// Angles at which the piece is tried: around that of its least box, or the two that keep the grain.
-std::vector<double> angles_of(const SheetPiece& piece, const pack::Outline& outline,
-                              bool keep_grain, int turns) {
-    const Vec2 grain = piece.grain_line[1] - piece.grain_line[0];
-    const bool is_fixed = keep_grain && grain != Vec2::Zero();
-    const double base =
-        is_fixed ? 0.5 * pi - std::atan2(grain.y(), grain.x()) : pack::best_box_angle(outline);
-    const int count = is_fixed ? 2 : turns;
+// Angles at which the piece is tried, around that of its least box.
+std::vector<double> angles_of(const pack::Outline& outline, int turns) {
+    const double base = pack::best_box_angle(outline);
     std::vector<double> angles;
-    for (int i = 0; i < count; ++i)
-        angles.push_back(base + 2.0 * pi * i / count);
+    for (int i = 0; i < turns; ++i)
+        angles.push_back(base + 2.0 * pi * i / turns);
     return angles;
 }
 
 // The images of a piece on one page; of one that fits on none, all images.
-void draw_poses(const SheetPiece& piece, bool keep_grain, PageProblem& problem, std::size_t i) {
+void draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
     const pack::Outline outline = pack::outline_of(piece.cut);
     const Vec2 room = problem.page.printable() + Vec2::Constant(problem.cell);
     for (const bool large : {false, true}) {
-        for (const double angle :
-             angles_of(piece, outline, keep_grain, large ? tuning.large_turns : tuning.turns)) {
+        for (const double angle : angles_of(outline, large ? tuning.large_turns : tuning.turns)) {
             const bool fits = (room - turned_size(outline.hull, angle)).minCoeff() >= 0.0;
             if (!large && !fits)
                 continue;
@@ -71,6 +68,8 @@ void draw_poses(const SheetPiece& piece, bool keep_grain, PageProblem& problem, 
         }
         if (!problem.poses[i].empty()) {
             problem.is_large[i] = large ? 1 : 0;
+            if (large)
+                problem.footprints[i] = find_footprints(problem, problem.poses[i]);
             return;
         }
     }
@@ -98,7 +97,7 @@ void check_scale(const std::vector<SheetPiece>& pieces, const PageFormat& page) 
 }
 
 PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                         bool keep_grain, Progress& progress) {
+                         Progress& progress) {
     PageProblem problem;
     problem.page = page;
     problem.cell = page.printable().minCoeff() / tuning.cells;
@@ -106,12 +105,13 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     problem.columns = problem.cells_down(room.x());
     problem.rows = problem.cells_down(room.y());
     problem.poses.resize(pieces.size());
+    problem.footprints.resize(pieces.size());
     problem.is_large.assign(pieces.size(), 0);
     for (const SheetPiece& piece : pieces)
         problem.area.push_back(outline_area(piece));
     parallel_for(
-        static_cast<int>(pieces.size()),
-        [&](int i) { draw_poses(pieces[at(i)], keep_grain, problem, at(i)); }, progress);
+        static_cast<int>(pieces.size()), [&](int i) { draw_poses(pieces[at(i)], problem, at(i)); },
+        progress);
     for (const auto& poses : problem.poses)
         for (const pack::FitImage& image : poses)
             for (const pack::CellRun& run : image.runs)
@@ -119,14 +119,7 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     return problem;
 }
 
-// How one attempt lays the pieces: their order, and for each a number that decides on what is
-// tried; 0 = what looks best at first.
-struct Plan {
-    std::vector<std::size_t> order;
-    std::vector<std::uint32_t> choice; // of each piece
-};
-
-// Where each piece lies for one order of the pieces.
+// Where each piece lies.
 struct Filling {
     std::vector<PageSheet> sheets;
     std::vector<Index> sheet; // of each piece
@@ -150,6 +143,15 @@ struct Filling {
     std::pair<Index, Index> score() const {
         return {page_count(), sheets[at(emptiest())].fewest_cells()};
     }
+    // Fewer pages, and fewer that are almost empty: what is kept in the end.
+    std::pair<Index, Index> cost(const PageProblem& problem) const {
+        const auto least = static_cast<Index>(tuning.almost_empty * problem.page_area() /
+                                              (problem.cell * problem.cell));
+        Index poor = 0;
+        for (const PageSheet& s : sheets)
+            poor += s.pages_below(least);
+        return {page_count(), poor};
+    }
     void put(const PageProblem& problem, std::size_t i, std::size_t chosen,
              const pack::Spot& place) {
         sheets[chosen].take(problem.poses[i][place.pose], place, problem.area[i]);
@@ -159,24 +161,25 @@ struct Filling {
 };
 
 // Some of the poses, evenly all around or any.
-std::vector<std::size_t> chosen_poses(std::size_t count, std::minstd_rand* random) {
+std::vector<std::size_t> chosen_poses(std::size_t count, std::size_t most,
+                                      std::minstd_rand* random) {
     std::vector<std::size_t> some;
-    const std::size_t tries = std::min(count, static_cast<std::size_t>(tuning.large_tries));
+    const std::size_t tries = std::min(count, most);
     for (std::size_t k = 0; k < tries; ++k)
         some.push_back(random == nullptr ? k * count / tries : (*random)() % count);
     return some;
 }
 
-void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, std::int64_t& work,
-               Filling& filling) {
-    std::minstd_rand numbers(choice);
-    std::minstd_rand* const random = choice == 0 ? nullptr : &numbers;
+// `random`: what else is as good, and where it lies; none: what looks best at first.
+void put_large(const PageProblem& problem, std::size_t i, std::minstd_rand* random,
+               std::int64_t& work, Filling& filling) {
     const std::vector<pack::FitImage>& poses = problem.poses[i];
-    const std::vector<std::size_t> tried = chosen_poses(poses.size(), random);
+    const std::vector<std::size_t> tried = chosen_poses(poses.size(), tuning.tries, random);
     PageSheet::LargePlace best;
     std::size_t chosen = filling.sheets.size();
     for (std::size_t s = 0; s < filling.sheets.size(); ++s) {
-        const PageSheet::LargePlace place = filling.sheets[s].place_of(poses, tried, random);
+        const PageSheet::LargePlace place =
+            filling.sheets[s].place_of(poses, tried, problem.footprints[i], random);
         if (place.is_better_than(best)) {
             best = place;
             chosen = s;
@@ -186,13 +189,16 @@ void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, 
     for (const std::size_t pose : tried)
         most = std::max(most, PageSheet::pages_for(poses[pose].cells.width, problem.columns,
                                                    problem.page.step().x() / problem.cell));
+    for (const Footprint& f : problem.footprints[i])
+        most = std::max(most, f.across);
     // Others may find room beside it on a wider sheet.
-    most += random != nullptr && numbers() % 2 == 0 ? 1 : 0;
+    most += random != nullptr && (*random)() % 2 == 0 ? 1 : 0;
     std::optional<PageSheet> added;
     for (Index columns = 1; columns <= most; ++columns) {
         PageSheet fresh(problem, columns, work);
-        const PageSheet::LargePlace place = fresh.place_of(poses, tried, random);
-        const bool instead = random != nullptr && numbers() % 2 == 0;
+        const PageSheet::LargePlace place =
+            fresh.place_of(poses, tried, problem.footprints[i], random);
+        const bool instead = random != nullptr && (*random)() % 2 == 0;
         if (place.found && (!best.found || place.new_pages < best.new_pages ||
                             (instead && place.new_pages == best.new_pages))) {
             best = place;
@@ -206,83 +212,128 @@ void put_large(const PageProblem& problem, std::size_t i, std::uint32_t choice, 
     filling.put(problem, i, chosen, best.spot);
 }
 
-void put_small(const PageProblem& problem, std::size_t i, std::int64_t& work, Filling& filling) {
+void put_small(const PageProblem& problem, std::size_t i, std::minstd_rand* random,
+               std::int64_t& work, Filling& filling) {
+    const std::vector<pack::FitImage>& poses = problem.poses[i];
+    const std::vector<std::size_t> tried =
+        chosen_poses(poses.size(), random != nullptr ? tuning.tries : poses.size(), random);
     pack::Spot spot;
     for (std::size_t s = 0; s < filling.sheets.size(); ++s)
-        if (filling.sheets[s].put_on_page(problem.poses[i], spot)) {
+        if (filling.sheets[s].put_on_page(poses, tried, spot)) {
             filling.put(problem, i, s, spot);
             return;
         }
     filling.sheets.emplace_back(problem, 1, work);
-    const PageSheet::LargePlace place = filling.sheets.back().place_of(
-        problem.poses[i], chosen_poses(problem.poses[i].size(), nullptr), nullptr);
+    const PageSheet::LargePlace place = filling.sheets.back().place_of(poses, tried, {}, nullptr);
     filling.put(problem, i, filling.sheets.size() - 1, place.spot);
 }
 
-Filling fill(const PageProblem& problem, const Plan& plan, std::int64_t& work,
-             const Progress& progress) {
-    Filling filling;
-    filling.sheet.assign(plan.order.size(), -1);
-    filling.spot.resize(plan.order.size());
+// Large pieces first, then what fits on the pages that these leave.
+void put_all(const PageProblem& problem, const std::vector<std::size_t>& order,
+             std::minstd_rand* random, std::int64_t& work, const Progress& progress,
+             Filling& filling) {
     for (const bool large : {true, false})
-        for (const std::size_t i : plan.order) {
+        for (const std::size_t i : order) {
             progress.check();
             if ((problem.is_large[i] != 0) != large)
                 continue;
             if (large)
-                put_large(problem, i, plan.choice[i], work, filling);
+                put_large(problem, i, random, work, filling);
             else
-                put_small(problem, i, work, filling);
+                put_small(problem, i, random, work, filling);
         }
-    return filling;
 }
 
-// Some pieces come to the front, those of the emptiest page or any, or lie differently.
-Plan changed(const Plan& plan, const Filling& filling, std::mt19937& random) {
-    Plan result = plan;
-    std::vector<std::size_t>& order = result.order;
-    const Index last = filling.emptiest();
-    if (random() % 2 == 0)
-        std::stable_partition(order.begin(), order.end(),
-                              [&](std::size_t i) { return filling.sheet[i] == last; });
-    for (int swaps = 1 + static_cast<int>(random() % 3); swaps > 0; --swaps)
-        std::swap(order[random() % order.size()], order[random() % order.size()]);
-    for (int choices = static_cast<int>(random() % 3); choices > 0; --choices)
-        result.choice[random() % order.size()] = static_cast<std::uint32_t>(random() | 1U);
+// Which pieces are laid anew: those of the emptiest page, or any, and some more.
+std::vector<std::uint8_t> pieces_to_move(const PageProblem& problem, const Filling& filling,
+                                         std::minstd_rand& random) {
+    const std::size_t count = problem.area.size();
+    std::vector<std::uint8_t> moves(count, 0);
+    if (random() % tuning.restart == 0)
+        return std::vector<std::uint8_t>(count, 1);
+    const Index emptiest = filling.emptiest();
+    const PageSheet& sheet = filling.sheets[at(emptiest)];
+    if (random() % 4 != 0)
+        for (std::size_t i = 0; i < count; ++i)
+            if (filling.sheet[i] == emptiest)
+                moves[i] =
+                    sheet.needs_emptiest(problem.poses[i][filling.spot[i].pose], filling.spot[i])
+                        ? 1
+                        : 0;
+    for (auto more = static_cast<int>(random() % 3); more >= 0; --more)
+        moves[random() % count] = 1;
+    if (random() % 2 == 0) // small ones are in the way of large ones, and easily laid again
+        for (std::size_t i = 0; i < count; ++i)
+            moves[i] = moves[i] != 0 || problem.is_large[i] == 0 ? 1 : 0;
+    return moves;
+}
+
+// What stays where it is.
+Filling without(const PageProblem& problem, const Filling& filling,
+                const std::vector<std::uint8_t>& moves, std::int64_t& work) {
+    const std::size_t count = moves.size();
+    Filling result;
+    result.sheet.assign(count, -1);
+    result.spot = filling.spot;
+    std::vector<Index> number(filling.sheets.size(), -1);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (moves[i] != 0)
+            continue;
+        Index& chosen = number[at(filling.sheet[i])];
+        if (chosen < 0) {
+            chosen = static_cast<Index>(result.sheets.size());
+            result.sheets.emplace_back(problem, filling.sheets[at(filling.sheet[i])].columns(),
+                                       work);
+        }
+        result.put(problem, i, at(chosen), filling.spot[i]);
+    }
     return result;
 }
 
-Plan first_plan(const PageProblem& problem) {
-    Plan plan;
-    plan.order.resize(problem.area.size());
-    plan.choice.assign(problem.area.size(), 0);
-    std::iota(plan.order.begin(), plan.order.end(), std::size_t{0});
+// The largest boxes first.
+std::vector<std::size_t> first_order(const PageProblem& problem) {
+    std::vector<std::size_t> order(problem.area.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
     const auto box = [&](std::size_t i) {
         const pack::ChartCells& cells = problem.poses[i].front().cells;
         return std::int64_t{cells.width} * cells.height;
     };
-    std::stable_sort(plan.order.begin(), plan.order.end(),
+    std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return box(a) > box(b); });
-    return plan;
+    return order;
 }
 
+// Some pieces are taken out and laid anew, again and again.
 Filling best_filling(const PageProblem& problem, Progress& progress) {
-    Plan plan = first_plan(problem);
+    const std::vector<std::size_t> order = first_order(problem);
     const double total = std::accumulate(problem.area.begin(), problem.area.end(), 0.0);
     const auto least = static_cast<Index>(std::ceil(total / (tuning.full * problem.page_area())));
     std::int64_t work = 0;
-    Filling best = fill(problem, plan, work, progress);
-    std::mt19937 random; // the same numbers in every run
-    for (int k = 0; k < tuning.attempts && work < tuning.work && best.page_count() > least; ++k) {
+    Filling current;
+    current.sheet.assign(order.size(), -1);
+    current.spot.resize(order.size());
+    put_all(problem, order, nullptr, work, progress, current);
+    Filling kept = current;
+    std::minstd_rand random; // the same numbers in every run
+    for (int k = 0; k < tuning.attempts && work < tuning.work &&
+                    kept.cost(problem) > std::pair(least, Index{0});
+         ++k) {
         progress.update(static_cast<double>(work) / static_cast<double>(tuning.work));
-        const Plan next = changed(plan, best, random);
-        Filling filling = fill(problem, next, work, progress);
-        if (filling.score() <= best.score()) {
-            best = std::move(filling);
-            plan = next;
-        }
+        const std::vector<std::uint8_t> moves = pieces_to_move(problem, current, random);
+        Filling filling = without(problem, current, moves, work);
+        std::vector<std::size_t> moved;
+        for (const std::size_t i : order)
+            if (moves[i] != 0)
+                moved.push_back(i);
+        for (std::size_t swaps = random() % 2 == 0 ? moved.size() : 0; swaps > 0; --swaps)
+            std::swap(moved[random() % moved.size()], moved[random() % moved.size()]);
+        put_all(problem, moved, &random, work, progress, filling);
+        if (filling.cost(problem) < kept.cost(problem))
+            kept = filling;
+        if (filling.score() <= current.score())
+            current = std::move(filling);
     }
-    return best;
+    return kept;
 }
 
 // Sheets of several pages first, then single pages, the fullest first.
@@ -305,10 +356,10 @@ std::vector<Index> ranks_of(const Filling& filling) {
 } // namespace
 
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                          bool keep_grain, bool tiling, Progress& progress) {
+                          bool tiling, Progress& progress) {
     check_scale(pieces, page);
     auto drawing = progress.part(0.1);
-    const PageProblem problem = make_problem(pieces, page, keep_grain, drawing);
+    const PageProblem problem = make_problem(pieces, page, drawing);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (problem.is_large[i] != 0 && !tiling)
             refuse_size(pieces[i], page);

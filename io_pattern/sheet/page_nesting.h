@@ -19,9 +19,10 @@ struct PageNesting {
 /// strips. The order of the pieces is changed again and again, from pieces on the emptiest page
 /// on, and what takes fewer pages stays. No piece touches the border of the printable area of a
 /// page that it fits on. The work is counted, not timed. Throws InvalidParameter where a piece is
-/// larger than a page that it may not leave (`tiling`), and Cancelled.
+/// larger than a page that it may not leave (`tiling`), and Cancelled. Pieces are turned as they
+/// fit: paper has no grain, and the arrow on a piece turns with it.
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                          bool keep_grain, bool tiling, Progress& progress);
+                          bool tiling, Progress& progress);
 
 /// The part of a sheet's page that no page before it, in rows from below and in columns from the
 /// left, shows: what lies there needs the page. Millimetres, the sheet's lower left is the origin.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -16,6 +17,15 @@ namespace devseg::sheet {
 /// mm between cut lines and the border of the printable area.
 constexpr double border_clearance = 0.5;
 
+/// A large piece in one pose, so far from the corner of the first of its pages: what it needs.
+struct Footprint {
+    std::size_t pose = 0;
+    Vec2 offset = Vec2::Zero();              // mm
+    std::array<bool, 2> at_border{};         // lies in the strip that a page before would show
+    std::vector<std::array<Index, 2>> pages; // columns and rows, 0 = the first
+    Index across = 1;                        // columns of pages
+};
+
 /// All that is the same for every order of the pieces.
 struct PageProblem {
     PageFormat page;
@@ -23,6 +33,7 @@ struct PageProblem {
     Index columns = 0; // cells that a piece with its margin may take on one page
     Index rows = 0;
     std::vector<std::vector<pack::FitImage>> poses;
+    std::vector<std::vector<Footprint>> footprints; // of large pieces
     std::vector<std::uint8_t> is_large;
     std::vector<double> area; // mm², of the cut line
     Index longest_run = 1;
@@ -31,6 +42,11 @@ struct PageProblem {
     Index cells_up(double mm) const { return static_cast<Index>(std::ceil(mm / cell - 1e-9)); }
     double page_area() const { return page.printable().prod(); }
 };
+
+/// Where one piece needs the fewest pages, or hardly more, of places all over a page. None for
+/// pieces of very many pages, which have little to gain.
+std::vector<Footprint> find_footprints(const PageProblem& problem,
+                                       const std::vector<pack::FitImage>& poses);
 
 /// Pages in columns, and in as many rows as pieces need.
 class PageSheet {
@@ -54,8 +70,19 @@ public:
         return least;
     }
 
-    /// The best place for a piece in one of its poses on one page that is in use.
-    bool put_on_page(const std::vector<pack::FitImage>& poses, pack::Spot& spot);
+    Index columns() const { return columns_; }
+    /// Whether a piece of the sheet lies on its page with the fewest cells.
+    bool needs_emptiest(const pack::FitImage& image, const pack::Spot& spot) const;
+    /// Pages in use with fewer cells than that on them.
+    Index pages_below(Index least) const {
+        return static_cast<Index>(std::count_if(covered_.begin(), covered_.end(), [&](Index cells) {
+            return cells > 0 && cells < least;
+        }));
+    }
+
+    /// The best place for a piece in one of some poses on one page that is in use.
+    bool put_on_page(const std::vector<pack::FitImage>& poses,
+                     const std::vector<std::size_t>& chosen, pack::Spot& spot);
 
     struct LargePlace {
         pack::Spot spot;
@@ -72,7 +99,8 @@ public:
     /// The place of a piece in one of some poses, on one page or several, that takes the fewest new
     /// pages. `random`: where in its pages the piece lies; none: at the lower left.
     LargePlace place_of(const std::vector<pack::FitImage>& poses,
-                        const std::vector<std::size_t>& chosen, std::minstd_rand* random);
+                        const std::vector<std::size_t>& chosen,
+                        const std::vector<Footprint>& footprints, std::minstd_rand* random);
 
     void take(const pack::FitImage& image, const pack::Spot& spot, double area);
 
@@ -108,15 +136,9 @@ private:
     // One page without the strips that it shares.
     pack::FitWindow inner_window(Index column, Index row) const;
 
-    // The first page in one direction that shows all up to a cell; margins of images do not count.
-    Index page_at(double mm, double step) const {
-        return std::max(Index{0},
-                        static_cast<Index>(std::ceil((mm - tile_overlap) / step - 1e-9)) - 1);
-    }
-
-    // The pages that a piece needs, and how many of its cells lie on each.
-    std::vector<std::pair<Index, Index>> pages_under(const pack::ChartCells& image,
-                                                     const pack::Spot& spot) const;
+    // Places that need few pages by themselves, as far as they need fewer new ones here.
+    void look_at(const std::vector<pack::FitImage>& poses, const std::vector<Footprint>& footprints,
+                 std::minstd_rand* random, LargePlace& best);
 
     const PageProblem* problem_;
     std::int64_t* work_;

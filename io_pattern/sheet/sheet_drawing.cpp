@@ -29,6 +29,7 @@ constexpr double least_caption = 1.2;
 constexpr double cross = 2.5; // mm, half the size of a registration cross
 constexpr double page_title = 6.0;
 constexpr double page_text = 3.5;
+constexpr double overview_share = 0.55; // of a page: less than that is too small for the overview
 
 // Area of a path whose points are rounded to the grid; as they are for a grid of 0.
 double area_of(const writers::DrawingPath& path, double grid) {
@@ -176,6 +177,17 @@ std::vector<Vec2> cross_places(const PatternSheet& sheet, const PageFormat& page
     return places;
 }
 
+// Where the lowest line of text or picture of a page is.
+double lowest_mark(const writers::DocumentPage& page) {
+    double low = page.height;
+    for (const writers::DrawingLayer& layer : page.marks)
+        for (const writers::DrawingText& text : layer.texts)
+            low = std::min(low, text.position.y() - 0.5 * text.size);
+    for (const writers::DrawingImage& image : page.images)
+        low = std::min(low, image.low.y());
+    return low;
+}
+
 // In the lower margin: a bar to check the scale with, and what page this is.
 void add_caption(const PatternLayout& layout, const PrintedPage& printed, std::size_t number,
                  std::size_t count, const std::string& title, writers::DrawingLayer& layer) {
@@ -298,16 +310,24 @@ std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
     return result;
 }
 
-writers::DocumentPage overview_page(const PatternLayout& layout, const writers::Drawing& drawing,
-                                    const std::vector<PrintedPage>& pages,
-                                    const std::string& title) {
+void add_overview(const PatternLayout& layout, const writers::Drawing& drawing,
+                  const std::vector<PrintedPage>& pages, const std::string& title,
+                  std::vector<writers::DocumentPage>& document) {
     const PageFormat& format = *layout.page;
-    writers::DocumentPage page;
-    page.width = format.size.x();
-    page.height = format.size.y();
-    writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
     const Vec2 low = Vec2::Constant(format.margin);
-    Vec2 room = format.printable();
+    double top = format.size.y() - format.margin;
+    const double free = document.empty() ? 0.0 : lowest_mark(document.back()) - page_title;
+    if (free - low.y() >= overview_share * format.printable().y()) {
+        top = free;
+    } else {
+        document.emplace_back();
+        document.back().width = format.size.x();
+        document.back().height = format.size.y();
+        document.back().marks.push_back({"page", "Page marks", "#666666", {}, {}, {}});
+    }
+    writers::DocumentPage& page = document.back();
+    writers::DrawingLayer& marks = page.marks.front();
+    Vec2 room(format.printable().x(), top - low.y());
     const double squares = check_squares[0].side + check_squares[1].side + format.margin;
     const double foot = check_squares[1].side + 2.0 * page_text;
     const bool has_squares = room.x() >= squares && room.y() >= 2.5 * foot;
@@ -322,7 +342,6 @@ writers::DocumentPage overview_page(const PatternLayout& layout, const writers::
         room.y() -= foot;
     }
     room.y() -= 2.0 * page_title;
-    const double top = format.size.y() - format.margin;
     marks.texts.push_back({Vec2(low.x(), top - 0.5 * page_title), page_title,
                            title + ": overview, not to scale", 0.0, writers::TextAnchor::left});
     // Sheets in rows and columns, all at one scale.
@@ -351,8 +370,6 @@ writers::DocumentPage overview_page(const PatternLayout& layout, const writers::
         marks.texts.push_back({corner + Vec2(0.6 * font, size.y() - 0.7 * font), font,
                                std::to_string(i + 1), 0.0, writers::TextAnchor::left});
     }
-    page.marks = {std::move(marks)};
-    return page;
 }
 
 } // namespace devseg::sheet

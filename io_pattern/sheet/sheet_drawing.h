@@ -35,9 +35,10 @@ std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
                                                const std::vector<PrintedPage>& pages,
                                                const std::string& title);
 
-/// How the pages lie on the sheets, with check squares at true scale.
-writers::DocumentPage overview_page(const PatternLayout& layout, const writers::Drawing& drawing,
-                                    const std::vector<PrintedPage>& pages,
-                                    const std::string& title);
+/// How the pages lie on the sheets, with check squares at true scale: on the last page of a cover
+/// where more than half of it is free, or on one of its own.
+void add_overview(const PatternLayout& layout, const writers::Drawing& drawing,
+                  const std::vector<PrintedPage>& pages, const std::string& title,
+                  std::vector<writers::DocumentPage>& document);
 
 } // namespace devseg::sheet

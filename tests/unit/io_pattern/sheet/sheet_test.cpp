@@ -8,6 +8,7 @@
 #include "sheet/export_options.h"
 #include "sheet/layout.h"
 #include "sheet/page_nesting.h"
+#include "sheet/page_sheet.h"
 #include "sheet/sheet_drawing.h"
 #include "unit/checks.h"
 
@@ -63,12 +64,26 @@ PageFormat small_page() {
 
 std::vector<SheetPiece> put_on_pages(std::vector<SheetPiece> pieces, PageNesting& nesting) {
     Progress progress;
-    nesting = nest_on_pages(pieces, small_page(), false, true, progress);
+    nesting = nest_on_pages(pieces, small_page(), true, progress);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         pieces[i].move(nesting.placements[i]);
         pieces[i].sheet = nesting.sheet[i];
     }
     return pieces;
+}
+
+// Of two rectangles that may be turned: 0 where a corner of one lies in the other.
+double gap_between(const SheetPiece& a, const SheetPiece& b) {
+    double gap = 1e9;
+    for (const auto& [p, q] : {std::pair(&a, &b), std::pair(&b, &a)})
+        for (const Vec2& corner : p->cut.front()) {
+            const std::vector<Vec2>& ring = q->cut.front();
+            if (plane::is_inside(q->cut, corner))
+                return 0.0;
+            for (std::size_t k = 0; k < ring.size(); ++k)
+                gap = std::min(gap, plane::distance(corner, ring[k], ring[(k + 1) % ring.size()]));
+        }
+    return gap;
 }
 
 TEST(PageNesting, PiecesThatFitOnAPageLieInsideItsBorder) {
@@ -90,7 +105,7 @@ TEST(PageNesting, PiecesThatFitOnAPageLieInsideItsBorder) {
         EXPECT_GE(homes, 1) << i << " lies on the border of its page";
         for (std::size_t j = 0; j < placed.size(); ++j)
             if (i != j && placed[i].sheet == placed[j].sheet) {
-                EXPECT_GE(placed[i].box().exteriorDistance(placed[j].box()), piece_gap - 1e-6);
+                EXPECT_GE(gap_between(placed[i], placed[j]), piece_gap - 1e-6);
             }
     }
 }
@@ -105,6 +120,33 @@ TEST(PageNesting, LargePiecesShareTheirPages) {
     EXPECT_LE(pages, 5);
 }
 
+TEST(PageNesting, KnowsWhereAPieceNeedsTheFewestPages) {
+    // A cross of 200 by 200: in the corner, its upright bar lies on two columns of pages.
+    SheetPiece cross;
+    const double b = 85, c = 115, e = 200;
+    cross.cut = {{Vec2(b, 0), Vec2(c, 0), Vec2(c, b), Vec2(e, b), Vec2(e, c), Vec2(c, c),
+                  Vec2(c, e), Vec2(b, e), Vec2(b, c), Vec2(0, c), Vec2(0, b), Vec2(b, b)}};
+    PageProblem problem;
+    problem.page = small_page();
+    problem.cell = 0.5;
+    problem.columns = problem.cells_down(problem.page.printable().x() + piece_gap - 1.0);
+    problem.rows = problem.cells_down(problem.page.printable().y() + piece_gap - 1.0);
+    std::vector<pack::FitImage> poses;
+    poses.emplace_back(
+        pack::rasterize(pack::outline_of(cross.cut), 0.0, problem.cell, 0.5 * piece_gap));
+    const std::vector<Footprint> found = find_footprints(problem, poses);
+    ASSERT_FALSE(found.empty());
+    std::size_t fewest = 100;
+    std::size_t in_the_corner = 0;
+    for (const Footprint& f : found) {
+        fewest = std::min(fewest, f.pages.size());
+        if (f.offset == Vec2::Zero())
+            in_the_corner = f.pages.size();
+    }
+    EXPECT_EQ(in_the_corner, 5U);
+    EXPECT_EQ(fewest, 4U);
+}
+
 TEST(PageNesting, IsTheSameInEveryRunAndCanBeCancelled) {
     std::vector<SheetPiece> pieces;
     for (int i = 0; i < 12; ++i)
@@ -116,7 +158,7 @@ TEST(PageNesting, IsTheSameInEveryRunAndCanBeCancelled) {
     for (std::size_t i = 0; i < a.size(); ++i)
         EXPECT_EQ(a[i].cut, b[i].cut);
     Progress cancelled([](double, const char*) { return false; });
-    EXPECT_THROW(nest_on_pages(pieces, small_page(), false, true, cancelled), Cancelled);
+    EXPECT_THROW(nest_on_pages(pieces, small_page(), true, cancelled), Cancelled);
 }
 
 TEST(Drawing, HolesAreCutBeforeOutlinesAndWhatLiesInThemFirst) {
