@@ -65,7 +65,7 @@ std::string today() {
 
 bool is_apparel(const sheet::ExportOptions& options) {
     return options.dxf_kind == sheet::DxfKind::apparel ||
-           (options.dxf_kind == sheet::DxfKind::automatic &&
+           (!options.is_marker() && options.dxf_kind == sheet::DxfKind::automatic &&
             options.preset == sheet::PatternPreset::sewing);
 }
 
@@ -98,12 +98,27 @@ Index printed_count(const sheet::PatternLayout& layout) {
     return static_cast<Index>(sheet::printed_pages(layout, places).size());
 }
 
+// A marker is one large sheet to cut, without pages about the model.
+sheet::ExportOptions format_options(sheet::ExportOptions options, Format format) {
+    if (!options.is_marker())
+        return options;
+    if (format == Format::html)
+        throw InvalidParameter("fabric_width_mm: expected a marker in .svg, .pdf or .dxf, found "
+                               ".html; leave fabric_width_mm out");
+    if (options.dxf_kind == sheet::DxfKind::apparel && format == Format::dxf)
+        throw InvalidParameter("dxf_kind: expected Cutter for a marker, found Apparel, which has "
+                               "pieces and no layout");
+    options.cover = false;
+    options.edge_numbers = options.edge_numbers && !options.fold; // halves have half of them
+    return options;
+}
+
 } // namespace
 
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
                               const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
-    const sheet::ExportOptions options = sheet::resolved(given);
+    const sheet::ExportOptions options = format_options(sheet::resolved(given), format);
     sheet::page_format(options); // says what is wrong with it before the work begins
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
@@ -139,6 +154,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
     file.assembly = layout.assembly;
     file.seam_list = pattern.seams;
+    for (const pattern::PatternPiece& piece : pattern.pieces)
+        if (pattern.material)
+            file.cloth.push_back(piece.cloth);
+    if (layout.fabric)
+        file.fabric = *layout.fabric;
     file.notes = pattern.notes;
     const int missing = writers::missing_glyphs(title_of(options.output_file));
     if (missing > 0 && format == Format::pdf)

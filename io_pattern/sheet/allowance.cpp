@@ -288,6 +288,35 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
     return rings;
 }
 
+std::vector<Ring> grown_rings(const std::vector<Ring>& rings, double distance) {
+    const Eigen::AlignedBox2d box = plane::box_of(rings.front());
+    const Vec2 centre = box.center();
+    const double grid = (box.sizes().maxCoeff() + 2.0 * miter_limit * distance) / grid_size;
+    ClipperLib::ClipperOffset offset(miter_limit);
+    for (const Ring& ring : rings) {
+        ClipperLib::Path path;
+        for (const Vec2& p : ring) {
+            const Vec2 q = (p - centre) / grid;
+            path.emplace_back(std::llround(q.x()), std::llround(q.y()));
+        }
+        offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+    }
+    ClipperLib::Paths solution;
+    offset.Execute(solution, distance / grid);
+    std::stable_sort(solution.begin(), solution.end(),
+                     [](const ClipperLib::Path& a, const ClipperLib::Path& b) {
+                         return ClipperLib::Area(a) > ClipperLib::Area(b);
+                     });
+    std::vector<Ring> grown;
+    for (const ClipperLib::Path& path : solution) {
+        grown.emplace_back();
+        for (const ClipperLib::IntPoint& p : path)
+            grown.back().push_back(centre +
+                                   grid * Vec2(static_cast<double>(p.X), static_cast<double>(p.Y)));
+    }
+    return grown;
+}
+
 GlueTabs make_tabs(const pattern::Pattern& pattern, double depth, Progress& progress) {
     std::vector<PieceRoom> rooms;
     for (const pattern::PatternPiece& piece : pattern.pieces)

@@ -35,6 +35,11 @@ struct AllowanceWidths {
 std::vector<std::vector<Vec2>> add_allowance(const pattern::PatternPiece& piece,
                                              const AllowanceWidths& widths, CornerStyle corners);
 
+/// Closed rings, the outer one first, moved away from the piece by `distance` (mm): the outer one
+/// outwards, holes inwards, where they may vanish. Corners stay pointed, as those of allowances.
+std::vector<std::vector<Vec2>> grown_rings(const std::vector<std::vector<Vec2>>& rings,
+                                           double distance);
+
 /// A flap along the edges first … first + count − 1 (modulo their number) of an outline, almost a
 /// straight line: from the start of the first edge over both corners to the end of the last.
 struct GlueTab {

@@ -16,6 +16,8 @@ enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
 /// What makes a group in an SVG: all of one operation, or all of one piece.
 enum class Grouping { layer, piece };
+/// How long layouts on cloth are looked for.
+enum class Effort { fast, normal, best };
 /// Texts of an SVG: as text, or as outlines of its letters.
 enum class TextKind { text, paths };
 
@@ -44,6 +46,17 @@ struct ExportOptions : pattern::PatternOptions {
     bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
     bool scale_check = true; // the same: squares to check the scale with
 
+    double kerf_mm = -1.0; // width of the cut; below 0: of the material, with the preset Laser
+
+    // A marker: all pieces on a roll of cloth, which replaces the pages.
+    double fabric_width_mm = 0.0; // with both selvedges; 0 = none
+    double selvedge_mm = 0.0;     // at each side, that no piece lies on
+    bool fold = false;            // the cloth lies double, folded along its length
+    bool nap = false;             // all pieces the same way round
+    int copies = 1;               // of the whole pattern
+    double piece_gap_mm = 3.0;    // between two pieces on the cloth
+    Effort effort = Effort::normal;
+
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
 
@@ -55,6 +68,7 @@ struct ExportOptions : pattern::PatternOptions {
     bool marks_openings() const {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
+    bool is_marker() const { return fabric_width_mm > 0.0; }
     AllowanceWidths allowance() const {
         if (hem_allowance_mm < 0.0)
             return {seam_allowance_mm, seam_allowance_mm, 0.0};

@@ -6,6 +6,7 @@
 
 #include "devseg/plane/plane.h"
 #include "sheet/drawing_plan.h"
+#include "sheet/marker.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -239,6 +240,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         cut,     mountain, valley,  sew,
         notch,   grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
         numbers, text};
+    if (layout.fabric)
+        drawing.layers.push_back(fabric_layer(layout, plan.sheets.front()));
     return drawing;
 }
 

@@ -215,6 +215,18 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
     result.cut = rings_of(result.cut_curves, tolerance);
 }
 
+// What the cut burns away on the piece's side comes back.
+void add_kerf(const ExportOptions& options, const pattern::PatternPiece& piece,
+              SheetPiece& result) {
+    result.cut = grown_rings(result.cut, 0.5 * options.kerf_mm);
+    if (result.cut_curves.empty())
+        return;
+    result.cut_curves.clear();
+    for (const std::vector<Vec2>& ring : result.cut)
+        result.cut_curves.push_back(pattern::fit_ring(ring, corner_turn, options.curve_mm));
+    result.cut = rings_of(result.cut_curves, for_size(sagitta, piece));
+}
+
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
     for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
@@ -313,6 +325,8 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     }
     if (options.curve_mm > 0.0)
         add_curves(piece, outlines, options, result);
+    if (options.kerf_mm > 0.0)
+        add_kerf(options, piece, result);
     if (options.fold_lines)
         add_folds(piece, result);
     add_notches(pattern, options, result);

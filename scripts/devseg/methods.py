@@ -21,6 +21,7 @@ class Method:
         deforms: whether the charts are deformed until they can be unfolded exactly.
         preset: of the pattern, unless another one is asked for.
         flatten: key of FLATTENINGS that `devseg run` takes without --flatten.
+        bounds_material: whether a material sets the strain that its charts may have.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Method:
     deforms: bool
     preset: str | None
     flatten: str
+    bounds_material: bool = False
 
 
 # The options of the command line that a method may take, and the filter parameters they set.
@@ -53,6 +55,7 @@ METHODS = {
         row["deforms"],
         row["preset"],
         row["flatten"],
+        "material" in row["parameters"],
     )
     for name, row in cast("dict[str, dict[str, Any]]", TABLE).items()
 }

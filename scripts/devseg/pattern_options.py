@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from devseg import cloth
 from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
@@ -83,6 +84,7 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     _add_switches(group)
+    cloth.add_options(parser.add_argument_group("materials and rolls of cloth"))
 
 
 def _add_switches(group: argparse._ArgumentGroup) -> None:
@@ -148,6 +150,12 @@ OPTION_OF = {
         name: f"--{name.replace('_', '-')}"
         for name in (*_PARAMETERS, "preset", "corner_style", "group", "text")
     },
+    **{
+        name: f"--{name.replace('_', '-')}"
+        for name in ("material", "grain", "kerf_mm", *cloth.MARKER_PARAMETERS)
+    },
+    "selvedge_mm": "--selvedge",
+    "grain_angle": "--grain",
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
     "labels": "--no-labels",
@@ -173,6 +181,7 @@ def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
     for name, values in _CHOICES.items():
         if (value := getattr(args, name)) is not None:
             parameters[name] = values[value]
+    parameters.update(cloth.parameters(args))
     if args.height_mm:
         parameters["height_mm"] = args.height_mm
     elif args.mm_per_unit:

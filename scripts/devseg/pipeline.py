@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from devseg import guide, host, ply, scene
+from devseg import cloth, guide, host, ply, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
@@ -450,9 +450,19 @@ class _Writer:
 
     def write_patterns(self, pattern: Mapping[str, Any]) -> None:
         """What shows the mesh upright: patterns and the picture."""
+        plain, marker = cloth.split(pattern)
         for extension in self._formats(PATTERN_FORMATS):
-            results = self.session.export(self._target(extension), pattern)
+            results = self.session.export(self._target(extension), plain)
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
+            if "material" in plain:
+                self.guide["cloth"] = cloth.strains(results, plain["material"])
+        for extension in self.options.formats:
+            if marker and extension in cloth.MARKER_FORMATS:
+                with self.progress.stage(f"marker {extension}"):
+                    target = self.stem.parent / f"{self.stem.name}_marker.{extension}"
+                    results = self.session.export(target, marker)
+                self.guide["marker"] = cloth.marker(results)
+                self.outputs[f"marker_{extension}"] = target.name
         if self.options.picture:
             with self.progress.stage("picture"):
                 from devseg.render import render_pair

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from devseg import given
+from devseg import cloth, given
 from devseg.lengths import length, millimetres, number, size
 from devseg.methods import FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
 from devseg.pattern_options import (
@@ -220,7 +220,10 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         segmentation["charts_number"] = 0
     elif args.charts == 0 and "max_l2_stretch" not in method.options:
         parser.error(f"--charts auto does not apply to --method {method.name}")
+    cloth.check(args, parser)
     pattern = pattern_parameters(args)
+    if args.material and method.bounds_material:
+        segmentation["material"] = args.material
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
     flattening = args.flatten or method.flatten
