@@ -55,6 +55,8 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .real(&O::hem_allowance_mm, {"hem_allowance_mm", -1.0, 1e4}, "Hem allowance (mm)",
               "Width of the allowance along open borders of the model in millimetres. 0 = none, "
               "-1 = as along seams, and none around holes.")
+        .real(&O::dart_allowance_mm, {"dart_allowance_mm", -1.0, 1e4}, "Dart allowance (mm)",
+              "Width of the allowance along darts in millimetres. 0 = none, -1 = as along seams.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "
@@ -65,6 +67,10 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")
+        .choice(&O::notch_kind, "notch_kind", "Notches", {"Slit", "Triangle"},
+                "Slit: a line inwards. Triangle: a small triangle to cut out, for thick cloth.")
+        .boolean(&O::drill_marks, "drill_marks", "Drill marks",
+                 "A cross where each dart ends inside of its piece.")
         .boolean(&O::glue_tabs, "glue_tabs", "Glue tabs",
                  "A flap along one side of each seam. Flaps overlap no piece and no other flap: "
                  "they are made smaller or put on the other side.")
@@ -154,6 +160,10 @@ declare::Declare<O> with_cloth(declare::Declare<O> filter) {
                  "How many times the whole pattern lies on the cloth, a number.")
         .real(&O::piece_gap_mm, {"piece_gap_mm", 0.0, 1e3}, "Gap on the cloth (mm)",
               "Least distance of two pieces on the cloth in millimetres.")
+        .text(&O::sizes, "sizes", "Sizes",
+              "Heights of the finished model in millimetres, such as 200,250,300: all sizes over "
+              "each other in colours of their own, with the numbers of the largest. They replace "
+              "height_mm. Empty: the one size.")
         .choice(&O::effort, "effort", "Effort", {"Fast", "Normal", "Best"},
                 "How long a short layout on the cloth is looked for: Fast takes a third of "
                 "Normal, Best four times as long.");

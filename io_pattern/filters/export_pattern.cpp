@@ -9,6 +9,7 @@
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
 #include "sheet/sheet_drawing.h"
+#include "sheet/sizes.h"
 #include "writers/dxf_writer.h"
 #include "writers/font.h"
 #include "writers/pdf_writer.h"
@@ -100,6 +101,15 @@ Index printed_count(const sheet::PatternLayout& layout) {
 
 // A marker is one large sheet to cut, without pages about the model.
 sheet::ExportOptions format_options(sheet::ExportOptions options, Format format) {
+    const std::vector<double> sizes = sheet::read_sizes(options.sizes);
+    if (!sizes.empty()) {
+        if (options.is_marker() || format == Format::html ||
+            (format == Format::dxf && is_apparel(options)))
+            throw InvalidParameter("sizes: expected one file with all sizes in .svg, .pdf or .dxf "
+                                   "for cutters, found a marker, a page or apparel DXF; write a "
+                                   "file for each size (height_mm)");
+        options.height_mm = sizes.back();
+    }
     if (!options.is_marker())
         return options;
     if (format == Format::html)
@@ -123,8 +133,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
     const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
-    auto laying = progress.part(has_pictures ? 0.2 : 0.4);
+    auto laying = progress.part(has_pictures ? 0.15 : 0.3);
     sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
+    auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
+    if (!options.sizes.empty())
+        sheet::add_sizes(mesh, uv, pattern, options, layout, grading);
     auto writing = progress.part("writing", progress.left());
     PatternFile file;
     if (format == Format::pdf) {

@@ -9,6 +9,7 @@
 #include <QJsonObject>
 
 #include "devseg/pattern/inside.h"
+#include "sheet/cloth_texts.h"
 
 namespace devseg::page {
 

@@ -44,11 +44,14 @@ struct WidePoint {
     double width;
 };
 
-std::vector<WidePoint> distinct(const pattern::PiecePath& path, double seams, double hems) {
+std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceWidths& widths,
+                                double hems) {
     std::vector<WidePoint> ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const bool is_hem = i < path.edges.size() && path.edges[i].seam < 0;
-        const WidePoint next{path.points[i], is_hem ? hems : seams};
+        const pattern::OutlineSeam* edge = i < path.edges.size() ? &path.edges[i] : nullptr;
+        const bool is_hem = edge != nullptr && edge->seam < 0;
+        const bool is_dart = edge != nullptr && edge->is_dart;
+        const WidePoint next{path.points[i], is_hem ? hems : is_dart ? widths.darts : widths.seams};
         if (!ring.empty() && next.point == ring.back().point)
             ring.back() = next;
         else
@@ -257,7 +260,7 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
     ClipperLib::Clipper clipper;
     for (Index i = 0; i < piece.path_count(); ++i) {
         const double hems = i == 0 ? widths.hems : widths.hole_hems;
-        const std::vector<WidePoint> ring = distinct(piece.path(i), widths.seams, hems);
+        const std::vector<WidePoint> ring = distinct(piece.path(i), widths, hems);
         ClipperLib::Path path;
         if (ring.size() < 3)
             continue;

@@ -1,6 +1,7 @@
 // What surrounds a piece: seam allowance, or tabs to glue.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "devseg/base/progress.h"
@@ -12,18 +13,19 @@ namespace devseg::sheet {
 /// straight; or rounded. Concave corners are always trimmed to where the two sides meet.
 enum class CornerStyle { miter, bevel, round };
 
-/// Widths in mm along seams and along hems, the open borders of the model: those around holes, such
-/// as drilled ones, may have none.
+/// Widths in mm along seams, darts and hems, the open borders of the model: those around holes,
+/// such as drilled ones, may have none.
 struct AllowanceWidths {
     AllowanceWidths(double everywhere) : AllowanceWidths(everywhere, everywhere) {}
     AllowanceWidths(double along_seams, double along_hems)
         : AllowanceWidths(along_seams, along_hems, along_hems) {}
     AllowanceWidths(double along_seams, double along_hems, double around_holes)
-        : seams(along_seams), hems(along_hems), hole_hems(around_holes) {}
+        : seams(along_seams), darts(along_seams), hems(along_hems), hole_hems(around_holes) {}
 
-    double largest() const { return seams > hems ? seams : hems; }
+    double largest() const { return std::max({seams, darts, hems}); }
 
     double seams;
+    double darts; // seams that end inside of a piece
     double hems;
     double hole_hems;
 };

@@ -116,6 +116,8 @@ ExportOptions resolved(const ExportOptions& given) {
     check("seam_allowance_mm", options.seam_allowance_mm, 0.0, "a width of 0 mm or more");
     check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
+    check("dart_allowance_mm", options.dart_allowance_mm, -1.0,
+          "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");

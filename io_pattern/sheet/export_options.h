@@ -14,6 +14,8 @@ namespace devseg::sheet {
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
+/// Notches: a line from the edge of the cloth inwards, or a small triangle to cut out.
+enum class NotchKind { slit, triangle };
 /// What makes a group in an SVG: all of one operation, or all of one piece.
 enum class Grouping { layer, piece };
 /// How long layouts on cloth are looked for.
@@ -27,13 +29,16 @@ struct ExportOptions : pattern::PatternOptions {
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;
     double seam_allowance_mm = 0.0;
-    double hem_allowance_mm = -1.0; // along open borders; below 0: as along seams, holes none
+    double hem_allowance_mm = -1.0;  // along open borders; below 0: as along seams, holes none
+    double dart_allowance_mm = -1.0; // along darts; below 0: as along seams
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
     bool fold_lines = false;
     bool edge_numbers = false; // the number of each seam on both sides
     bool step_numbers = false; // behind each number, the step of the assembly that does the seam
+    NotchKind notch_kind = NotchKind::slit;
+    bool drill_marks = false; // where darts end
     bool grain_line = false;
     bool mirror = false;       // as seen from inside the model
     std::string page = "none"; // none, a4, letter, a3 or WxH in mm
@@ -57,6 +62,8 @@ struct ExportOptions : pattern::PatternOptions {
     double piece_gap_mm = 3.0;    // between two pieces on the cloth
     Effort effort = Effort::normal;
 
+    std::string sizes; // heights in mm, drawn over each other; empty: the one size
+
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
 
@@ -70,9 +77,12 @@ struct ExportOptions : pattern::PatternOptions {
     }
     bool is_marker() const { return fabric_width_mm > 0.0; }
     AllowanceWidths allowance() const {
-        if (hem_allowance_mm < 0.0)
-            return {seam_allowance_mm, seam_allowance_mm, 0.0};
-        return {seam_allowance_mm, hem_allowance_mm};
+        AllowanceWidths widths = hem_allowance_mm < 0.0
+                                     ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
+                                     : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
+        if (dart_allowance_mm >= 0.0)
+            widths.darts = dart_allowance_mm;
+        return widths;
     }
 };
 

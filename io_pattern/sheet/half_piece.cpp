@@ -55,8 +55,8 @@ SheetPiece half_piece(const SheetPiece& whole, const pattern::MirrorAxis& axis, 
                                     [](const std::vector<Vec2>& ring) { return ring.size() < 3; }),
                      rings->end());
     }
-    for (auto* lines :
-         {&half.slits, &half.mountains, &half.valleys, &half.openings, &half.grain, &half.leaders})
+    for (auto* lines : {&half.slits, &half.mountains, &half.valleys, &half.openings, &half.grain,
+                        &half.drills, &half.leaders})
         keep_right(*lines);
     half.notches.erase(std::remove_if(half.notches.begin(), half.notches.end(),
                                       [](const SheetNotch& n) { return n.outer.x() < 0.0; }),

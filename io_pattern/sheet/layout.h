@@ -57,6 +57,12 @@ struct FabricStrip {
     Index single_layer_pieces = 0; // cut from the upper layer of folded cloth alone
 };
 
+/// All pieces in another size, where those of the layout lie; cut lines, slits and notches.
+struct SizedPieces {
+    double height = 0.0; // mm, of the finished model
+    std::vector<SheetPiece> pieces;
+};
+
 struct PatternLayout {
     // In the order of the pattern, on their sheets. On a roll of cloth: what is cut of it, with
     // copies, and without what folded cloth gives of itself.
@@ -66,7 +72,8 @@ struct PatternLayout {
     LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
     std::optional<FabricStrip> fabric;
-    Index seams_without_tab = 0; // for lack of room, where tabs were asked for
+    std::vector<SizedPieces> sizes; // but the one of the layout
+    Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is

@@ -7,6 +7,7 @@
 #include "devseg/plane/plane.h"
 #include "sheet/drawing_plan.h"
 #include "sheet/marker.h"
+#include "sheet/sizes.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -127,10 +128,10 @@ std::vector<std::size_t> cutting_order(const std::vector<SheetPiece>& pieces) {
     return order;
 }
 
-void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
+void add_notches(const SheetPiece& piece, NotchKind kind, writers::DrawingLayer& layer) {
     std::vector<std::vector<Vec2>> lines;
     for (const SheetNotch& notch : piece.notches)
-        lines.push_back({notch.outer, notch.inner});
+        lines.push_back(notch.line(kind));
     add_lines(lines, false, piece, "-notch", layer);
 }
 
@@ -215,7 +216,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         add_lines(piece.mountains, false, piece, "-mountain", mountain);
         add_lines(piece.valleys, false, piece, "-valley", valley);
         add_lines(piece.grain, false, piece, "-grain", grain);
-        add_notches(piece, notch);
+        add_notches(piece, options.notch_kind, notch);
+        add_lines(piece.drills, false, piece, "-drill", notch);
         add_lines(piece.openings, false, piece, "-opening", notch);
         add_lines(piece.leaders, false, piece, "-leader", laser ? engrave : numbers);
         for (const auto& [texts, layer] : {std::pair(&piece.names, laser ? &engrave : &text),
@@ -240,6 +242,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         cut,     mountain, valley,  sew,
         notch,   grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
         numbers, text};
+    for (writers::DrawingLayer& layer : size_layers(layout, plan.sheets, options.notch_kind))
+        drawing.layers.push_back(std::move(layer));
     if (layout.fabric)
         drawing.layers.push_back(fabric_layer(layout, plan.sheets.front()));
     return drawing;

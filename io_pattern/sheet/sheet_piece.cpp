@@ -32,6 +32,9 @@ double for_size(double tolerance, const pattern::PatternPiece& piece) {
     return tolerance * std::min(1.0, piece.box.sizes().maxCoeff() / full_length);
 }
 
+// Half of a triangle's width at the edge, of its depth.
+constexpr double notch_slope = 0.5;
+
 // Of cut lines beside the sew line: what turns by more is a corner.
 constexpr double corner_turn = 0.35; // radians, 20 degrees
 
@@ -230,7 +233,7 @@ void add_kerf(const ExportOptions& options, const pattern::PatternPiece& piece,
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
     for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
-                        &piece.grain, &piece.leaders, &piece.openings})
+                        &piece.grain, &piece.leaders, &piece.openings, &piece.drills})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
@@ -251,6 +254,13 @@ void change_points(SheetPiece& piece, Change change) {
 }
 
 } // namespace
+
+std::vector<Vec2> SheetNotch::line(NotchKind kind) const {
+    if (kind == NotchKind::slit)
+        return {outer, inner};
+    const Vec2 aside = notch_slope * plane::left_of(Vec2(inner - outer));
+    return {outer - aside, inner, outer + aside};
+}
 
 Eigen::AlignedBox2d SheetPiece::box() const {
     Eigen::AlignedBox2d box;
@@ -330,6 +340,8 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index,
     if (options.fold_lines)
         add_folds(piece, result);
     add_notches(pattern, options, result);
+    if (options.drill_marks)
+        add_drills(pattern, result);
     if (options.grain_line)
         add_grain(piece, result);
     return result;

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,10 @@ MARKER_PARAMETERS = (
     "piece_gap_mm",
     "effort",
 )
+# Those that shape the pieces.
+PIECE_PARAMETERS = ("material", "kerf_mm", "thickness_mm", "bend_radius_mm", "k_factor")
+# Heights of which each gets files of its own; no parameter of the export.
+APART = "sizes_apart"
 _GATHERED_MM = 0.5  # sides of a seam that differ by more are told
 _OF_PIECE = {
     "along": "piece_strain_along",
@@ -56,6 +60,15 @@ def add_options(group: argparse._ArgumentGroup) -> None:
         metavar="G",
         help="best, longest, up, texture-v, free, or degrees from the texture's v; default: best",
     )
+    group.add_argument(
+        "--thickness-mm", type=millimetres(), metavar="T", help="pieces get shorter at bends"
+    )
+    group.add_argument(
+        "--bend-radius-mm", type=millimetres(), metavar="R", help="inner radius of sharp bends"
+    )
+    group.add_argument(
+        "--k-factor", type=_k_factor, metavar="K", help="neutral line of bends, from 0 to 1"
+    )
     group.add_argument("--kerf-mm", type=millimetres(), metavar="K", help="width of the cut")
     group.add_argument(
         "--fabric-width-mm",
@@ -69,6 +82,17 @@ def add_options(group: argparse._ArgumentGroup) -> None:
         dest="selvedge_mm",
         metavar="MM",
         help="at each side of the cloth, left empty; default: 0",
+    )
+    group.add_argument(
+        "--sizes",
+        type=sizes,
+        metavar="A,B,C",
+        help="heights of the finished object in mm, over each other in one file",
+    )
+    group.add_argument(
+        "--sizes-apart",
+        action="store_true",
+        help="a file NAME_A for each of the sizes instead",
     )
     group.add_argument("--copies", type=_copies, metavar="N", help="of all pieces; default: 1")
     group.add_argument(
@@ -119,6 +143,16 @@ def grain(text: str) -> dict[str, Any]:
     return {"grain": "Angle", "grain_angle": angle}
 
 
+def sizes(text: str) -> tuple[float, ...]:
+    """Heights in mm, ascending."""
+    found = [number(part) for part in text.split(",")]
+    if not all(size > 0 for size in found) or len(set(found)) < len(found):
+        raise argparse.ArgumentTypeError(
+            f"expected heights in mm that differ, such as 200,250,300, found '{text}'"
+        )
+    return tuple(sorted(found))
+
+
 def _copies(text: str) -> int:
     value = length(1)(text)
     if value != int(value) or value > 10_000:
@@ -126,17 +160,34 @@ def _copies(text: str) -> int:
     return int(value)
 
 
+def _k_factor(text: str) -> float:
+    value = number(text)
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"expected a share from 0 to 1, found '{text}'")
+    return value
+
+
 def parameters(args: argparse.Namespace) -> dict[str, Any]:
     """The parameters of the export that were given."""
-    names = ("material", "kerf_mm", *MARKER_PARAMETERS)
+    names = (*PIECE_PARAMETERS, *MARKER_PARAMETERS)
     given = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
     if "effort" in given:
         given["effort"] = EFFORTS[given["effort"]]
+    if args.sizes:
+        given["height_mm"] = args.sizes[-1]
+        if args.sizes_apart:
+            given[APART] = args.sizes
+        else:
+            given["sizes"] = ",".join(f"{size:.10g}" for size in args.sizes)
     return {**given, **(args.grain or {})}
 
 
 def check(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
     """Reports options of a marker that is not asked for, or that no format holds."""
+    if args.sizes_apart and not args.sizes:
+        parser.error("--sizes-apart needs --sizes")
+    if args.sizes and (args.height_mm or args.longest_mm or args.mm_per_unit):
+        parser.error("--sizes gives the height: leave --height-mm and its like out")
     given = [name for name in MARKER_PARAMETERS if getattr(args, name) is not None]
     if given and not args.fabric_width_mm:
         option = "selvedge" if given[0] == "selvedge_mm" else given[0].replace("_", "-")
@@ -150,7 +201,19 @@ def split(pattern: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     plain = {name: value for name, value in pattern.items() if name not in MARKER_PARAMETERS}
     if not pattern.get("fabric_width_mm"):
         return plain, {}
-    return plain, {k: v for k, v in pattern.items() if k not in ("page", "page_margin_mm")}
+    left_out = ("page", "page_margin_mm", "sizes", APART)
+    return plain, {k: v for k, v in pattern.items() if k not in left_out}
+
+
+def written(pattern: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The pattern files to write: what follows NAME, and the parameters of each."""
+    apart = pattern.get(APART)
+    if not apart:
+        yield "", dict(pattern)
+        return
+    rest = {name: value for name, value in pattern.items() if name not in (APART, "sizes")}
+    for size in apart:
+        yield f"_{size:g}", {**rest, "height_mm": size}
 
 
 def strains(results: Mapping[str, Any], material_text: str) -> dict[str, Any]:

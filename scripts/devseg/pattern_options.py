@@ -16,6 +16,7 @@ DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
 TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
+NOTCHES = {"slit": "Slit", "triangle": "Triangle"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -39,6 +40,15 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         type=millimetres(),
         metavar="A",
         help="along open borders; default: as seams",
+    )
+    group.add_argument(
+        "--dart-allowance-mm",
+        type=millimetres(),
+        metavar="A",
+        help="along darts; default: as seams",
+    )
+    group.add_argument(
+        "--notch-kind", choices=NOTCHES, help="a slit, or a triangle to cut out; default: slit"
     )
     group.add_argument(
         "--notch-spacing-mm",
@@ -93,6 +103,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("fold-lines", "mountain and valley folds"),
         ("edge-numbers", "the number of each seam on both sides"),
         ("step-numbers", "the step of the assembly behind each seam number"),
+        ("drill-marks", "a cross where each dart ends"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
     ):
@@ -123,6 +134,8 @@ _PARAMETERS = (
     "page_margin_mm",
     "seam_allowance_mm",
     "hem_allowance_mm",
+    "dart_allowance_mm",
+    "drill_marks",
     "max_piece_mm",
     "simplify_mm",
     "curve_mm",
@@ -148,11 +161,11 @@ _PARAMETERS = (
 OPTION_OF = {
     **{
         name: f"--{name.replace('_', '-')}"
-        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text")
+        for name in (*_PARAMETERS, "preset", "corner_style", "notch_kind", "group", "text")
     },
     **{
         name: f"--{name.replace('_', '-')}"
-        for name in ("material", "grain", "kerf_mm", *cloth.MARKER_PARAMETERS)
+        for name in ("grain", *cloth.PIECE_PARAMETERS, *cloth.MARKER_PARAMETERS)
     },
     "selvedge_mm": "--selvedge",
     "grain_angle": "--grain",
@@ -169,6 +182,7 @@ _CHOICES = {
     "preset": PRESETS,
     "dxf_kind": DXF_KINDS,
     "corner_style": CORNERS,
+    "notch_kind": NOTCHES,
     "group": GROUPS,
     "text": TEXTS,
 }

@@ -22,7 +22,16 @@ declare::Declare<O> with_material(declare::Declare<O> filter) {
                 "longest side, upwards on the model, at an angle to the texture's v, or along "
                 "that. Free: as they fit best, and layouts turn pieces as they like.")
         .real(&O::grain_angle, "Angle of the grain (degrees)",
-              "With the grain at an angle: degrees from the texture's v, counterclockwise.");
+              "With the grain at an angle: degrees from the texture's v, counterclockwise.")
+        .real(&O::thickness_mm, "Thickness (mm)",
+              "Thickness of the material in millimetres, which lies inside of the model's surface: "
+              "pieces get shorter where they bend. 0 = none.")
+        .real(&O::bend_radius_mm, "Radius of bends (mm)",
+              "Inner radius of sharp bends in millimetres. -1 = the least one of the material, or "
+              "the thickness.")
+        .real(&O::k_factor, "K factor",
+              "Where the length of a bend stays the same: share of the thickness from its inner "
+              "side. -1 = that of the material, or 0.5.");
 }
 
 } // namespace devseg::filters

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/pattern/bends.h"
 #include "devseg/pattern/cloth_strain.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
@@ -382,6 +383,9 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::curve_mm, {"curve_mm", 0.0, 1e3}},
             {&O::corner_angle, {"corner_angle", 0.0, 180.0}},
             {&O::fold_angle, {"fold_angle", 0.0, 180.0}},
+            {&O::thickness_mm, {"thickness_mm", 0.0, 1e3}},
+            {&O::bend_radius_mm, {"bend_radius_mm", -1.0, 1e4}},
+            {&O::k_factor, {"k_factor", -1.0, 1.0}},
             {&O::grain_angle, {"grain_angle", -180.0, 180.0}}};
 }
 
@@ -407,6 +411,8 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
     auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, refining);
+    if (const Bend bend = find_bend(options, pattern.material); bend.changes_lengths())
+        compensate_bends(mesh, split.charts, split.uv, bend, options.fold_angle * degrees, pattern);
 
     const auto placing = progress.part("placing pieces", 0.13);
     for (PatternPiece& piece : pattern.pieces) {

@@ -30,8 +30,11 @@ struct PatternOptions {
     double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::best;
-    double grain_angle = 0.0; // degrees from the texture's v, counterclockwise
-    std::string material;     // material::read_material; empty: none
+    double grain_angle = 0.0;     // degrees from the texture's v, counterclockwise
+    double thickness_mm = 0.0;    // of the material, inside of the mesh
+    double bend_radius_mm = -1.0; // of sharp bends; below 0: as the material says, or the thickness
+    double k_factor = -1.0;       // neutral line; below 0: as the material says, or 0.5
+    std::string material;         // material::read_material; empty: none
 
     static OptionRanges<PatternOptions> ranges();
 };
