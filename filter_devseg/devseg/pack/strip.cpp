@@ -33,16 +33,21 @@ struct Tuning {
     // Shrinking: the first step as a share of the length, the work in cell operations of one
     // attempt and of all, and when steps become smaller.
     double first_step = 0.05;
-    double least_step = 0.001;
-    double attempt_work = 1.5e8;
-    double coarse_work = 2.4e9;
-    double fine_attempt_work = 1.0e8;
-    double fine_work = 0.9e9;
-    int patience = 60; // rounds without progress
+    double attempt_work = 4.0e8;
+    double coarse_work = 4.0e9;
+    double fine_attempt_work = 2.0e8;
+    double fine_work = 2.0e9;
+    std::uint64_t searches = 8; // on the coarse grid
+    int patience = 60;          // rounds without progress
     int fine_patience = 40;
-    Index fine_reach = 9; // cells
-    int failures = 3;     // at one step, before it is halved
-    double grown = 1.004; // of the length, until the fine grid holds the layout
+    Index fine_reach = 9;   // cells
+    int failures = 3;       // at one step, before it is halved
+    int last_failures = 24; // at a step of one cell, before the end
+    double attempt_overhead = 2.0e6;
+    // Until the fine grid holds the layout: its length grows, with so much work each time.
+    double grown = 1.006;
+    double separating_work = 1.5e8;
+    int attempts = 16;
 };
 constexpr Tuning tuning;
 
@@ -120,6 +125,17 @@ void crop(Index columns, double cell, bool keep_left, ChartCells& image) {
     image.offset.x() -= left * cell;
 }
 
+// Of all items one above the other.
+Index total_height(const std::vector<ChartPoses>& poses) {
+    Index total = 0;
+    for (const ChartPoses& item : poses)
+        total += std::max_element(
+                     item.begin(), item.end(),
+                     [](const ChartCells& p, const ChartCells& q) { return p.height < q.height; })
+                     ->height;
+    return total;
+}
+
 class StripSearch {
 public:
     StripSearch(const std::vector<StripItem>& items, const StripOptions& options,
@@ -137,9 +153,8 @@ public:
     }
 
     StripResult run() {
-        Strip strip = begin();
-        shrink(strip, {0, 8, tuning.patience}, tuning.attempt_work, tuning.coarse_work, 0x5eed,
-               0.5);
+        const Strip first = begin();
+        Strip strip = search(first);
         refine(strip);
         std::vector<Placement> placements(items_.size());
         for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -175,47 +190,56 @@ private:
             },
             drawing);
         strip.frame.width = columns;
-        Index total = 0;
-        for (const ChartPoses& poses : strip.poses)
-            total += std::max_element(poses.begin(), poses.end(),
-                                      [](const ChartCells& p, const ChartCells& q) {
-                                          return p.height < q.height;
-                                      })
-                         ->height;
-        strip.frame.height = total;
+        strip.frame.height = total_height(strip.poses);
         Separation separation(strip.poses, 0, progress_, at_left_);
         strip.layout = separation.fit_all(by_size(strip.poses), strip.frame);
         strip.frame.height = used_height(strip.poses, strip.layout);
         return strip;
     }
 
-    void shrink(Strip& strip, const SeparationOptions& moves, double attempt, double all,
-                std::uint64_t seed, double share) {
-        auto shrinking = progress_.part(share);
-        Separation separation(strip.poses, seed, shrinking, at_left_);
-        const auto whole = static_cast<std::int64_t>(options_.effort * all);
-        std::int64_t budget = whole;
+    // The shortest of what several searches find, as far as the work goes.
+    Strip search(const Strip& first) {
+        auto searching = progress_.part(0.5);
+        const auto all = static_cast<std::int64_t>(options_.effort * tuning.coarse_work);
+        std::int64_t budget = all;
+        Strip best = first;
+        for (std::uint64_t seed = 1; seed <= tuning.searches && budget > 0; ++seed) {
+            Strip strip = first;
+            shrink(strip, {0, 8, tuning.patience}, tuning.attempt_work, budget, seed);
+            if (strip.frame.height < best.frame.height)
+                best = std::move(strip);
+            searching.update(1.0 - static_cast<double>(std::max<std::int64_t>(budget, 0)) /
+                                       static_cast<double>(all));
+        }
+        return best;
+    }
+
+    // Subtracts from the budget what it took.
+    void shrink(Strip& strip, const SeparationOptions& moves, double attempt, std::int64_t& budget,
+                std::uint64_t seed) const {
+        Separation separation(strip.poses, seed, progress_, at_left_);
         double step = tuning.first_step;
         int failures = 0;
-        while (budget > 0 && step >= tuning.least_step) {
+        while (budget > 0) {
             const auto cells =
                 std::max(Index{1}, static_cast<Index>(std::lround(step * strip.frame.height)));
             const Frame next{strip.frame.width, strip.frame.height - cells};
+            if (cells == 1 && !separation.fits(next))
+                break; // as high as its highest item
             std::int64_t work = std::min(budget, static_cast<std::int64_t>(attempt));
             const std::int64_t before = work;
             Layout layout = strip.layout;
             const bool found = separation.run(layout, next, moves, work);
-            budget -= std::max<std::int64_t>(before - work, 1);
-            shrinking.update(1.0 - static_cast<double>(std::max<std::int64_t>(budget, 0)) /
-                                       static_cast<double>(whole));
+            budget -= before - work + static_cast<std::int64_t>(tuning.attempt_overhead);
             if (found) {
                 strip.layout = std::move(layout);
                 strip.frame.height = used_height(strip.poses, strip.layout);
                 failures = 0;
-            } else if (++failures >= tuning.failures) {
-                // One cell is the least there is: tried again until the work is used up.
-                step = cells > 1 ? 0.5 * step : step;
+            } else if (++failures >= (cells > 1 ? tuning.failures : tuning.last_failures)) {
+                step *= 0.5;
                 failures = 0;
+                if (cells == 1)
+                    break; // the least step there is
             }
         }
     }
@@ -252,18 +276,28 @@ private:
             drawing);
         const SeparationOptions moves{tuning.fine_reach, 2 * tuning.fine_turns + 1,
                                       tuning.fine_patience};
-        fine.frame.height = static_cast<Index>(std::ceil(strip.frame.height * tuning.finer));
-        Separation separation(fine.poses, 1, progress_, at_left_);
-        while (true) {
-            auto work = static_cast<std::int64_t>(tuning.fine_attempt_work);
-            if (separation.run(fine.layout, fine.frame, moves, work))
-                break;
-            fine.frame.height = static_cast<Index>(
-                std::ceil(tuning.grown * static_cast<double>(fine.frame.height)));
-        }
+        separate(strip, moves, fine);
         fine.frame.height = used_height(fine.poses, fine.layout);
-        shrink(fine, moves, tuning.fine_attempt_work, tuning.fine_work, 2, 0.3);
+        auto budget = static_cast<std::int64_t>(options_.effort * tuning.fine_work);
+        shrink(fine, moves, tuning.fine_attempt_work, budget, 2);
         strip = std::move(fine);
+    }
+
+    // Conservative images overlap where faithful ones do not: the layout is drawn out as little as
+    // it takes to separate them, or made anew.
+    void separate(const Strip& coarse, const SeparationOptions& moves, Strip& fine) const {
+        Separation separation(fine.poses, 1, progress_, at_left_);
+        double drawn = tuning.finer;
+        for (int attempt = 0; attempt < tuning.attempts; ++attempt, drawn *= tuning.grown) {
+            fine.frame.height = static_cast<Index>(std::ceil(drawn * coarse.frame.height)) + 2;
+            for (std::size_t i = 0; i < items_.size(); ++i)
+                fine.layout[i].y = static_cast<Index>(coarse.layout[i].y * drawn);
+            auto work = static_cast<std::int64_t>(tuning.separating_work);
+            if (separation.run(fine.layout, fine.frame, moves, work))
+                return;
+        }
+        fine.frame.height = total_height(fine.poses);
+        fine.layout = separation.fit_all(by_size(fine.poses), fine.frame);
     }
 
     StripResult finish(std::vector<Placement> placements) const {
