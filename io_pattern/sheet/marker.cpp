@@ -211,7 +211,7 @@ writers::DrawingLayer fabric_layer(const PatternLayout& layout, const Vec2& low)
     writers::DrawingLayer layer{"fabric", "Fabric", "#666666", {}, {}, {}};
     const FabricStrip& fabric = *layout.fabric;
     const Vec2 seen(fabric.is_folded ? 0.5 * fabric.width : fabric.width, fabric.length);
-    layer.paths.push_back({"fabric", {rectangle(low, seen)}});
+    layer.paths.push_back({"fabric-outline", {rectangle(low, seen)}});
     if (fabric.selvedge > 0.0) {
         const double right = low.x() + seen.x() - fabric.selvedge;
         writers::DrawingPath lines{"selvedge", {}};

@@ -59,7 +59,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--seams",
         choices=("smooth", "edges"),
         help="smooth curves, which split faces, or edges of the mesh; default: smooth in patterns "
-        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges",
+        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges, also "
+        "where --material bounds the strain of patches",
     )
     parser.add_argument(
         "--formats",
@@ -256,6 +257,8 @@ def _smooth_seams(
         parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
     if args.seams or args.charts_from or args.keep_seams:
         return args.seams == "smooth"  # seams that somebody has chosen stay where they are
+    if args.material and METHODS[args.method].bounds_material:
+        return False  # patches were judged with their seams on edges: curves strain them more
     is_pattern = any(kind in PATTERN_FORMATS for kind in args.formats)
     fits = args.method in SMOOTH_METHODS and not args.keep_texcoords
     return fits and is_pattern and pattern.get("preset") != PRESETS["papercraft"]
