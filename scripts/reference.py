@@ -1,7 +1,8 @@
 """Writes what is generated from the filter declarations.
 
-These are docs/filters.md, the tables in the pages of docs/methods and in README.md, the scripts of
-scripts/mlx, and the methods of the command line in scripts/devseg/methods_table.py.
+These are docs/filters.md, docs/materials.md, the tables in the pages of docs/methods and in
+README.md, the scripts of scripts/mlx, and the methods of the command line in
+scripts/devseg/methods_table.py.
 
 .venv/bin/python scripts/reference.py           writes the files that have changed
 .venv/bin/python scripts/reference.py --check   fails where a file is not up to date
@@ -32,6 +33,7 @@ TABLES = re.compile(r"(?<=^<!-- parameters of )(\w+)( -->\n)(.*?)(?=^<!-- end --
 RUNS = "<!-- what was run -->\n"
 FILTERS = "<!-- filters -->\n"
 METHODS = "<!-- methods -->\n"
+MATERIALS = "<!-- materials -->\n"
 STAGES = "<!-- stages -->\n"
 # Larger bounds of parameters are no bounds.
 UNBOUNDED = 1e6
@@ -95,6 +97,29 @@ def declarations() -> list[dict[str, Any]]:
             if parameter["kind"] == "real":
                 parameter["default"] = float(parameter["default"])
     return table
+
+
+def materials_page(page: str) -> str:
+    """docs/materials.md with the table of materials, as the plugins hold it."""
+    done = subprocess.run([DESCRIBE, "materials"], capture_output=True, text=True, check=True)
+    table = json.loads(done.stdout)
+    shares = ("warp", "weft", "bias", "compression")
+
+    def cell(key: str, value: float | bool) -> str:
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        return f"{100 * value:g} %" if key in shares else f"{value:g}"
+
+    keys = [value["key"] for value in table["values"]]
+    lines = [_row("material", *(f"`{key}`" for key in keys)), _row(*["---"] * (len(keys) + 1))]
+    lines += [_row(m["name"], *(cell(key, m[key]) for key in keys)) for m in table["materials"]]
+    lines += ["", *(f"- `{value['key']}`: {value['meaning']}" for value in table["values"])]
+    sources: dict[str, list[str]] = {}
+    for m in table["materials"]:
+        sources.setdefault(m["source"], []).append(m["name"])
+    lines += ["", "Where the values are from:", ""]
+    lines += [f"- {', '.join(names)}: {source}." for source, names in sources.items()]
+    return replaced(page, MATERIALS, "\n".join(lines))
 
 
 def makes_layer(filter_: dict[str, Any]) -> bool:
@@ -347,6 +372,8 @@ def generated_files() -> dict[Path, str]:
     pages = method_pages()
     files = {path: filled(path, text, table) for path, text in pages.items()}
     files[Path("docs") / "filters.md"] = filters_page(table, page_of_filter(pages))
+    materials = Path("docs") / "materials.md"
+    files[materials] = materials_page((ROOT / materials).read_text())
     index, readme = METHOD_PAGES / "README.md", Path("README.md")
     files[index] = methods_index((ROOT / index).read_text(), table, pages)
     files[readme] = readme_table((ROOT / readme).read_text(), table)

@@ -1,8 +1,11 @@
 #include "filters/export_filter.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "devseg/declare/declare.h"
+#include "devseg/filters/material_parameters.h"
 #include "devseg/filters/table.h"
 #include "filters/export_pattern.h"
 #include "writers/file.h"
@@ -52,6 +55,8 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .real(&O::hem_allowance_mm, {"hem_allowance_mm", -1.0, 1e4}, "Hem allowance (mm)",
               "Width of the allowance along open borders of the model in millimetres. 0 = none, "
               "-1 = as along seams, and none around holes.")
+        .real(&O::dart_allowance_mm, {"dart_allowance_mm", -1.0, 1e4}, "Dart allowance (mm)",
+              "Width of the allowance along darts in millimetres. 0 = none, -1 = as along seams.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "
@@ -62,6 +67,10 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")
+        .choice(&O::notch_kind, "notch_kind", "Notches", {"Slit", "Triangle"},
+                "Slit: a line inwards. Triangle: a small triangle to cut out, for thick cloth.")
+        .boolean(&O::drill_marks, "drill_marks", "Drill marks",
+                 "A cross where each dart ends inside of its piece.")
         .boolean(&O::glue_tabs, "glue_tabs", "Glue tabs",
                  "A flap along one side of each seam. Flaps overlap no piece and no other flap: "
                  "they are made smaller or put on the other side.")
@@ -154,6 +163,35 @@ declare::Declare<O> with_guide(declare::Declare<O> filter) {
               "Stuffing (g per litre)", "Mass of the stuffing, in the unit gram per litre.");
 }
 
+declare::Declare<O> with_cloth(declare::Declare<O> filter) {
+    return filters::with_material(filter)
+        .real(&O::kerf_mm, {"kerf_mm", -1.0, 100.0}, "Kerf (mm)",
+              "Width that the cut burns away, in millimetres: outlines move outwards and holes "
+              "inwards by half of it. -1 = that of the material with the preset Laser, else 0.")
+        .real(&O::fabric_width_mm, {"fabric_width_mm", 0.0, 1e5}, "Width of the cloth (mm)",
+              "Lays all pieces on a roll of cloth of this width in millimetres, as short as it "
+              "can: a marker, in SVG, PDF or DXF for cutters. 0 = no marker.")
+        .real(&O::selvedge_mm, {"selvedge_mm", 0.0, 1e4}, "Selvedge (mm)",
+              "Width at each side of the cloth that no piece lies on, in millimetres.")
+        .boolean(&O::fold, "fold", "Folded cloth",
+                 "The cloth is folded along its length: pieces and their mirror images are cut at "
+                 "once, and pieces that are their own mirror images lie along the fold.")
+        .boolean(&O::nap, "nap", "Nap",
+                 "All pieces lie the same way round, as pile and prints want it. Materials with a "
+                 "nap do so by themselves.")
+        .integer(&O::copies, {"copies", 1.0, 1e4}, "Copies",
+                 "How many times the whole pattern lies on the cloth, a number.")
+        .real(&O::piece_gap_mm, {"piece_gap_mm", 0.0, 1e3}, "Gap on the cloth (mm)",
+              "Least distance of two pieces on the cloth in millimetres.")
+        .text(&O::sizes, "sizes", "Sizes",
+              "Heights of the finished model in millimetres, such as 200,250,300: all sizes over "
+              "each other in colours of their own, with the numbers of the largest. They replace "
+              "height_mm. Empty: the one size.")
+        .choice(&O::effort, "effort", "Effort", {"Fast", "Normal", "Best"},
+                "How long a short layout on the cloth is looked for: Fast takes a third of "
+                "Normal, Best four times as long.");
+}
+
 // The assembly and what it needs, as numbers: pieces, seams and steps in their order.
 declare::ResultValues guide_values(const PatternFile& file) {
     const assembly::Assembly& plan = file.assembly;
@@ -182,6 +220,30 @@ declare::ResultValues guide_values(const PatternFile& file) {
             {"paper_sheets_number", file.needs.sheets_of_paper}};
 }
 
+// How the material is strained in each piece, and the cloth of a marker.
+declare::ResultValues cloth_values(const PatternFile& file) {
+    using Strain = pattern::ClothStrain;
+    const auto above = std::count_if(file.cloth.begin(), file.cloth.end(),
+                                     [](const Strain& strain) { return !strain.is_within; });
+    return {{"piece_strain_along", declare::column(file.cloth, &Strain::along)},
+            {"piece_strain_along_95", declare::column(file.cloth, &Strain::along_95)},
+            {"piece_strain_across", declare::column(file.cloth, &Strain::across)},
+            {"piece_strain_across_95", declare::column(file.cloth, &Strain::across_95)},
+            {"piece_limit_use", declare::column(file.cloth, &Strain::use_99)},
+            {"piece_worst_use", declare::column(file.cloth, &Strain::worst_use)},
+            {"piece_worst_x_mm",
+             declare::column(file.cloth, [](const Strain& s) { return s.worst_place.x(); })},
+            {"piece_worst_y_mm",
+             declare::column(file.cloth, [](const Strain& s) { return s.worst_place.y(); })},
+            {"pieces_above_limits_number", static_cast<int>(above)},
+            {"seam_ease_mm",
+             declare::column(file.seam_list,
+                             [](const pattern::Seam& seam) { return std::abs(seam.mismatch()); })},
+            {"fabric_length_mm", file.fabric.length},
+            {"fabric_use", file.fabric.use},
+            {"single_layer_pieces_number", static_cast<int>(file.fabric.single_layer_pieces)}};
+}
+
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
     PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
@@ -194,8 +256,8 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
                      {"untabbed_seams_number", file.untabbed_seams},
                      {"sheets_number", file.sheets},
                      {"pages_number", file.pages}};
-    for (auto& value : guide_values(file))
-        output.values.push_back(std::move(value));
+    for (const auto& values : {guide_values(file), cloth_values(file)})
+        output.values.insert(output.values.end(), values.begin(), values.end());
     output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
         writers::save_file(path, bytes);
     };
@@ -206,12 +268,12 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
 
 const declare::FilterDeclaration& export_filter() {
     static const declare::FilterDeclaration filter =
-        with_guide(with_files(with_paper(with_seams(with_scale(
+        with_cloth(with_guide(with_files(with_paper(with_seams(with_scale(
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
                                  "File to write; its extension says the format: .svg, .pdf, "
-                                 ".dxf or .html."))))))
+                                 ".dxf or .html.")))))))
             .needs_uv()
             .shows_outside()
             .result("pieces_number", "pieces in the file")
@@ -241,6 +303,21 @@ const declare::FilterDeclaration& export_filter() {
             .result("stuffing_litres", "volume of the closed solids in litres")
             .result("stuffing_g", "mass of the stuffing in grams")
             .result("paper_sheets_number", "pages of the pattern alone; 0 without a page size")
+            .result("piece_strain_along", "of each piece, where there is a material: largest "
+                                          "strain along the grain on the model, 0.05 = 5 %")
+            .result("piece_strain_along_95", "what 95 % of the area keeps")
+            .result("piece_strain_across", "the largest across the grain")
+            .result("piece_strain_across_95", "what 95 % of the area keeps")
+            .result("piece_limit_use", "strain over what the material bears in its direction, on "
+                                       "99 % of the area; within the limits up to 1")
+            .result("piece_worst_use", "the same of the worst face; within the limits up to 2")
+            .result("piece_worst_x_mm", "where that is in the layout of the pattern, in mm")
+            .result("piece_worst_y_mm", "the same upwards")
+            .result("pieces_above_limits_number", "pieces that strain the material too much")
+            .result("seam_ease_mm", "of each seam, how much longer one side is, to be gathered")
+            .result("fabric_length_mm", "length of the cloth of a marker; 0 = no marker")
+            .result("fabric_use", "share of the cloth between selvedges that pieces cover")
+            .result("single_layer_pieces_number", "pieces cut from one layer of folded cloth")
             .runs(run_export);
     return filter;
 }

@@ -9,6 +9,7 @@
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
 #include "sheet/sheet_drawing.h"
+#include "sheet/sizes.h"
 #include "writers/dxf_writer.h"
 #include "writers/font.h"
 #include "writers/pdf_writer.h"
@@ -65,7 +66,7 @@ std::string today() {
 
 bool is_apparel(const sheet::ExportOptions& options) {
     return options.dxf_kind == sheet::DxfKind::apparel ||
-           (options.dxf_kind == sheet::DxfKind::automatic &&
+           (!options.is_marker() && options.dxf_kind == sheet::DxfKind::automatic &&
             options.preset == sheet::PatternPreset::sewing);
 }
 
@@ -97,18 +98,46 @@ Index printed_count(const sheet::PatternLayout& layout) {
     return static_cast<Index>(sheet::printed_pages(layout, places).size());
 }
 
+// A marker is one large sheet to cut, without pages about the model.
+sheet::ExportOptions format_options(sheet::ExportOptions options, Format format) {
+    const std::vector<double> sizes = sheet::read_sizes(options.sizes);
+    if (!sizes.empty()) {
+        if (options.is_marker() || format == Format::html ||
+            (format == Format::dxf && is_apparel(options)))
+            throw InvalidParameter("sizes: expected one file with all sizes in .svg, .pdf or .dxf "
+                                   "for cutters, found a marker, a page or apparel DXF; write a "
+                                   "file for each size (height_mm)");
+        options.height_mm = sizes.back();
+    }
+    if (!options.is_marker())
+        return options;
+    if (format == Format::html)
+        throw InvalidParameter("fabric_width_mm: expected a marker in .svg, .pdf or .dxf, found "
+                               ".html; leave fabric_width_mm out");
+    if (options.dxf_kind == sheet::DxfKind::apparel && format == Format::dxf)
+        throw InvalidParameter("dxf_kind: expected Cutter for a marker, found Apparel, which has "
+                               "pieces and no layout");
+    options.cover = false;
+    options.edge_numbers = options.edge_numbers && !options.fold; // halves have half of them
+    return options;
+}
+
 } // namespace
 
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
                               const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
-    const sheet::ExportOptions options = sheet::limited_to_page(sheet::resolved(given));
+    const sheet::ExportOptions options =
+        sheet::limited_to_page(format_options(sheet::resolved(given), format));
     sheet::page_format(options); // says what is wrong with it before the work begins
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
     const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
-    auto laying = progress.part(has_pictures ? 0.2 : 0.4);
+    auto laying = progress.part(has_pictures ? 0.15 : 0.3);
     sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
+    auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
+    if (!options.sizes.empty())
+        sheet::add_sizes(mesh, uv, pattern, options, layout, grading);
     auto writing = progress.part("writing", progress.left());
     PatternFile file;
     if (format == Format::pdf) {
@@ -138,6 +167,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
     file.assembly = layout.assembly;
     file.seam_list = pattern.seams;
+    for (const pattern::PatternPiece& piece : pattern.pieces)
+        if (pattern.material)
+            file.cloth.push_back(piece.cloth);
+    if (layout.fabric)
+        file.fabric = *layout.fabric;
     file.notes = pattern.notes;
     const int missing = writers::missing_glyphs(title_of(options.output_file));
     if (missing > 0 && format == Format::pdf)

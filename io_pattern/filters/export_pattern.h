@@ -7,6 +7,7 @@
 #include "devseg/atlas/texture.h"
 #include "devseg/base/progress.h"
 #include "sheet/export_options.h"
+#include "sheet/layout.h"
 #include "sheet/needs.h"
 
 namespace devseg::exporting {
@@ -22,8 +23,10 @@ struct PatternFile {
     sheet::Needs needs;
     assembly::Assembly assembly;
     std::vector<pattern::Seam> seam_list;
-    Index pages = 0;                // of a PDF; 0 for other formats
-    std::vector<std::string> notes; // for the user, one sentence each
+    std::vector<pattern::ClothStrain> cloth; // of each piece, where there is a material
+    sheet::FabricStrip fabric;               // of a marker
+    Index pages = 0;                         // of a PDF; 0 for other formats
+    std::vector<std::string> notes;          // for the user, one sentence each
 };
 
 /// The file options.output_file in the format of its extension; the caller writes it. Throws

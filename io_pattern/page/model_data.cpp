@@ -9,6 +9,7 @@
 #include <QJsonObject>
 
 #include "devseg/pattern/inside.h"
+#include "sheet/cloth_texts.h"
 
 namespace devseg::page {
 
@@ -89,6 +90,8 @@ public:
             data["area"] = rounded(1e-2 * piece.area);
             data["extension"] = rounded(100.0 * piece.strain.extension);
             data["compression"] = rounded(100.0 * piece.strain.compression);
+            if (pattern_.material)
+                data["cloth"] = text(sheet::cloth_text(pattern_, piece));
             result.append(data);
         }
         return result;

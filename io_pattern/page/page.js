@@ -16,7 +16,8 @@ const TEXT = {
   all: (n) => `${n} steps. Press Next to see the first.`,
   stepOf: (n, count, text) => `Step ${n} of ${count}. ${text}`,
   piece: (p) => `${p.name}, section ${p.section}: ${p.length} × ${p.width} mm, ${p.area} cm². ` +
-    `Strained from −${p.compression} % to +${p.extension} % at the worst places.`,
+    `Strained from −${p.compression} % to +${p.extension} % at the worst places.` +
+    (p.cloth ? ` On the model: ${p.cloth}.` : ""),
   seam: (s, names, allowance) => `Seam ${s.label}${s.dart ? " (dart)" : ""}: ${names[0]} ` +
     `${s.sides[0].mm} mm to ${names[1]} ${s.sides[1].mm} mm` +
     (allowance > 0 ? `, allowance ${allowance} mm` : "") + `, done in step ${s.step}. ` +

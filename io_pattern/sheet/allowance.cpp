@@ -43,11 +43,14 @@ struct WidePoint {
     double width;
 };
 
-std::vector<WidePoint> distinct(const pattern::PiecePath& path, double seams, double hems) {
+std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceWidths& widths,
+                                double hems) {
     std::vector<WidePoint> ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const bool is_hem = i < path.edges.size() && path.edges[i].seam < 0;
-        const WidePoint next{path.points[i], is_hem ? hems : seams};
+        const pattern::OutlineSeam* edge = i < path.edges.size() ? &path.edges[i] : nullptr;
+        const bool is_hem = edge != nullptr && edge->seam < 0;
+        const bool is_dart = edge != nullptr && edge->is_dart;
+        const WidePoint next{path.points[i], is_hem ? hems : is_dart ? widths.darts : widths.seams};
         if (!ring.empty() && next.point == ring.back().point)
             ring.back() = next;
         else
@@ -121,7 +124,7 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
     ClipperLib::Clipper clipper;
     for (Index i = 0; i < piece.path_count(); ++i) {
         const double hems = i == 0 ? widths.hems : widths.hole_hems;
-        const std::vector<WidePoint> ring = distinct(piece.path(i), widths.seams, hems);
+        const std::vector<WidePoint> ring = distinct(piece.path(i), widths, hems);
         ClipperLib::Path path;
         if (ring.size() < 3)
             continue;
@@ -150,6 +153,35 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
         rings.push_back(std::move(ring));
     }
     return rings;
+}
+
+std::vector<Ring> grown_rings(const std::vector<Ring>& rings, double distance) {
+    const Eigen::AlignedBox2d box = plane::box_of(rings.front());
+    const Vec2 centre = box.center();
+    const double grid = (box.sizes().maxCoeff() + 2.0 * miter_limit * distance) / grid_size;
+    ClipperLib::ClipperOffset offset(miter_limit);
+    for (const Ring& ring : rings) {
+        ClipperLib::Path path;
+        for (const Vec2& p : ring) {
+            const Vec2 q = (p - centre) / grid;
+            path.emplace_back(std::llround(q.x()), std::llround(q.y()));
+        }
+        offset.AddPath(path, ClipperLib::jtMiter, ClipperLib::etClosedPolygon);
+    }
+    ClipperLib::Paths solution;
+    offset.Execute(solution, distance / grid);
+    std::stable_sort(solution.begin(), solution.end(),
+                     [](const ClipperLib::Path& a, const ClipperLib::Path& b) {
+                         return ClipperLib::Area(a) > ClipperLib::Area(b);
+                     });
+    std::vector<Ring> grown;
+    for (const ClipperLib::Path& path : solution) {
+        grown.emplace_back();
+        for (const ClipperLib::IntPoint& p : path)
+            grown.back().push_back(centre +
+                                   grid * Vec2(static_cast<double>(p.X), static_cast<double>(p.Y)));
+    }
+    return grown;
 }
 
 } // namespace devseg::sheet

@@ -1,6 +1,7 @@
 // What surrounds a piece that is sewn: the seam allowance.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "devseg/pattern/pattern.h"
@@ -11,18 +12,19 @@ namespace devseg::sheet {
 /// straight; or rounded. Concave corners are always trimmed to where the two sides meet.
 enum class CornerStyle { miter, bevel, round };
 
-/// Widths in mm along seams and along hems, the open borders of the model: those around holes, such
-/// as drilled ones, may have none.
+/// Widths in mm along seams, darts and hems, the open borders of the model: those around holes,
+/// such as drilled ones, may have none.
 struct AllowanceWidths {
     AllowanceWidths(double everywhere) : AllowanceWidths(everywhere, everywhere) {}
     AllowanceWidths(double along_seams, double along_hems)
         : AllowanceWidths(along_seams, along_hems, along_hems) {}
     AllowanceWidths(double along_seams, double along_hems, double around_holes)
-        : seams(along_seams), hems(along_hems), hole_hems(around_holes) {}
+        : seams(along_seams), darts(along_seams), hems(along_hems), hole_hems(around_holes) {}
 
-    double largest() const { return seams > hems ? seams : hems; }
+    double largest() const { return std::max({seams, darts, hems}); }
 
     double seams;
+    double darts; // seams that end inside of a piece
     double hems;
     double hole_hems;
 };
@@ -33,5 +35,10 @@ struct AllowanceWidths {
 /// line steps from one width to the other. Edges that say nothing (PiecePath::edges) are seams.
 std::vector<std::vector<Vec2>> add_allowance(const pattern::PatternPiece& piece,
                                              const AllowanceWidths& widths, CornerStyle corners);
+
+/// Closed rings, the outer one first, moved away from the piece by `distance` (mm): the outer one
+/// outwards, holes inwards, where they may vanish. Corners stay pointed, as those of allowances.
+std::vector<std::vector<Vec2>> grown_rings(const std::vector<std::vector<Vec2>>& rings,
+                                           double distance);
 
 } // namespace devseg::sheet

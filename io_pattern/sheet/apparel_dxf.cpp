@@ -107,6 +107,11 @@ void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const 
     write_lines(file, "8", piece.valleys, false);
     for (const SheetNotch& notch : piece.notches)
         write_notch(file, notch);
+    for (std::size_t i = 0; i + 1 < piece.drills.size(); i += 2) { // crosses have two lines
+        file.group(0, "POINT");
+        file.group(8, "13");
+        file.point(0.5 * (piece.drills[i].front() + piece.drills[i].back()));
+    }
     if (piece.grain_line[0] != piece.grain_line[1])
         file.line("7", piece.grain_line[0], piece.grain_line[1]);
     std::vector<std::string> seams;
@@ -120,7 +125,7 @@ void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const 
     write_texts(file, "1", place + Vec2(0.0, 6.0 * apparel_pitch),
                 {"Piece Name: " + piece.name, "Size: M", "Quantity: " + quantity(source),
                  "Annotation: " + annotation(source, pattern), "Category: PATTERN",
-                 "Fabric: MAIN"});
+                 "Fabric: " + (pattern.material ? code(pattern.material->name) : "MAIN")});
     file.group(0, "ENDBLK");
     file.group(8, "1");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sheet/cloth_texts.h"
 #include "sheet/needs.h"
 #include "writers/text.h"
 
@@ -436,6 +437,8 @@ std::vector<writers::DocumentPage> cover_pages(const pattern::Pattern& pattern,
     add_pictures(pattern.mesh, pattern, book);
     add_table(table_rows(pattern, layout, pages), book);
     add_guide(pattern, layout, pages, options, book);
+    for (const std::string& text : cloth_texts(pattern))
+        add_paragraph(text, 0.0, book);
     for (const std::string& text : note_texts(pattern, layout)) {
         book.advance(0.5 * cover_pitch);
         add_paragraph(text, 0.0, book);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devseg/base/errors.h"
+#include "devseg/material/material.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -63,6 +64,54 @@ Vec2 page_size(const std::string& given) {
                            given + "'");
 }
 
+// What the material says where nobody else does.
+void take_material(ExportOptions& options) {
+    const bool burns = options.preset == PatternPreset::laser;
+    if (options.material.empty()) {
+        options.kerf_mm = std::max(0.0, options.kerf_mm);
+        return;
+    }
+    const material::Material material = material::read_material(options.material);
+    if (options.preset == PatternPreset::sewing && options.seam_allowance_mm == 0.0)
+        options.seam_allowance_mm = material.allowance_mm;
+    if (options.kerf_mm < 0.0)
+        options.kerf_mm = burns ? material.kerf_mm : 0.0;
+    options.nap = options.nap || (material.has_nap && options.is_marker());
+    if (!material.has_grain && options.grain == pattern::GrainDirection::best && !options.nap)
+        options.grain = pattern::GrainDirection::free;
+}
+
+[[noreturn]] void refuse_marker(const std::string& message) {
+    throw InvalidParameter("fabric_width_mm: expected " + message);
+}
+
+void check_marker(const ExportOptions& options) {
+    check("fabric_width_mm", options.fabric_width_mm, 0.0, "a width of 0 mm or more");
+    check("selvedge_mm", options.selvedge_mm, 0.0, "a width of 0 mm or more");
+    check("piece_gap_mm", options.piece_gap_mm, 0.0, "a distance of 0 mm or more");
+    if (!options.is_marker()) {
+        if (options.fold || options.nap || options.selvedge_mm > 0.0)
+            refuse_marker("the width of the cloth beside fold, nap and selvedge, found none");
+        return;
+    }
+    if (options.page != "none" && !options.page.empty())
+        refuse_marker("either a roll of cloth or a page, found both; leave the page out");
+    if (options.glue_tabs)
+        refuse_marker("pieces to sew or to cut, found glue tabs; choose another preset");
+    if (options.fold && options.mirror)
+        throw InvalidParameter("mirror: expected it off on folded cloth, which shows its inside "
+                               "already, found both; leave one out");
+    const bool is_free = options.grain == pattern::GrainDirection::free;
+    if (is_free && (options.fold || options.nap))
+        throw InvalidParameter("grain: expected a grain on cloth that is folded or has a nap, "
+                               "found pieces that may lie as they like; give another grain");
+    const double room = (options.fold ? 0.5 : 1.0) * options.fabric_width_mm -
+                        (options.fold ? 1.0 : 2.0) * options.selvedge_mm;
+    if (!(room > 0.0))
+        refuse_marker("cloth between its selvedges, found " + writers::number_text(room, 1) +
+                      " mm; give a smaller selvedge_mm");
+}
+
 } // namespace
 
 ExportOptions resolved(const ExportOptions& given) {
@@ -70,13 +119,17 @@ ExportOptions resolved(const ExportOptions& given) {
     check("seam_allowance_mm", options.seam_allowance_mm, 0.0, "a width of 0 mm or more");
     check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
+    check("dart_allowance_mm", options.dart_allowance_mm, -1.0,
+          "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("perforation_mm", options.perforation_mm, 0.0, "cuts of 0 mm or more");
     check("perforation_gap_mm", options.perforation_gap_mm, 0.1, "gaps of 0.1 mm or more");
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
     check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");
+    check("kerf_mm", options.kerf_mm, -1.0, "a width of 0 mm or more, or -1 for the material's");
     options.edge_numbers = options.edge_numbers || options.step_numbers;
+    take_material(options);
     switch (options.preset) {
     case PatternPreset::plain:
         break;
@@ -101,6 +154,7 @@ ExportOptions resolved(const ExportOptions& given) {
     if (options.glue_tabs && options.allowance().largest() > 0.0)
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
                                "both; set the allowances to 0 or choose another preset");
+    check_marker(options);
     return options;
 }
 

@@ -15,8 +15,12 @@ namespace devseg::sheet {
 /// What a craft needs; options that are given count beside it.
 enum class PatternPreset { plain, sewing, papercraft, laser };
 enum class DxfKind { automatic, cutter, apparel };
+/// Notches: a line from the edge of the cloth inwards, or a small triangle to cut out.
+enum class NotchKind { slit, triangle };
 /// What makes a group in an SVG: all of one operation, or all of one piece.
 enum class Grouping { layer, piece };
+/// How long layouts on cloth are looked for.
+enum class Effort { fast, normal, best };
 /// Texts of an SVG: as text, or as outlines of its letters.
 enum class TextKind { text, paths };
 /// Folds as lines, as short strokes outside of the outlines, where nobody sees them later, or not.
@@ -28,7 +32,8 @@ struct ExportOptions : pattern::PatternOptions {
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;
     double seam_allowance_mm = 0.0;
-    double hem_allowance_mm = -1.0; // along open borders; below 0: as along seams, holes none
+    double hem_allowance_mm = -1.0;  // along open borders; below 0: as along seams, holes none
+    double dart_allowance_mm = -1.0; // along darts; below 0: as along seams
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
@@ -41,6 +46,8 @@ struct ExportOptions : pattern::PatternOptions {
     double perforation_gap_mm = 1.0;
     bool edge_numbers = false; // the number of each seam on both sides
     bool step_numbers = false; // behind each number, the step of the assembly that does the seam
+    NotchKind notch_kind = NotchKind::slit;
+    bool drill_marks = false; // where darts end
     bool grain_line = false;
     bool mirror = false;       // as seen from inside the model
     std::string page = "none"; // none, a4, letter, a3 or WxH in mm
@@ -54,6 +61,19 @@ struct ExportOptions : pattern::PatternOptions {
     bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
     bool scale_check = true; // the same: squares to check the scale with
 
+    double kerf_mm = -1.0; // width of the cut; below 0: of the material, with the preset Laser
+
+    // A marker: all pieces on a roll of cloth, which replaces the pages.
+    double fabric_width_mm = 0.0; // with both selvedges; 0 = none
+    double selvedge_mm = 0.0;     // at each side, that no piece lies on
+    bool fold = false;            // the cloth lies double, folded along its length
+    bool nap = false;             // all pieces the same way round
+    int copies = 1;               // of the whole pattern
+    double piece_gap_mm = 3.0;    // between two pieces on the cloth
+    Effort effort = Effort::normal;
+
+    std::string sizes; // heights in mm, drawn over each other; empty: the one size
+
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
 
@@ -65,10 +85,14 @@ struct ExportOptions : pattern::PatternOptions {
     bool marks_openings() const {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
+    bool is_marker() const { return fabric_width_mm > 0.0; }
     AllowanceWidths allowance() const {
-        if (hem_allowance_mm < 0.0)
-            return {seam_allowance_mm, seam_allowance_mm, 0.0};
-        return {seam_allowance_mm, hem_allowance_mm};
+        AllowanceWidths widths = hem_allowance_mm < 0.0
+                                     ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
+                                     : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
+        if (dart_allowance_mm >= 0.0)
+            widths.darts = dart_allowance_mm;
+        return widths;
     }
 };
 

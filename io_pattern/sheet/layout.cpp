@@ -9,6 +9,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/pack/first_fit.h"
 #include "devseg/plane/plane.h"
+#include "sheet/marker.h"
 #include "sheet/page_nesting.h"
 #include "sheet/segment_grid.h"
 #include "writers/text.h"
@@ -167,6 +168,10 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
             add_openings(pattern, layout.assembly, layout.pieces.back());
     }
     auto laying = progress.part("laying out sheets", 0.8);
+    if (options.is_marker()) {
+        lay_out_marker(pattern, options, layout, laying);
+        return layout;
+    }
     if (layout.page) {
         const PageNesting nesting =
             nest_on_pages(layout.pieces, *layout.page, options.tiling, laying);
@@ -177,8 +182,9 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         }
         return layout;
     }
+    const bool keep_grain = options.grain_line && options.grain != pattern::GrainDirection::free;
     if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
-        nest_freely(layout, options.grain_line, laying);
+        nest_freely(layout, keep_grain, laying);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
     const pack::Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
     for (SheetPiece& piece : layout.pieces)
@@ -257,6 +263,10 @@ std::vector<std::string> layout_notes(const pattern::Pattern& pattern,
          "no room for a number that can be read: the cover of a PDF names them");
     note(layout.left_out.pieces.size(), pattern.pieces.size(), " piece", " pieces",
          "no room for a name that can be read: the cover of a PDF names them");
+    if (layout.fabric && layout.fabric->single_layer_pieces > 0)
+        notes.push_back(std::to_string(layout.fabric->single_layer_pieces) +
+                        " of the pieces on folded cloth have neither a mirror image nor an axis "
+                        "along the grain: cut them from the upper layer alone");
     return notes;
 }
 

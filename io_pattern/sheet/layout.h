@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "devseg/assembly/assembly.h"
@@ -45,19 +46,40 @@ struct PatternSheet {
     Index rows = 1;
 };
 
+/// A roll of cloth that all pieces lie on.
+struct FabricStrip {
+    std::string material;
+    double width = 0.0;    // mm, with both selvedges
+    double selvedge = 0.0; // mm
+    double length = 0.0;   // mm
+    double use = 0.0;      // share of the cloth between the selvedges that pieces cover
+    bool is_folded = false;
+    Index single_layer_pieces = 0; // cut from the upper layer of folded cloth alone
+};
+
+/// All pieces in another size, where those of the layout lie; cut lines, slits and notches.
+struct SizedPieces {
+    double height = 0.0; // mm, of the finished model
+    std::vector<SheetPiece> pieces;
+};
+
 struct PatternLayout {
-    std::vector<SheetPiece> pieces; // in the order of the pattern, on their sheets
+    // In the order of the pattern, on their sheets. On a roll of cloth: what is cut of it, with
+    // copies, and without what folded cloth gives of itself.
+    std::vector<SheetPiece> pieces;
     std::vector<PatternSheet> sheets;
     assembly::Assembly assembly; // the order in which the pieces are put together
     LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
-    Index seams_without_tab = 0; // for lack of room, where tabs were asked for
+    std::optional<FabricStrip> fabric;
+    std::vector<SizedPieces> sizes; // but the one of the layout
+    Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is
 /// kept, unless allowances, tabs or shared edges make pieces touch: then, and on pages, they are
 /// nested anew. `options` must be resolved. Throws InvalidParameter where a piece is larger than a
-/// page that it may not leave, Cancelled.
+/// page that it may not leave, or wider than the roll of cloth, Cancelled.
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress);
 

@@ -353,6 +353,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
                   const std::vector<std::vector<std::array<Vec2, 2>>>& borders) {
     LeftOut left_out;
     std::vector<std::vector<WrittenNumber>> written(pattern.seams.size());
+    std::vector<std::size_t> wanted(pattern.seams.size(), 0);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         SheetPiece& piece = pieces[i];
         const pattern::PatternPiece& source = pattern.pieces[piece.piece];
@@ -369,6 +370,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
                 if (side.piece != piece.piece ||
                     written[s].size() == numbers_of(pattern, pattern.seams[s]))
                     continue;
+                ++wanted[s];
                 NumberWriter number(source.path(side.path), side,
                                     seam_text(pattern, assembly, options, s), piece, room);
                 if (!number.find())
@@ -379,7 +381,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
             }
     }
     for (std::size_t s = 0; s < written.size() && options.edge_numbers; ++s) {
-        if (written[s].size() < numbers_of(pattern, pattern.seams[s])) {
+        if (written[s].size() < std::min(wanted[s], numbers_of(pattern, pattern.seams[s]))) {
             left_out.seams.push_back(static_cast<Index>(s));
             continue;
         }

@@ -25,6 +25,9 @@ OutlinePlace place_on(const pattern::PiecePath& path, const pattern::SeamSide& s
 /// Adds the notches of the piece, where the pattern has it; the cut and sew lines must be there.
 void add_notches(const pattern::Pattern& pattern, const ExportOptions& options, SheetPiece& piece);
 
+/// Adds a cross at the tip of each of the piece's darts.
+void add_drills(const pattern::Pattern& pattern, SheetPiece& piece);
+
 /// From where to where an opening is on one side of its seam, mm from the seam's start.
 std::pair<double, double> opening_stretch(const pattern::Seam& seam, std::size_t side,
                                           const assembly::Opening& opening);

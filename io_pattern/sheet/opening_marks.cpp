@@ -42,4 +42,24 @@ void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& ass
     }
 }
 
+void add_drills(const pattern::Pattern& pattern, SheetPiece& result) {
+    constexpr double half = 1.5; // mm
+    const pattern::PatternPiece& piece = pattern.pieces[at(result.piece)];
+    for (const pattern::Seam& seam : pattern.seams) {
+        const pattern::SeamSide& side = seam.sides[0];
+        if (!seam.is_dart || side.piece != result.piece)
+            continue;
+        const std::vector<Vec2>& points = piece.path(side.path).points;
+        const auto point = [&](const pattern::SeamSide& of, bool at_end) {
+            const Index steps = at_end != of.reversed ? of.count : 0;
+            return points[at(of.first + steps) % points.size()];
+        };
+        // Both sides meet at the tip.
+        const bool at_end = point(seam.sides[0], true) == point(seam.sides[1], true);
+        const Vec2 tip = point(side, at_end);
+        for (const Vec2& arm : {Vec2(half, 0.0), Vec2(0.0, half)})
+            result.drills.push_back({tip - arm, tip + arm});
+    }
+}
+
 } // namespace devseg::sheet

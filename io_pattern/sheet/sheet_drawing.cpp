@@ -6,7 +6,9 @@
 
 #include "devseg/plane/plane.h"
 #include "sheet/drawing_plan.h"
+#include "sheet/marker.h"
 #include "sheet/marks.h"
+#include "sheet/sizes.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -128,10 +130,10 @@ std::vector<std::size_t> cutting_order(const std::vector<SheetPiece>& pieces) {
     return order;
 }
 
-void add_notches(const SheetPiece& piece, writers::DrawingLayer& layer) {
+void add_notches(const SheetPiece& piece, NotchKind kind, writers::DrawingLayer& layer) {
     std::vector<std::vector<Vec2>> lines;
     for (const SheetNotch& notch : piece.notches)
-        lines.push_back({notch.outer, notch.inner});
+        lines.push_back(notch.line(kind));
     add_lines(lines, false, piece, "-notch", layer);
 }
 
@@ -248,7 +250,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         add_lines(piece.perforations, false, piece, "-perforation", perforation);
         add_lines(piece.shadows, false, piece, "-shadow", shadow);
         add_lines(piece.grain, false, piece, "-grain", grain);
-        add_notches(piece, notch);
+        add_notches(piece, options.notch_kind, notch);
+        add_lines(piece.drills, false, piece, "-drill", notch);
         add_lines(piece.openings, false, piece, "-opening", notch);
         add_lines(piece.leaders, false, piece, "-leader", laser ? engrave : numbers);
         add_underlines(piece, laser ? engrave : numbers);
@@ -274,6 +277,10 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         cut,     perforation, mountain, valley,  shadow,
         sew,     notch,       grain,    engrave, scale_layer(layout, plan, pages, drawing, options),
         numbers, text};
+    for (writers::DrawingLayer& layer : size_layers(layout, plan.sheets, options.notch_kind))
+        drawing.layers.push_back(std::move(layer));
+    if (layout.fabric)
+        drawing.layers.push_back(fabric_layer(layout, plan.sheets.front()));
     return drawing;
 }
 

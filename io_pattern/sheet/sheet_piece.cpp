@@ -34,6 +34,9 @@ double for_size(double tolerance, const pattern::PatternPiece& piece) {
     return tolerance * std::min(1.0, piece.box.sizes().maxCoeff() / full_length);
 }
 
+// Half of a triangle's width at the edge, of its depth.
+constexpr double notch_slope = 0.5;
+
 // Of cut lines beside the sew line: what turns by more is a corner.
 constexpr double corner_turn = 0.35; // radians, 20 degrees
 
@@ -280,11 +283,23 @@ void add_curves(const pattern::PatternPiece& piece, const std::vector<Outline>& 
     result.cut = rings_of(result.cut_curves, tolerance);
 }
 
+// What the cut burns away on the piece's side comes back.
+void add_kerf(const ExportOptions& options, const pattern::PatternPiece& piece,
+              SheetPiece& result) {
+    result.cut = grown_rings(result.cut, 0.5 * options.kerf_mm);
+    if (result.cut_curves.empty())
+        return;
+    result.cut_curves.clear();
+    for (const std::vector<Vec2>& ring : result.cut)
+        result.cut_curves.push_back(pattern::fit_ring(ring, corner_turn, options.curve_mm));
+    result.cut = rings_of(result.cut_curves, for_size(sagitta, piece));
+}
+
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
-    for (auto* lines :
-         {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys, &piece.grain,
-          &piece.leaders, &piece.openings, &piece.perforations, &piece.shadows})
+    for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
+                        &piece.grain, &piece.leaders, &piece.openings, &piece.perforations,
+                        &piece.shadows, &piece.drills})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);
@@ -305,6 +320,13 @@ void change_points(SheetPiece& piece, Change change) {
 }
 
 } // namespace
+
+std::vector<Vec2> SheetNotch::line(NotchKind kind) const {
+    if (kind == NotchKind::slit)
+        return {outer, inner};
+    const Vec2 aside = notch_slope * plane::left_of(Vec2(inner - outer));
+    return {outer - aside, inner, outer + aside};
+}
 
 Eigen::AlignedBox2d SheetPiece::box() const {
     Eigen::AlignedBox2d box;
@@ -377,9 +399,13 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index, const Glu
     }
     if (options.curve_mm > 0.0)
         add_curves(piece, outlines, options, result);
+    if (options.kerf_mm > 0.0)
+        add_kerf(options, piece, result);
     if (options.fold_lines)
         add_folds(piece, options, result);
     add_notches(pattern, options, result);
+    if (options.drill_marks)
+        add_drills(pattern, result);
     if (options.grain_line)
         add_grain(piece, result);
     return result;

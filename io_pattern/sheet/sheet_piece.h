@@ -19,6 +19,9 @@ namespace devseg::sheet {
 struct SheetNotch {
     Vec2 outer = Vec2::Zero(); // mm; on the cut line where there is one close by
     Vec2 inner = Vec2::Zero(); // towards the inside
+
+    /// From end to end: a slit, or a triangle that is open at the edge.
+    std::vector<Vec2> line(NotchKind kind) const;
 };
 
 /// From the pattern's pieces to where they are drawn.
@@ -44,6 +47,7 @@ struct SheetPiece {
     std::vector<std::vector<Vec2>> perforations; // folds as short cuts, instead of their lines
     std::vector<std::vector<Vec2>> shadows;      // where tabs of others are glued
     std::vector<SheetNotch> notches;
+    std::vector<std::vector<Vec2>> drills;   // crosses where darts end
     std::vector<std::vector<Vec2>> openings; // brackets along what stays open
     std::vector<std::vector<Vec2>> grain;    // the arrow's lines
     std::vector<writers::DrawingText> names;

@@ -178,6 +178,7 @@ _LABELS = {
     "pdf": "pattern",
     "dxf": "pattern",
     "html": "guide",
+    "marker": "marker",
     "ply": "mesh",
     "obj": "mesh",
     "png": "picture",
@@ -186,7 +187,10 @@ _LABELS = {
 
 
 def _summary(result: dict[str, Any], out: Path) -> str:
-    lines = [f"{_LABELS[kind]:<9} {out / name}" for kind, name in result["outputs"].items()]
+    # Of svg_200, the pattern in one of several sizes, and marker_svg the first word counts.
+    lines = [
+        f"{_LABELS[kind.split('_')[0]]:<9} {out / name}" for kind, name in result["outputs"].items()
+    ]
     lines.append(f"{'size':<9} {shown(result['size_mm'])}")
     flat = result["parametrization"]
     figures = [

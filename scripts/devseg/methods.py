@@ -22,6 +22,7 @@ class Method:
         deforms: whether the charts are deformed until they can be unfolded exactly.
         preset: of the pattern, unless another one is asked for.
         flatten: key of FLATTENINGS that `devseg run` takes without --flatten.
+        bounds_material: whether a material sets the strain that its charts may have.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Method:
     deforms: bool
     preset: str | None
     flatten: str
+    bounds_material: bool = False
 
 
 # The options of the command line that a method may take, and the filter parameters they set.
@@ -57,6 +59,7 @@ METHODS = {
         row["deforms"],
         row["preset"],
         row["flatten"],
+        "material" in row["parameters"],
     )
     for name, row in cast("dict[str, dict[str, Any]]", TABLE).items()
 }

@@ -51,6 +51,7 @@ TABLE = {
         "parameters": [
             "max_area_change",
             "max_strain",
+            "material",
             "geodesic_weight",
             "skeleton_weight",
             "curvature_weight",

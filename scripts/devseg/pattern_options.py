@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from devseg import cloth
 from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
@@ -17,6 +18,7 @@ TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
 TABS = {"one": "One", "both": "Both", "alternating": "Alternating", "none": "None"}
 FOLD_MARKS = {"lines": "Lines", "outside": "Outside", "none": "None"}
+NOTCHES = {"slit": "Slit", "triangle": "Triangle"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
@@ -40,6 +42,15 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         type=millimetres(),
         metavar="A",
         help="along open borders; default: as seams",
+    )
+    group.add_argument(
+        "--dart-allowance-mm",
+        type=millimetres(),
+        metavar="A",
+        help="along darts; default: as seams",
+    )
+    group.add_argument(
+        "--notch-kind", choices=NOTCHES, help="a slit, or a triangle to cut out; default: slit"
     )
     group.add_argument(
         "--notch-spacing-mm",
@@ -101,6 +112,7 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--dxf", choices=DXF_KINDS, dest="dxf_kind", help="kind of DXF")
     _add_switches(group)
+    cloth.add_options(parser.add_argument_group("materials and rolls of cloth"))
 
 
 def _perforation(text: str) -> tuple[float, float]:
@@ -122,6 +134,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("fold-lines", "mountain and valley folds"),
         ("edge-numbers", "the number of each seam on both sides"),
         ("step-numbers", "the step of the assembly behind each seam number"),
+        ("drill-marks", "a cross where each dart ends"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
     ):
@@ -152,6 +165,8 @@ _PARAMETERS = (
     "page_margin_mm",
     "seam_allowance_mm",
     "hem_allowance_mm",
+    "dart_allowance_mm",
+    "drill_marks",
     "max_piece_mm",
     "simplify_mm",
     "curve_mm",
@@ -180,8 +195,23 @@ _PARAMETERS = (
 OPTION_OF = {
     **{
         name: f"--{name.replace('_', '-')}"
-        for name in (*_PARAMETERS, "preset", "corner_style", "group", "text", "tabs", "fold_marks")
+        for name in (
+            *_PARAMETERS,
+            "preset",
+            "corner_style",
+            "notch_kind",
+            "group",
+            "text",
+            "tabs",
+            "fold_marks",
+        )
     },
+    **{
+        name: f"--{name.replace('_', '-')}"
+        for name in ("grain", *cloth.PIECE_PARAMETERS, *cloth.MARKER_PARAMETERS)
+    },
+    "selvedge_mm": "--selvedge",
+    "grain_angle": "--grain",
     **{name: f"--{name.replace('_', '-')}" for name in ("height_mm", "mm_per_unit")},
     "tiling": "--no-tiling",
     "labels": "--no-labels",
@@ -197,6 +227,7 @@ _CHOICES = {
     "preset": PRESETS,
     "dxf_kind": DXF_KINDS,
     "corner_style": CORNERS,
+    "notch_kind": NOTCHES,
     "group": GROUPS,
     "text": TEXTS,
     "tabs": TABS,
@@ -213,6 +244,7 @@ def pattern_parameters(args: argparse.Namespace) -> dict[str, Any]:
             parameters[name] = values[value]
     if args.perforation:
         parameters["perforation_mm"], parameters["perforation_gap_mm"] = args.perforation
+    parameters.update(cloth.parameters(args))
     if args.height_mm:
         parameters["height_mm"] = args.height_mm
     elif args.mm_per_unit:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from devseg import guide, host, ply, scene
+from devseg import cloth, guide, host, ply, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
@@ -425,15 +425,30 @@ class _Writer:
         self.outputs: dict[str, str] = {}
         self.guide: dict[str, Any] = {}
 
-    def _target(self, extension: str) -> Path:
+    def _target(self, extension: str, suffix: str = "") -> Path:
         # with_suffix would cut a name such as "part.v2".
-        return self.stem.parent / f"{self.stem.name}.{extension}"
+        return self.stem.parent / f"{self.stem.name}{suffix}.{extension}"
 
     def write_patterns(self, pattern: Mapping[str, Any]) -> None:
         """What shows the mesh upright: patterns and the picture."""
+        plain, marker = cloth.split(pattern)
+        files = list(cloth.written(plain))
         for extension in self._formats(PATTERN_FORMATS):
-            results = self.session.export(self._target(extension), pattern)
+            for suffix, parameters in files:
+                target = self._target(extension, suffix)
+                results = self.session.export(target, parameters)
+                if suffix:
+                    self.outputs[f"{extension}{suffix}"] = target.name
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
+            if "material" in plain:
+                self.guide["cloth"] = cloth.strains(results, plain["material"])
+        for extension in self.options.formats:
+            if marker and extension in cloth.MARKER_FORMATS:
+                with self.progress.stage(f"marker {extension}"):
+                    target = self._target(extension, "_marker")
+                    results = self.session.export(target, marker)
+                self.guide["marker"] = cloth.marker(results)
+                self.outputs[f"marker_{extension}"] = target.name
         if self.options.picture:
             with self.progress.stage("picture"):
                 from devseg.render import render_pair
@@ -467,4 +482,5 @@ class _Writer:
             if extension in known:
                 with self.progress.stage(extension):
                     yield extension
-                self.outputs[extension] = self._target(extension).name
+                if self._target(extension).exists():  # else one for each size
+                    self.outputs[extension] = self._target(extension).name

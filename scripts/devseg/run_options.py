@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from devseg import given
+from devseg import cloth, given
 from devseg.lengths import length, millimetres, number, size
 from devseg.methods import EFFORTS, FLATTENINGS, METHOD_OPTIONS, METHODS, SMOOTH_METHODS
 from devseg.pattern_options import (
@@ -81,7 +81,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--seams",
         choices=("smooth", "edges"),
         help="smooth curves, which split faces, or edges of the mesh; default: smooth in patterns "
-        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges",
+        f"to sew and to cut by {', '.join(SMOOTH_METHODS)}, else edges, also "
+        "where --material bounds the strain of patches",
     )
     parser.add_argument(
         "--formats",
@@ -253,7 +254,10 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         segmentation["charts_number"] = 0
     elif args.charts == 0 and "max_l2_stretch" not in method.options:
         parser.error(f"--charts auto does not apply to --method {method.name}")
+    cloth.check(args, parser)
     pattern = pattern_parameters(args)
+    if args.material and method.bounds_material:
+        segmentation["material"] = args.material
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
     flattening = args.flatten or method.flatten
@@ -289,6 +293,8 @@ def _smooth_seams(
         parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
     if args.seams or args.charts_from or args.keep_seams:
         return args.seams == "smooth"  # seams that somebody has chosen stay where they are
+    if args.material and METHODS[args.method].bounds_material:
+        return False  # patches were judged with their seams on edges: curves strain them more
     is_pattern = any(kind in PATTERN_FORMATS for kind in args.formats)
     fits = args.method in SMOOTH_METHODS and not args.keep_texcoords
     return fits and is_pattern and pattern.get("preset") != PRESETS["papercraft"]

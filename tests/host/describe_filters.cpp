@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include "devseg/material/material.h"
 #include "filters/export_filter.h"
 
 namespace devseg {
@@ -110,14 +111,37 @@ std::string describe(const declare::FilterDeclaration& filter) {
            "}";
 }
 
+std::string describe(const material::Material& material) {
+    std::string text = "{\"name\": " + json(material.name);
+    for (const material::MaterialValue& value : material::material_values()) {
+        const declare::ParameterValue found =
+            value.flag != nullptr ? declare::ParameterValue(material.*(value.flag))
+                                  : declare::ParameterValue(material.*(value.number));
+        text += ", " + json(std::string(value.key)) + ": " + json(found);
+    }
+    return text + ", \"source\": " + json(material.source) + "}";
+}
+
+std::string describe(const material::MaterialValue& value) {
+    return "{\"key\": " + json(std::string(value.key)) +
+           ", \"meaning\": " + json(std::string(value.meaning)) + "}";
+}
+
+template <class Items>
+std::string lines(const Items& items) {
+    return list(items, [](const auto& item) { return "\n " + describe(item); });
+}
+
 } // namespace
 } // namespace devseg
 
-int main() {
-    std::cout << devseg::list(devseg::exporting::plugin_filters(),
-                              [](const devseg::declare::FilterDeclaration& filter) {
-                                  return "\n " + devseg::describe(filter);
-                              })
-              << "\n";
+// With an argument, the table of materials instead.
+int main(int count, char**) {
+    using namespace devseg;
+    if (count > 1)
+        std::cout << "{\"values\": " << lines(material::material_values())
+                  << ", \"materials\": " << lines(material::material_table()) << "}\n";
+    else
+        std::cout << lines(exporting::plugin_filters()) << "\n";
     return std::cout.good() ? 0 : 1;
 }

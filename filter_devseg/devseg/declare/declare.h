@@ -34,6 +34,15 @@ public:
         return number(ParameterKind::integer, field, range_of(field), std::move(label),
                       std::move(help));
     }
+    Declare& integer(int Options::*field, const OptionRange& range, std::string label,
+                     std::string help) {
+        number(ParameterKind::integer, field, range, std::move(label), std::move(help));
+        setters_.back() = [=](Options& options, const ParameterValue& value) {
+            options.*field = std::get<int>(value);
+            range.check(options.*field);
+        };
+        return *this;
+    }
     Declare& real(double Options::*field, std::string label, std::string help) {
         return real(field, range_of(field), std::move(label), std::move(help));
     }

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "devseg/declare/declare.h"
+#include "devseg/filters/material_parameters.h"
 #include "devseg/filters/sheet_layout.h"
 #include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
@@ -294,8 +295,9 @@ FilterDeclaration optimize() {
 
 FilterDeclaration pieces() {
     using O = LayerOptions;
-    return with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
-                                 FilterCategory::texture, pieces_help))
+    return with_material(
+               with_scale(Declare<O>("Pattern: Generate Pieces", "generate_pattern_pieces",
+                                     FilterCategory::texture, pieces_help)))
         .real(&O::strain_range, {"strain_range", 1e-6, 10.0}, "Strain in full colour",
               "Strain from which on a face is drawn in full colour, as a share of the length: "
               "0.05 = 5 %.")
@@ -310,8 +312,9 @@ FilterDeclaration pieces() {
 
 FilterDeclaration measures() {
     using O = pattern::PatternOptions;
-    return with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
-                                            FilterCategory::measure, measures_help)))
+    return with_material(
+               with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
+                                                FilterCategory::measure, measures_help))))
         .needs_uv()
         .shows_outside()
         .result("pieces_number", "pieces")

@@ -165,6 +165,7 @@ private:
 struct Body {
     Vec2 centre = Vec2::Zero();   // about which it turns, in the chart's coordinates
     double inverse_inertia = 0.0; // 0: it does not turn
+    double free_x = 1.0;          // 0: it keeps its x
     double radius = 0.0;          // of its farthest point
     Vec2 position = Vec2::Zero(); // of the centre
     double angle = 0.0;
@@ -221,10 +222,21 @@ public:
             bodies_.push_back(make_body(outlines[i], placements[i], options.allow_rotation));
         measure();
     }
+    Compaction(const std::vector<Outline>& outlines, const std::vector<Placement>& placements,
+               const StripWalls& walls)
+        : outlines_(outlines), padding_(0.0), walls_(&walls) {
+        for (std::size_t i = 0; i < outlines.size(); ++i) {
+            bodies_.push_back(make_body(outlines[i], placements[i], walls.may_turn[i] != 0));
+            bodies_.back().free_x = walls.at_left[i] != 0 ? 0.0 : 1.0;
+        }
+        measure();
+    }
 
     Vec2 size() const { return box_.sizes(); }
     std::int64_t work() const { return work_; }
-    bool feasible() const { return least_ >= goal_ * (1.0 - 0.5 * distance_slack); }
+    bool feasible() const {
+        return least_ >= goal_ * (1.0 - 0.5 * distance_slack) && outside_ <= distance_slack * goal_;
+    }
 
     std::vector<Placement> placements() const {
         std::vector<Placement> result;
@@ -241,7 +253,8 @@ public:
         if (feasible()) {
             const double inward = push * most;
             for (std::size_t wall = 0; wall < 4; ++wall)
-                moves_[n + wall].shift = inward * wall_normal(wall);
+                if (walls_ == nullptr || wall % 2 == 1)
+                    moves_[n + wall].shift = inward * wall_normal(wall);
         }
         for (int sweep = 0; sweep < most_sweeps && relax(bound_tolerance * most); ++sweep)
             ;
@@ -287,7 +300,13 @@ private:
     void measure() {
         place();
         const double side = size().maxCoeff() / (1.0 - padding_);
-        goal_ = std::max(padding_, least_distance) * side * (1.0 + distance_slack);
+        const double wanted = walls_ != nullptr ? walls_->gap : padding_ * side;
+        goal_ = std::max(wanted, least_distance * side) * (1.0 + distance_slack);
+        if (walls_ != nullptr) {
+            outside_ = std::max(-box_.min().x(), box_.max().x() - walls_->width);
+            box_.min().x() = 0.0;
+            box_.max().x() = walls_->width;
+        }
         // Farther points cannot come too close in one round.
         const double reach = goal_ * (1.0 + 2.0 * most_move);
         least_ = reach;
@@ -318,15 +337,29 @@ private:
         bound.need = need;
         const Body& a = bodies_[pair.a];
         bound.arm_a = plane::cross(pair.at_a - a.position, pair.normal);
-        bound.inverse_mass = 1.0 + bound.arm_a * bound.arm_a * a.inverse_inertia;
+        bound.inverse_mass =
+            mass_along(a, pair.normal) + bound.arm_a * bound.arm_a * a.inverse_inertia;
         if (pair.b < bodies_.size()) {
             const Body& b = bodies_[pair.b];
             bound.arm_b = plane::cross(pair.at_b - b.position, pair.normal);
-            bound.inverse_mass += 1.0 + bound.arm_b * bound.arm_b * b.inverse_inertia;
+            bound.inverse_mass +=
+                mass_along(b, pair.normal) + bound.arm_b * bound.arm_b * b.inverse_inertia;
         } else {
-            bound.inverse_mass += wall_inverse_mass;
+            bound.inverse_mass += wall_mass(pair.b - bodies_.size());
         }
-        bounds_.push_back(bound);
+        if (bound.inverse_mass > 0.0)
+            bounds_.push_back(bound);
+    }
+
+    double wall_mass(std::size_t wall) const {
+        return walls_ != nullptr && wall % 2 == 0 ? 0.0 : wall_inverse_mass;
+    }
+    // The inverse of what the body weighs for moves along the unit normal.
+    static double mass_along(const Body& body, const Vec2& normal) {
+        return 1.0 - (1.0 - body.free_x) * normal.x() * normal.x();
+    }
+    static Vec2 freed(const Body& body, const Vec2& move) {
+        return {body.free_x * move.x(), move.y()};
     }
 
     // One sweep of Hildreth's method over the bounds; true when one was missed by more than this.
@@ -342,13 +375,13 @@ private:
                 continue;
             missed = missed || miss > missed_by;
             bound.impulse += change;
-            a.shift += change * bound.normal;
+            a.shift += freed(bodies_[bound.a], change * bound.normal);
             a.turn += change * bound.arm_a * bodies_[bound.a].inverse_inertia;
             if (bound.b < bodies_.size()) {
-                b.shift -= change * bound.normal;
+                b.shift -= freed(bodies_[bound.b], change * bound.normal);
                 b.turn -= change * bound.arm_b * bodies_[bound.b].inverse_inertia;
             } else {
-                b.shift -= change * wall_inverse_mass * bound.normal;
+                b.shift -= change * wall_mass(bound.b - bodies_.size()) * bound.normal;
             }
         }
         work_ += static_cast<std::int64_t>(bounds_.size());
@@ -357,16 +390,38 @@ private:
 
     const std::vector<Outline>& outlines_;
     double padding_;
+    const StripWalls* walls_ = nullptr; // of a strip
     std::vector<Body> bodies_;
     std::vector<Move> moves_; // of the charts and of the four walls
     std::vector<PlacedEdge> edges_;
     Eigen::AlignedBox2d box_;
     Proximity proximity_;
     std::vector<Bound> bounds_;
-    double goal_ = 0.0;  // the distance to keep
-    double least_ = 0.0; // distance, at most the reach
+    double goal_ = 0.0;    // the distance to keep
+    double least_ = 0.0, outside_ = 0.0; // distance up to the reach; how far charts stick out
     std::int64_t work_ = 0;
 };
+
+// Round by round, as long as `badness_of` the box gets less; `least` is that of `best`.
+template <class Badness>
+std::vector<Placement> tightened(Compaction compaction, std::vector<Placement> best, double least,
+                                 Badness badness_of, const Progress& progress) {
+    for (int round = 0, idle = 0; round < compaction_rounds && idle < idle_rounds;
+         ++round, ++idle) {
+        progress.check();
+        if (compaction.work() > most_work)
+            break;
+        compaction.step();
+        const double now = badness_of(compaction.size());
+        if (!compaction.feasible() || now >= least)
+            continue;
+        if (now < least * (1.0 - progress_step))
+            idle = 0;
+        least = now;
+        best = compaction.placements();
+    }
+    return best;
+}
 
 } // namespace
 
@@ -378,24 +433,18 @@ double badness(const Vec2& box) {
 std::vector<Placement> compact(const std::vector<Outline>& outlines,
                                const std::vector<Placement>& placements, const PackOptions& options,
                                const Progress& progress) {
-    Compaction compaction(outlines, placements, options);
-    std::vector<Placement> best = placements;
-    double least = badness(compaction.size());
-    for (int round = 0, idle = 0; round < compaction_rounds && idle < idle_rounds;
-         ++round, ++idle) {
-        progress.check();
-        if (compaction.work() > most_work)
-            break;
-        compaction.step();
-        const double now = badness(compaction.size());
-        if (!compaction.feasible() || now >= least)
-            continue;
-        if (now < least * (1.0 - progress_step))
-            idle = 0;
-        least = now;
-        best = compaction.placements();
-    }
-    return best;
+    const Compaction compaction(outlines, placements, options);
+    return tightened(compaction, placements, badness(compaction.size()), badness, progress);
+}
+
+std::vector<Placement> compact_strip(const std::vector<Outline>& outlines,
+                                     const std::vector<Placement>& placements,
+                                     const StripWalls& walls, const Progress& progress) {
+    const Compaction compaction(outlines, placements, walls);
+    const auto length = [](const Vec2& box) { return box.y(); };
+    // Layouts that do not keep the distance are worse than any that does.
+    const double least = compaction.feasible() ? length(compaction.size()) : infinite;
+    return tightened(compaction, placements, least, length, progress);
 }
 
 } // namespace devseg::pack

@@ -6,6 +6,7 @@
 // round misses, the next one makes up for.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "devseg/pack/outline.h"
@@ -22,5 +23,18 @@ double badness(const Vec2& box);
 std::vector<Placement> compact(const std::vector<Outline>& outlines,
                                const std::vector<Placement>& placements, const PackOptions& options,
                                const Progress& progress);
+
+/// A strip of fixed width along y, from x = 0 on.
+struct StripWalls {
+    double width = 0.0;
+    double gap = 0.0;                   // least distance of two charts
+    std::vector<std::uint8_t> may_turn; // #charts
+    std::vector<std::uint8_t> at_left;  // #charts: they keep their x
+};
+
+/// The same on a strip, which gets shorter.
+std::vector<Placement> compact_strip(const std::vector<Outline>& outlines,
+                                     const std::vector<Placement>& placements,
+                                     const StripWalls& walls, const Progress& progress);
 
 } // namespace devseg::pack

@@ -155,12 +155,16 @@ FreeCells::FreeCells(Index width, Index longest_run)
       levels_(log2_floor(std::min(width, longest_run)) + 1), blocked_(words_) {}
 
 bool FreeCells::put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot) {
+    return put(poses, {0, width_, from, limit - 1}, spot);
+}
+
+bool FreeCells::put(const std::vector<FitImage>& poses, FitWindow window, Spot& spot) {
     bool found = false;
     for (std::size_t pose = 0; pose < poses.size(); ++pose)
-        if (find(poses[pose], {0, width_, from, limit - 1}, spot)) {
+        if (find(poses[pose], window, spot)) {
             found = true;
             spot.pose = pose;
-            limit = spot.y + poses[pose].cells.height;
+            window.top = spot.y + poses[pose].cells.height - 1;
         }
     if (found)
         take(poses[spot.pose], spot);

@@ -47,6 +47,8 @@ public:
     /// Puts a chart, in the pose that ends lowest, at its lowest place from row `from` on, then the
     /// leftmost, whose top is below `limit`. False where there is none.
     bool put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot);
+    /// The same within a window.
+    bool put(const std::vector<FitImage>& poses, FitWindow window, Spot& spot);
 
     /// The lowest place of one image in the window, then the leftmost. Nothing is put there.
     bool find(const FitImage& image, const FitWindow& window, Spot& spot);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "devseg/pack/first_fit.h"
 
@@ -81,10 +82,11 @@ std::int32_t least_of(const std::int32_t* values, Index count) {
 } // namespace
 
 Separation::Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed,
-                       const Progress& progress)
-    : poses_(poses), progress_(progress), random_state_(seed), placed_(poses.size(), 1),
-      boxes_(poses.size()), totals_(poses.size(), 0), overlaps_(poses.size() * poses.size(), 0),
-      weights_(poses.size() * poses.size(), 1.0) {
+                       const Progress& progress, std::vector<std::uint8_t> at_left)
+    : poses_(poses), progress_(progress), at_left_(std::move(at_left)), random_state_(seed),
+      placed_(poses.size(), 1), boxes_(poses.size()), totals_(poses.size(), 0),
+      overlaps_(poses.size() * poses.size(), 0), weights_(poses.size() * poses.size(), 1.0) {
+    at_left_.resize(poses.size(), 0);
     Index largest = 1;
     for (const ChartPoses& chart : poses)
         for (const ChartCells& pose : chart)
@@ -135,7 +137,8 @@ Layout Separation::fit_all(const std::vector<std::size_t>& order, const Frame& f
     for (const std::size_t i : order) {
         progress_.check();
         const std::vector<FitImage> images(poses_[i].begin(), poses_[i].end());
-        if (!cells.put(images, 0, frame.height + 1, layout_[i]))
+        const Index right = at_left_[i] != 0 ? images.front().cells.width : frame.width;
+        if (!cells.put(images, {0, right, 0, frame.height}, layout_[i]))
             return {};
     }
     return layout_;
@@ -185,7 +188,7 @@ void Separation::clamp_to_frame() {
                                             [&](const ChartCells& c) { return fits(c); });
             layout_[i].pose = static_cast<std::size_t>(other - poses_[i].begin());
         }
-        layout_[i].x = std::clamp(layout_[i].x, Index{0}, frame_.width - cells(i).width);
+        layout_[i].x = std::clamp(layout_[i].x, Index{0}, right_of(i, cells(i)));
         layout_[i].y = std::clamp(layout_[i].y, Index{0}, frame_.height - cells(i).height);
     }
 }
@@ -236,7 +239,7 @@ void Separation::raise_weights() {
 
 Window Separation::window_of(std::size_t i, std::size_t pose, Index reach) const {
     const ChartCells& c = poses_[i][pose];
-    const Index far_x = frame_.width - c.width;
+    const Index far_x = right_of(i, c);
     const Index far_y = frame_.height - c.height;
     if (reach == 0)
         return {0, far_x, 0, far_y};

@@ -104,7 +104,9 @@ struct SeparationOptions {
 class Separation {
 public:
     /// `poses` outlives the object. The seed chooses among the possible orders of moves.
-    Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed, const Progress& progress);
+    /// `at_left` (#poses, or empty): 1 for charts that stay at the left side of the frame.
+    Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed, const Progress& progress,
+               std::vector<std::uint8_t> at_left = {});
 
     /// Lays the charts out one after the other, each at the lowest free place or, where there is
     /// none, at the cheapest; nothing when a chart is larger than the frame.
@@ -135,6 +137,9 @@ private:
     Window window_of(std::size_t i, std::size_t pose, Index reach) const;
     std::uint64_t random(std::uint64_t bound);
 
+    Index right_of(std::size_t i, const ChartCells& c) const {
+        return at_left_[i] != 0 ? 0 : frame_.width - c.width;
+    }
     bool fits(const ChartCells& c) const {
         return c.width <= frame_.width && c.height <= frame_.height;
     }
@@ -142,6 +147,7 @@ private:
 
     const std::vector<ChartPoses>& poses_;
     const Progress& progress_;
+    std::vector<std::uint8_t> at_left_;
     std::uint64_t random_state_;
     double weight_limit_ = 1.0;
     Frame frame_;

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "devseg/material/material.h"
 #include "devseg/mesh/mesh.h"
 #include "devseg/pattern/seam.h"
 
@@ -66,6 +68,21 @@ struct PieceStrain {
     Index worst_face = -1;           // face of the mesh
 };
 
+/// The same for a material that has limits: lines of it are longer or shorter on the model.
+struct ClothStrain {
+    double along = 0.0; // largest of any face along the grain, longer or shorter: 0.05 = 5 %
+    double across = 0.0;
+    double along_95 = 0.0; // what 95 % of the area keeps
+    double across_95 = 0.0;
+    // Strain over what the material bears in that direction, in the direction where this is most:
+    // what 99 % of the area keeps, and the worst face. Within the limits are 1 and 2.
+    double use_99 = 0.0;
+    double worst_use = 0.0;
+    bool is_within = true;
+    Index worst_face = -1;
+    Vec2 worst_place = Vec2::Zero(); // mm
+};
+
 struct PatternPiece {
     std::string name;                   // "P01", "P02", … in the order of the charts
     Index chart = -1;                   // label in charts_from_uv, or after splitting
@@ -84,9 +101,11 @@ struct PatternPiece {
     Index quantity = 1;          // on the model: pieces of its shape, as it is; 0 on the others
     Index mirrored_quantity = 0; // on the model: pieces that are its mirror image
     std::array<Vec2, 2> grain{Vec2::Zero(), Vec2::Zero()}; // from, to; mm, inside the piece
+    Vec2 grain_direction = Vec2::UnitY();                  // unit, also where no line fits
     double long_side = 0.0; // mm, of the smallest box in any direction around the piece
     double short_side = 0.0;
     PieceStrain strain;
+    ClothStrain cloth;            // where the pattern has a material
     std::vector<PieceFold> folds; // every edge that bends by more than fold_angle
 
     /// Outline 0 is the outer one, outline i is hole i − 1.
@@ -108,9 +127,10 @@ struct PatternPiece {
 /// model, y up.
 struct Pattern {
     std::vector<PatternPiece> pieces;
-    std::vector<Seam> seams;        // each joins exactly two sides; every side is in one seam
-    double width = 0.0;             // mm
-    double height = 0.0;            // mm
+    std::vector<Seam> seams; // each joins exactly two sides; every side is in one seam
+    double width = 0.0;      // mm
+    double height = 0.0;     // mm
+    std::optional<material::Material> material;
     double mm_per_unit = 1.0;       // as used, from height_mm where that was given
     double hem_length = 0.0;        // mm, of all edges of pieces that are sewn to nothing
     Mesh mesh;                      // with the faces cut that cuts of pieces go through; #F faces

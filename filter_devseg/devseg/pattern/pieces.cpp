@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/pattern/bends.h"
+#include "devseg/pattern/cloth_strain.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
 #include "devseg/pattern/inside.h"
@@ -387,7 +389,7 @@ void describe_pieces(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap
     const std::vector<FaceStrain> strain = measure_strain(mesh, pattern.corner_place, 1.0 / mm);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         PatternPiece& piece = pattern.pieces[i];
-        set_sizes(piece, options.grain);
+        set_cloth(mesh, faces_of(piece), options, mm, pattern, piece);
         measure_inside(mesh, pattern.corner_place, faces_of(piece), charts.seam, strain,
                        options.fold_angle * degrees, mm, piece);
         progress.update(0.5 + 0.5 * static_cast<double>(i) / count);
@@ -408,12 +410,19 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::pair_tolerance_mm, {"pair_tolerance_mm", 0.0, 1e6}},
             {&O::curve_mm, {"curve_mm", 0.0, 1e3}},
             {&O::corner_angle, {"corner_angle", 0.0, 180.0}},
-            {&O::fold_angle, {"fold_angle", 0.0, 180.0}}};
+            {&O::fold_angle, {"fold_angle", 0.0, 180.0}},
+            {&O::thickness_mm, {"thickness_mm", 0.0, 1e3}},
+            {&O::bend_radius_mm, {"bend_radius_mm", -1.0, 1e4}},
+            {&O::k_factor, {"k_factor", -1.0, 1.0}},
+            {&O::grain_angle, {"grain_angle", -180.0, 180.0}}};
 }
 
 Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions& options,
                      Progress& progress) {
     check_ranges(options);
+    Pattern pattern;
+    if (!options.material.empty())
+        pattern.material = material::read_material(options.material);
     const double mm = paper_scale(whole, options);
     check_coordinates(uv);
 
@@ -423,7 +432,6 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
     const Mesh& mesh = split.mesh;
 
     auto tracing = progress.part("tracing outlines", 0.12);
-    Pattern pattern;
     pattern.mm_per_unit = mm / mesh.unit_length;
     pattern.pieces = trace_pieces(mesh, split.uv, split.charts, layout.areas.worth_cutting(),
                                   layout.areas.scale * mm, tracing);
@@ -431,6 +439,8 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
     auto refining = progress.part("refining outlines", 0.1);
     const std::vector<Chain> chains =
         refine_outlines(mesh, split.cut, options, mm, pattern, refining);
+    if (const Bend bend = find_bend(options, pattern.material); bend.changes_lengths())
+        compensate_bends(mesh, split.charts, split.uv, bend, options.fold_angle * degrees, pattern);
 
     const auto placing = progress.part("placing pieces", 0.13);
     for (PatternPiece& piece : pattern.pieces) {
@@ -455,6 +465,8 @@ Pattern make_pattern(const Mesh& whole, const CornerUv& uv, const PatternOptions
             "the charts are not at one scale in the texture coordinates: each "
             "was brought to the scale of its own area on the model");
     note_mismatches(pattern);
+    if (std::string note = cloth_note(pattern); !note.empty())
+        pattern.notes.push_back(std::move(note));
     pattern.mesh = std::move(split.mesh);
     pattern.seam = std::move(split.charts.seam);
     pattern.source_face = std::move(split.source_face);

@@ -8,8 +8,10 @@
 
 namespace devseg::pattern {
 
-/// Where the threads of a woven cloth run in a piece.
-enum class GrainDirection { longest, texture_v };
+/// Where the threads of a woven cloth run in a piece: as it fits the material best, along the
+/// longest direction (also where nothing says what fits), upwards on the model, at an angle to the
+/// texture's v, or along that. Free: as it fits best, and layouts turn pieces as they like.
+enum class GrainDirection { best, longest, up, angle, texture_v, free };
 
 struct PatternOptions {
     double mm_per_unit = 1.0; // millimetres on paper for one unit of the model, above 0
@@ -28,7 +30,12 @@ struct PatternOptions {
     double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
     double max_width_mm = 0.0;      // the same of the shorter side of the least box around it
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
-    GrainDirection grain = GrainDirection::longest;
+    GrainDirection grain = GrainDirection::best;
+    double grain_angle = 0.0;     // degrees from the texture's v, counterclockwise
+    double thickness_mm = 0.0;    // of the material, inside of the mesh
+    double bend_radius_mm = -1.0; // of sharp bends; below 0: as the material says, or the thickness
+    double k_factor = -1.0;       // neutral line; below 0: as the material says, or 0.5
+    std::string material;         // material::read_material; empty: none
 
     static OptionRanges<PatternOptions> ranges();
 };

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 #include "devseg/plane/plane.h"
 
@@ -142,7 +143,7 @@ bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vec
 
 // Brings the points to the nearest ones of the other outline, again and again.
 bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
-               const std::vector<Vec2>& even, Motion motion, double tolerance) {
+               const std::vector<Vec2>& even, Motion& motion, double tolerance) {
     double last = infinite;
     for (int round = 0; round < motion_rounds; ++round) {
         std::vector<Vec2> nearest;
@@ -254,18 +255,22 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
                std::min(length_raggedness * of_a.around, 2.0 * tolerance * edges);
 }
 
-bool same_shape(const Shape& a, const Shape& b, double longer, double around, double tolerance) {
+// The motion that brings a onto b, if there is one.
+std::optional<Motion> same_shape(const Shape& a, const Shape& b, double longer, double around,
+                                 double tolerance) {
     // Evenly spaced points of ragged outlines are not at the same places, but as far apart as half
     // of what one is longer at most; and between two beginnings.
     const double apart =
         2.0 * tolerance + 0.5 * longer + 0.5 * around / static_cast<double>(begins);
     std::size_t begin = 0;
     if (least_distance(a.waves, b.waves, begin) > apart)
-        return false;
+        return std::nullopt;
     double error = 0.0;
-    const Motion motion = fit_motion(a.even, b.even, begin, error);
-    return lies_on({a.even}, {b.outlines.front()}, motion, 2.0 * apart) &&
-           fits_from(a.outlines, b.outlines, a.even, motion, tolerance);
+    Motion motion = fit_motion(a.even, b.even, begin, error);
+    if (!lies_on({a.even}, {b.outlines.front()}, motion, 2.0 * apart) ||
+        !fits_from(a.outlines, b.outlines, a.even, motion, tolerance))
+        return std::nullopt;
+    return motion;
 }
 
 // The models that are most similar, in their order.
@@ -292,7 +297,24 @@ std::vector<std::size_t> closest(const std::vector<Known>& models,
     return result;
 }
 
+double tolerance_for(const PatternPiece& piece, double tolerance_mm) {
+    return std::min(tolerance_mm, size_share * std::sqrt(piece.area));
+}
+
 } // namespace
+
+std::optional<MirrorAxis> find_mirror_axis(const PatternPiece& piece, double tolerance_mm) {
+    const double around = plane::perimeter(piece.outer.points);
+    const auto motion = same_shape(Shape(piece, true), Shape(piece, false), 0.0, around,
+                                   tolerance_for(piece, tolerance_mm));
+    if (!motion)
+        return std::nullopt;
+    // In complex numbers around the middle of the box, the mirror image of z is −turn z̄ + shift:
+    // its axis has half the angle of −turn, and half of the shift lies on it.
+    const double angle = 0.5 * std::arg(-motion->turn);
+    return MirrorAxis{piece.box.center() + 0.5 * point(motion->shift),
+                      Vec2(std::cos(angle), std::sin(angle))};
+}
 
 void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm,
                       const Progress& progress) {
@@ -304,14 +326,15 @@ void find_same_pieces(std::vector<PatternPiece>& pieces, double tolerance_mm,
         piece.mirrored = false;
         piece.quantity = 1;
         piece.mirrored_quantity = 0;
-        const double tolerance = std::min(tolerance_mm, size_share * std::sqrt(piece.area));
+        const double tolerance = tolerance_for(piece, tolerance_mm);
         Shape straight(piece, false);
         const Signature signature(piece, straight);
         const Shape mirrored(piece, true);
         for (const std::size_t m : closest(models, pieces, piece, signature, tolerance)) {
             const double longer = std::abs(signature.around - models[m].signature.around);
             const auto is_same = [&](const Shape& shape) {
-                return same_shape(shape, models[m].shape, longer, signature.around, tolerance);
+                return same_shape(shape, models[m].shape, longer, signature.around, tolerance)
+                    .has_value();
             };
             const bool same = is_same(straight);
             if (!same && !is_same(mirrored))

@@ -13,6 +13,7 @@ namespace devseg::pattern {
 struct OutlineSeam {
     Index seam = -1; // position in Pattern::seams; −1 = boundary of the model, sewn to nothing
     int side = 0;    // which of the seam's two sides
+    bool is_dart = false;
 };
 
 /// One side of a seam: the edges first, first + 1, … (modulo their number) of one outline. Side 0

@@ -348,7 +348,8 @@ void set_seams(Pattern& pattern, const std::vector<Chain>& chains) {
             const SeamSide& side = seam.sides[s];
             PiecePath& path = pattern.pieces[side.piece].path(side.path);
             for (Index e = 0; e < side.count; ++e)
-                path.edges[at(side.first + e) % path.edges.size()] = {seam.number - 1, s};
+                path.edges[at(side.first + e) % path.edges.size()] = {seam.number - 1, s,
+                                                                      seam.is_dart};
         }
         pattern.seams.push_back(std::move(seam));
     }

@@ -117,13 +117,15 @@ PieceBox least_box(const std::vector<Vec2>& points) {
     return result;
 }
 
-void set_sizes(PatternPiece& piece, GrainDirection grain) {
+PieceBox set_sizes(PatternPiece& piece) {
     const PieceBox box = least_box(piece.outer.points);
     piece.long_side = box.long_side;
     piece.short_side = box.short_side;
-    piece.grain =
-        chord_through(piece, piece.label_position,
-                      grain == GrainDirection::longest ? box.direction : Vec2(Vec2::UnitY()));
+    return box;
+}
+
+void set_grain(PatternPiece& piece, const Vec2& direction) {
+    piece.grain = chord_through(piece, piece.label_position, direction);
 }
 
 LabelPoint find_label_point(const Outlines& outlines) {

@@ -16,9 +16,12 @@ struct PieceBox {
 };
 PieceBox least_box(const std::vector<Vec2>& points);
 
-/// Sets both sides' lengths and the grain line: along the long direction or upwards, through the
-/// label's place, and clear of the outlines.
-void set_sizes(PatternPiece& piece, GrainDirection grain);
+/// Sets both sides' lengths, and returns the box.
+PieceBox set_sizes(PatternPiece& piece);
+
+/// Sets the grain line: in this direction (unit), through the label's place, and clear of the
+/// outlines.
+void set_grain(PatternPiece& piece, const Vec2& direction);
 
 struct LabelPoint {
     Vec2 position = Vec2::Zero();

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
+#include "devseg/material/material.h"
 #include "devseg/methods/plush/plush_seams.h"
 #include "devseg/metrics/segmentation.h"
 
@@ -36,10 +38,14 @@ constexpr const char* plush_help =
     "<b>\"Conformal Flattening by Curvature Prescription and Metric Scaling\"</b><br>"
     "Computer Graphics Forum (Eurographics), 2008, doi:10.1111/j.1467-8659.2008.01142.x";
 
+// What a material that bears nothing asks for: 0 would be no bound.
+constexpr double least_bound = 1e-3;
+
 enum class MaterialBorders { none, selection, colors };
 
 struct Options : PlushOptions {
     std::string skeleton_file;
+    std::string material; // that sets max_strain where nobody else does
     MaterialBorders material_borders = MaterialBorders::none;
 };
 
@@ -76,8 +82,19 @@ std::string note_on_failed(const std::vector<Index>& charts, bool by_strain) {
            " (chart_id): " + names + "; a larger bound or a cleaner mesh helps";
 }
 
-FilterOutput run_plush(const FilterInput& input, const Options& options, Progress& progress) {
+// A material bounds the strain, unless max_strain was set.
+Options with_limits(Options options) {
+    if (options.material.empty())
+        return options;
+    const material::Material material = material::read_material(options.material);
+    if (options.max_strain == Options().max_strain)
+        options.max_strain = std::max(least_bound, material.least_limit());
+    return options;
+}
+
+FilterOutput run_plush(const FilterInput& input, const Options& given, Progress& progress) {
     const Mesh& mesh = input.mesh;
+    const Options options = with_limits(given);
     const std::vector<std::uint8_t> hard = find_hard_seams(input, options.material_borders);
     Skeleton skeleton;
     if (!options.skeleton_file.empty())
@@ -119,6 +136,10 @@ FilterDeclaration plush() {
             "share: 0.2 = 20 % on 99 % of each patch's area, and at most twice that anywhere. "
             "Woven cotton takes 0.05, fleece and minky 0.1 to 0.2. 0: patches are judged by "
             "max_area_change alone.")
+        .text(&O::material, "material", "Material",
+              "What the pieces are cut from: " + material::names() +
+                  ", also with values of its own as in fleece, warp=0.12. It sets max_strain to "
+                  "the least of its limits, unless another one than the default is given.")
         .real(&O::geodesic_weight, "Weight of short seams",
               "Exponent of the length of an edge in its weight, without unit. Larger values make "
               "straighter seams.")

@@ -1,0 +1,108 @@
+"""Markers beside those of spyrrow (PyPI), for the same pieces, rotations, width and gap.
+
+Usage: python tests/bench/bench_marker.py [--width-mm W] [--seconds S] [--grain free] MESH...
+
+Meshes have texture coordinates, such as NAME.ply of `devseg run`. One line for each: pieces, the
+share of the cloth that both cover, and seconds. spyrrow works S seconds on one core. It knows no
+holes, so outlines count alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+
+import devseg
+import pattern_files as files
+from devseg import host
+
+
+def outlines(svg: Path) -> list[Any]:
+    """The outer cut line of each piece as it lies on the marker, in mm."""
+    polygons = files.polygons(files.read_svg(svg)["cut"])
+    return [polygon.exterior.coords[:-1] for polygon in polygons.values()]
+
+
+def area(points: list[tuple[float, float]]) -> float:
+    """Of a ring."""
+    shifted = [*points[1:], points[0]]
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, shifted, strict=True))) / 2
+
+
+def theirs(pieces: list[Any], args: argparse.Namespace) -> float:
+    """The length that spyrrow finds; its strip runs along x."""
+    import spyrrow
+
+    free = args.grain == "free"
+    items = [
+        spyrrow.Item(str(i), [(y, x) for x, y in ring], 1, None if free else [0.0, 180.0])
+        for i, ring in enumerate(pieces)
+    ]
+    instance = spyrrow.StripPackingInstance("marker", args.width_mm, items)
+    config = spyrrow.StripPackingConfig(
+        total_computation_time=args.seconds,
+        min_items_separation=args.gap_mm,
+        num_workers=1,
+        seed=0,
+    )
+    return instance.solve(config).width
+
+
+def main() -> int:
+    """Prints the table; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("meshes", nargs="+", type=Path)
+    parser.add_argument("--width-mm", type=float, default=1400.0)
+    parser.add_argument("--height-mm", type=float, default=400.0)
+    parser.add_argument("--gap-mm", type=float, default=3.0)
+    parser.add_argument("--copies", type=int, default=1)
+    parser.add_argument("--seconds", type=int, default=10)
+    parser.add_argument("--grain", choices=("kept", "free"), default="kept")
+    parser.add_argument("--effort", default="Normal")
+    args = parser.parse_args()
+    devseg.load_plugins()
+    pymeshlab = host.pymeshlab()
+    differences = []
+    for mesh in args.meshes:
+        ms = pymeshlab.MeshSet()
+        ms.load_new_mesh(str(mesh))
+        with tempfile.TemporaryDirectory() as folder:
+            svg = Path(folder) / "marker.svg"
+            start = time.process_time()
+            found = ms.apply_filter(
+                "export_pattern",
+                output_file=str(svg),
+                preset="Sewing",
+                labels=False,
+                edge_numbers=False,
+                height_mm=args.height_mm,
+                fabric_width_mm=args.width_mm,
+                piece_gap_mm=args.gap_mm,
+                copies=args.copies,
+                effort=args.effort,
+                grain="Free" if args.grain == "free" else "Best fit",
+            )
+            seconds = time.process_time() - start
+            pieces = outlines(svg)
+        covered = sum(map(area, pieces))
+        ours = covered / (args.width_mm * found["fabric_length_mm"])
+        other = covered / (args.width_mm * theirs(pieces, args))
+        differences.append(ours - other)
+        print(
+            f"{mesh.stem:28} {len(pieces):4} pieces: {100 * ours:5.1f} % in {seconds:5.1f} s, "
+            f"spyrrow {100 * other:5.1f} %",
+            flush=True,
+        )
+    print(f"median difference {100 * statistics.median(differences):+.1f} points")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,179 @@
+// Pieces on a roll of cloth, folded and not; what a cut burns away.
+#include "sheet/marker.h"
+
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "devseg/base/errors.h"
+#include "devseg/plane/plane.h"
+#include "sheet/half_piece.h"
+#include "unit/checks.h"
+
+namespace devseg::sheet {
+namespace {
+
+pattern::PatternPiece piece_of(const std::vector<Vec2>& ring, const std::string& name) {
+    pattern::PatternPiece piece;
+    piece.name = name;
+    piece.outer.points = ring;
+    piece.outer.area = piece.area = plane::signed_area(ring);
+    piece.outer.edges.resize(ring.size());
+    piece.outer.half_edge.assign(ring.size(), -1);
+    piece.outer.corner.assign(ring.size(), 1);
+    piece.box = plane::box_of(ring);
+    piece.label_position = piece.box.center();
+    piece.label_radius = 10.0;
+    piece.grain_direction = Vec2::UnitY();
+    return piece;
+}
+
+std::vector<Vec2> mirrored(std::vector<Vec2> ring) {
+    for (Vec2& p : ring)
+        p.x() = -p.x();
+    std::reverse(ring.begin(), ring.end());
+    return ring;
+}
+
+// A hook and its mirror image, an arrow that is its own mirror image, and one more hook.
+pattern::Pattern hooks_and_arrow() {
+    const std::vector<Vec2> hook = {Vec2(0, 0),   Vec2(60, 0),  Vec2(60, 20),
+                                    Vec2(20, 20), Vec2(20, 90), Vec2(0, 90)};
+    const std::vector<Vec2> arrow = {Vec2(0, 0), Vec2(80, 0), Vec2(80, 50), Vec2(40, 90),
+                                     Vec2(0, 50)};
+    pattern::Pattern pattern;
+    pattern.pieces = {piece_of(hook, "P1"), piece_of(mirrored(hook), "P2"), piece_of(arrow, "P3"),
+                      piece_of(hook, "P4")};
+    pattern::find_same_pieces(pattern.pieces, 0.5, Progress());
+    pattern.material = material::read_material("cotton");
+    return pattern;
+}
+
+ExportOptions on_cloth(double width) {
+    ExportOptions options;
+    options.fabric_width_mm = width;
+    options.effort = Effort::fast;
+    return options;
+}
+
+PatternLayout marker(const pattern::Pattern& pattern, const ExportOptions& given) {
+    const ExportOptions options = resolved(given);
+    PatternLayout layout;
+    for (std::size_t i = 0; i < pattern.pieces.size(); ++i)
+        layout.pieces.push_back(compose_piece(pattern, static_cast<Index>(i), {}, options));
+    Progress progress;
+    lay_out_marker(pattern, options, layout, progress);
+    return layout;
+}
+
+void expect_inside(const PatternLayout& layout, double left, double right) {
+    for (const SheetPiece& piece : layout.pieces) {
+        EXPECT_GE(piece.box().min().x(), left - 1e-3) << piece.name;
+        EXPECT_LE(piece.box().max().x(), right + 1e-3) << piece.name;
+        EXPECT_LE(piece.box().max().y(), layout.fabric->length + 1e-6) << piece.name;
+    }
+}
+
+TEST(Marker, HasAllPiecesAndCopiesBetweenTheSelvedges) {
+    ExportOptions options = on_cloth(200.0);
+    options.selvedge_mm = 10.0;
+    options.copies = 2;
+    const PatternLayout layout = marker(hooks_and_arrow(), options);
+    ASSERT_EQ(layout.pieces.size(), 8u);
+    EXPECT_EQ(layout.pieces[4].name, "P1-2");
+    expect_inside(layout, 10.0, 190.0);
+    for (const SheetPiece& piece : layout.pieces) // along the grain
+        EXPECT_NEAR(std::abs(piece.frame.placement.cosine), 1.0, 1e-9);
+    double area = 0.0;
+    for (const SheetPiece& piece : layout.pieces)
+        area += plane::signed_area(piece.cut.front());
+    EXPECT_NEAR(layout.fabric->use, area / (180.0 * layout.fabric->length), 1e-9);
+    EXPECT_GT(layout.fabric->use, 0.6);
+}
+
+TEST(Marker, NapTurnsNothingRound) {
+    ExportOptions options = on_cloth(200.0);
+    options.material = "minky";
+    for (const SheetPiece& piece : marker(hooks_and_arrow(), options).pieces)
+        EXPECT_NEAR(piece.frame.placement.cosine, 1.0, 1e-9);
+}
+
+TEST(Marker, FoldCutsPairsAtOnceAndHalvesAlongIt) {
+    ExportOptions options = on_cloth(300.0);
+    options.fold = true;
+    options.selvedge_mm = 5.0;
+    const PatternLayout layout = marker(hooks_and_arrow(), options);
+    // A pair of hooks, half an arrow, and a hook that has no partner.
+    ASSERT_EQ(layout.pieces.size(), 3u);
+    EXPECT_EQ(layout.fabric->single_layer_pieces, 1);
+    expect_inside(layout, 0.0, 145.0);
+    const SheetPiece* half = nullptr;
+    for (const SheetPiece& piece : layout.pieces)
+        if (piece.name == "P3-fold")
+            half = &piece;
+    ASSERT_NE(half, nullptr);
+    EXPECT_NEAR(half->box().min().x(), 0.0, 1e-9);
+    EXPECT_NEAR(half->box().sizes().x(), 40.0, 0.1);
+    EXPECT_NEAR(plane::signed_area(half->cut.front()), 0.5 * (80.0 * 50.0 + 40.0 * 40.0), 5.0);
+    // Each arrow of two is the other's mirror image.
+    options.copies = 2;
+    for (const SheetPiece& piece : marker(hooks_and_arrow(), options).pieces)
+        EXPECT_EQ(piece.name.find("fold"), std::string::npos) << piece.name;
+}
+
+TEST(Marker, RefusesWhatDoesNotFit) {
+    const auto message = [](const ExportOptions& options) {
+        return checks::error_of<InvalidParameter>([&] { marker(hooks_and_arrow(), options); });
+    };
+    EXPECT_TRUE(checks::contains(message(on_cloth(70.0)), "found P3 of 80 mm on 70 mm"))
+        << message(on_cloth(70.0));
+    ExportOptions options = on_cloth(0.0);
+    options.fold = true;
+    EXPECT_TRUE(checks::contains(message(options), "fabric_width_mm"));
+    options = on_cloth(300.0);
+    options.fold = true;
+    options.grain = pattern::GrainDirection::free;
+    EXPECT_TRUE(checks::contains(message(options), "grain: expected a grain"));
+    options = on_cloth(300.0);
+    options.page = "a4";
+    EXPECT_TRUE(checks::contains(message(options), "either a roll of cloth or a page"));
+    options = on_cloth(30.0);
+    options.selvedge_mm = 20.0;
+    EXPECT_TRUE(checks::contains(message(options), "between its selvedges"));
+}
+
+TEST(MirrorAxis, IsFoundWhereThereIsOne) {
+    const pattern::Pattern pattern = hooks_and_arrow();
+    EXPECT_FALSE(pattern::find_mirror_axis(pattern.pieces[0], 0.5));
+    const auto axis = pattern::find_mirror_axis(pattern.pieces[2], 0.5);
+    ASSERT_TRUE(axis);
+    EXPECT_NEAR(std::abs(axis->direction.y()), 1.0, 1e-6);
+    EXPECT_NEAR(axis->point.x(), 40.0, 0.05); // within the tolerance of shapes
+}
+
+TEST(Kerf, MovesOutlinesOutwardsAndHolesInwards) {
+    pattern::Pattern pattern;
+    pattern.pieces = {piece_of({Vec2(0, 0), Vec2(100, 0), Vec2(100, 60), Vec2(0, 60)}, "P1")};
+    pattern::PiecePath hole =
+        piece_of({Vec2(40, 20), Vec2(40, 40), Vec2(60, 40), Vec2(60, 20)}, "").outer;
+    pattern.pieces[0].holes = {hole};
+    ExportOptions options;
+    options.kerf_mm = 0.4;
+    const SheetPiece grown = compose_piece(pattern, 0, {}, resolved(options));
+    ASSERT_EQ(grown.cut.size(), 2u);
+    const Eigen::AlignedBox2d outer = plane::box_of(grown.cut[0]);
+    EXPECT_NEAR(outer.sizes().x(), 100.4, 1e-6);
+    EXPECT_NEAR(outer.sizes().y(), 60.4, 1e-6);
+    EXPECT_NEAR(plane::box_of(grown.cut[1]).sizes().x(), 19.6, 1e-6);
+    EXPECT_GT(plane::signed_area(grown.cut[0]), 0.0);
+    EXPECT_LT(plane::signed_area(grown.cut[1]), 0.0);
+    options.kerf_mm = -1.0; // the material's, of a laser
+    options.material = "leather";
+    EXPECT_EQ(resolved(options).kerf_mm, 0.0);
+    options.preset = PatternPreset::laser;
+    EXPECT_EQ(resolved(options).kerf_mm, material::read_material("leather").kerf_mm);
+}
+
+} // namespace
+} // namespace devseg::sheet
