@@ -11,7 +11,9 @@ namespace devseg::filters {
 
 struct SheetLayout {
     CornerUv uv;
-    Index unsettled = 0; // faces that rounding flattened
+    Index unsettled = 0;            // faces that rounding flattened
+    int thin = 0;                   // charts that rounding stretches
+    std::vector<std::uint8_t> look; // #F: 1 in those
 };
 
 /// Moves flat charts to their places, rounds them to 32 bit, and spreads them to corners. The sheet
@@ -22,7 +24,8 @@ SheetLayout lay_out(const Mesh& mesh, std::vector<flatten::FlatChart>& charts,
 /// The same in rows, in model units and without any search for room.
 SheetLayout lay_out_in_rows(const Mesh& mesh, std::vector<flatten::FlatChart>& charts);
 
-/// Tells the user about faces that rounding flattened.
+/// Tells the user about faces that rounding flattened and charts that it stretches, and selects the
+/// faces of these.
 void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output);
 
 } // namespace devseg::filters

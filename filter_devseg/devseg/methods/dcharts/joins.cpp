@@ -1,15 +1,14 @@
 #include "devseg/methods/dcharts/joins.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
 #include <map>
 #include <utility>
 
 #include "devseg/base/parallel.h"
-#include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/judge/final_map.h"
+#include "devseg/methods/dcharts/cut_exchange.h"
+#include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
 
@@ -43,7 +42,7 @@ public:
         const Index joins_before = draft_.joins;
         while (draft_.charts_number() > options_.enough_charts) {
             auto trying = progress.part(0.0); // joins say how far it is
-            for (propose(); !untried_.empty(); propose())
+            for (propose(trying); !untried_.empty(); propose(trying))
                 try_again(untried_, trying);
             Entry* best = choose(progress);
             if (best == nullptr && try_old_again(trying))
@@ -51,8 +50,9 @@ public:
             const bool may_part = draft_.charts_number() > options_.parts_above;
             if (best != nullptr)
                 close(best->first, best->second);
-            else if (partly_ || !may_part)
+            else if (!may_part || (partly_ && (exchanging_ || !options_.exchange_cuts)))
                 return;
+            exchanging_ = exchanging_ || (partly_ && best == nullptr);
             partly_ = may_part && (partly_ || best == nullptr);
             progress.update((draft_.joins - joins_before) / start);
         }
@@ -62,7 +62,7 @@ private:
     using Entry = std::pair<Closing, Verdict>;
 
     // All closings that there are now, those known with their verdicts.
-    void propose() {
+    void propose(const Progress& progress) {
         std::map<Pair, std::vector<Closing>> chains;
         std::vector<Closing> found = chains_.find(draft_);
         seams_at_corner_.clear();
@@ -76,7 +76,7 @@ private:
         untried_.clear();
         for (auto& [charts, parts] : chains) {
             if (charts.first != charts.second) {
-                Closing whole{charts, {}};
+                Closing whole{charts, {}, {}};
                 for (const Closing& part : parts)
                     whole.edges.insert(whole.edges.end(), part.edges.begin(), part.edges.end());
                 add(std::move(whole), true, last);
@@ -84,6 +84,12 @@ private:
             for (const Closing& part : parts)
                 if (partly_)
                     add_parts(part, last);
+            if (exchanging_ && charts.first == charts.second)
+                for (Closing& part : parts) {
+                    part.opened = shorter_cut(mesh_, draft_, part, progress);
+                    if (!part.opened.empty())
+                        add(std::move(part), false, last);
+                }
         }
     }
 
@@ -96,7 +102,7 @@ private:
             for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {
                 const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
                                           : chain.edges.begin();
-                Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}};
+                Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}, {}};
                 if (length_of(part.edges) < least)
                     break;
                 const Entry* entry = add(std::move(part), false, last);
@@ -115,6 +121,7 @@ private:
     // Returns what is known of it.
     const Entry* add(Closing closing, bool whole, const Verdicts& last) {
         std::vector<Index> key = closing.edges;
+        key.insert(key.end(), closing.opened.begin(), closing.opened.end());
         std::sort(key.begin(), key.end());
         if (encloses_corner(closing))
             return nullptr;
@@ -157,10 +164,10 @@ private:
                 TrialEffort effort;
                 effort.wanted_l2 = bounds_of(closing.charts).l2;
                 effort.give_up = true;
-                effort.only_near = !verdict.whole;
+                effort.only_near = !verdict.whole && closing.opened.empty();
                 assess(closing,
                        judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
-                                        effort, progress, turns_of(closing)),
+                                        effort, progress, joined_turns(mesh_, draft_, closing)),
                        verdict);
             },
             progress);
@@ -182,8 +189,8 @@ private:
         const TrialMap& b = draft_.map[second];
         const bool is_join = first != second;
         verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
-        verdict.saved = length_of(closing.edges) - map.cut_length + a.cut_length +
-                        (is_join ? b.cut_length : 0.0);
+        verdict.saved = length_of(closing.edges) - length_of(closing.opened) - map.cut_length +
+                        a.cut_length + (is_join ? b.cut_length : 0.0);
         verdict.map = std::move(map);
         verdict.fresh = true;
         verdict.confirmed = false;
@@ -199,61 +206,6 @@ private:
         return faces;
     }
 
-    // Of the faces of both charts, those of the second turned so that the closed edges lie along
-    // each other; empty where a chart has no map.
-    std::vector<Vec2> turns_of(const Closing& closing) const {
-        const auto [a, b] = closing.charts;
-        const std::vector<Vec2>& turns_a = draft_.map[a].turns;
-        const std::vector<Vec2>& turns_b = draft_.map[b].turns;
-        if (a == b || turns_a.empty() || turns_b.empty())
-            return a == b ? turns_a : std::vector<Vec2>();
-        const auto turn_of = [&](Index chart, Face f) {
-            const std::vector<Index>& faces = draft_.faces[chart];
-            return draft_.map[chart].turns[at(static_cast<Index>(
-                std::lower_bound(faces.begin(), faces.end(), Index{f}) - faces.begin()))];
-        };
-        // As complex numbers: the sum over the edges of their direction on one side over that on
-        // the other.
-        std::complex<double> between = 0.0;
-        for (const HalfEdge edge : closing.edges) {
-            const HalfEdge ha = draft_.chart[face_of(edge)] == a ? edge : mesh_.twin[edge];
-            const HalfEdge hb = mesh_.twin[ha];
-            between +=
-                laid(turn_of(a, face_of(ha)), ha) * std::conj(-laid(turn_of(b, face_of(hb)), hb));
-        }
-        const double size = std::abs(between);
-        const std::complex<double> turn = size > 0.0 ? between / size : 1.0;
-        std::vector<Vec2> turns;
-        auto ia = draft_.faces[a].begin();
-        auto ib = draft_.faces[b].begin();
-        auto ta = turns_a.begin();
-        auto tb = turns_b.begin();
-        while (ia != draft_.faces[a].end() || ib != draft_.faces[b].end()) {
-            if (ib == draft_.faces[b].end() || (ia != draft_.faces[a].end() && *ia < *ib)) {
-                turns.push_back(*ta++);
-                ++ia;
-            } else {
-                const std::complex<double> turned = turn * std::complex<double>(tb->x(), tb->y());
-                turns.emplace_back(turned.real(), turned.imag());
-                ++tb;
-                ++ib;
-            }
-        }
-        return turns;
-    }
-
-    // A half-edge in the plane, its face turned so.
-    std::complex<double> laid(const Vec2& turn, HalfEdge h) const {
-        const Face f = face_of(h);
-        std::array<double, 3> length{};
-        for (const HalfEdge e : half_edges_of(f))
-            length[corner_of(e)] = mesh_.edge_length(e);
-        const Eigen::Matrix2d edges = flatten::make_rest_triangle(length, 0.0).edges;
-        const std::array<Vec2, 3> corner{Vec2(0.0, 0.0), edges.col(0), edges.col(1)};
-        const Vec2 edge = corner[corner_of(Mesh::next(h))] - corner[corner_of(h)];
-        return std::complex<double>(turn.x(), turn.y()) * std::complex<double>(edge.x(), edge.y());
-    }
-
     // The cuts inside the joined chart: those of both, and what is left of the border.
     std::vector<std::uint8_t> seam_without(const Closing& closing) const {
         std::vector<std::uint8_t> seam = draft_.seam;
@@ -261,6 +213,8 @@ private:
             seam[h] = seam[mesh_.twin[h]] = 1;
         for (const HalfEdge h : closing.edges)
             seam[h] = seam[mesh_.twin[h]] = 0;
+        for (const HalfEdge h : closing.opened)
+            seam[h] = seam[mesh_.twin[h]] = 1;
         return seam;
     }
 
@@ -298,6 +252,9 @@ private:
             limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
             limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
         }
+        // Nobody cuts out a splinter: it may be as stretched as it likes, for it adds nothing.
+        if (std::min(a.area, b.area) < tuning.negligible * mesh_.total_area)
+            limit.linf = infinite;
         limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
         limit.linf = std::min(limit.linf, options_.chart.hard_linf);
         return limit;
@@ -386,6 +343,7 @@ private:
         draft_.seam = seam_without(closing);
         const std::vector<HalfEdge> left = left_border(closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
+        draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;
         if (!open_.empty())
             open_[at(a)] = open_[at(b)] = 1;
@@ -409,6 +367,7 @@ private:
     SeamChains chains_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
     bool partly_ = false;            // parts of borders are closed as well
+    bool exchanging_ = false;        // cuts are tried in other places as well
     Verdicts verdicts_;
     std::vector<Entry*> untried_;
     std::map<Index, int> seams_at_corner_; // seam edges at each corner that has any
@@ -418,6 +377,20 @@ private:
 
 void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress) {
     Joining(mesh, options, draft).run(progress);
+}
+
+std::vector<Draft> merge_charts_in_steps(const Mesh& mesh, MergeOptions options,
+                                         const std::vector<double>& max_excess, Draft draft,
+                                         Progress& progress) {
+    std::vector<Draft> drafts;
+    Joining joining(mesh, options, draft);
+    for (const double most : max_excess) {
+        options.max_excess = most;
+        auto step = progress.part(0.5 * progress.left());
+        joining.run(step);
+        drafts.push_back(draft);
+    }
+    return drafts;
 }
 
 } // namespace devseg::dcharts
