@@ -112,7 +112,7 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
 int written_elements(const declare::FilterDeclaration& filter) {
     int mask = MeshModel::MM_NONE;
     if (filter.writes & declare::writes_charts)
-        mask |= MeshModel::MM_FACEFLAG;
+        mask |= MeshModel::MM_FACEFLAG | MeshModel::MM_FACEFLAGSELECT;
     if (filter.writes & declare::writes_quality)
         mask |= MeshModel::MM_FACEQUALITY;
     if (filter.writes & declare::writes_color)

@@ -168,6 +168,8 @@ inline unsigned write_host_result(MeshModel& model, const declare::HostResult& r
         write_points(model.cm, result.points);
         changed |= MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
     }
+    if (!result.face_selected.empty())
+        changed |= MeshModel::MM_FACEFLAGSELECT;
     std::size_t i = 0;
     for (auto& f : model.cm.face) {
         if (f.IsD())
@@ -178,6 +180,12 @@ inline unsigned write_host_result(MeshModel& model, const declare::HostResult& r
         if (!result.face_color.empty() && !stays) {
             const declare::Color& c = result.face_color[i];
             f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
+        }
+        if (!result.face_selected.empty() && !stays) {
+            if (result.face_selected[i] != 0)
+                f.SetS();
+            else
+                f.ClearS();
         }
         for (int k = 0; k < 3; ++k) {
             if (!result.wedge_uv.empty() && !stays) {

@@ -281,6 +281,8 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
         }
         if (output.face_quality)
             result.face_quality.push_back((*output.face_quality)[f.face]);
+        if (!output.selected.empty())
+            result.face_selected.push_back(f.own ? output.selected[f.face] : 0);
         if (output.face_color)
             result.face_color.push_back((*output.face_color)[f.face]);
         if (output.uv) {

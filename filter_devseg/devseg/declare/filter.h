@@ -119,6 +119,8 @@ struct FilterOutput {
     std::optional<std::vector<Triangle>> fans;
     std::optional<plane::Image> texture;
     std::vector<std::uint8_t> untouched; // #F of the mesh: 1 where all stays as it is
+    std::vector<std::uint8_t> selected;  // #F: 1 for faces that need a look; empty: the selection
+                                         // stays
     ResultValues values;
     std::vector<std::string> notes; // for the user, one sentence each
     std::function<void()> save;     // writes the filter's file, if it has one: comes last, because
@@ -199,6 +201,7 @@ struct HostResult {
     std::vector<double> face_quality;
     std::vector<Color> face_color;
     std::vector<std::array<Vec2, 3>> wedge_uv;
+    std::vector<std::uint8_t> face_selected; // empty: the selection stays
     // Empty, or 1 for the host's own faces that must stay as they are: their coordinates, quality
     // and colours here mean nothing, and only their seams may have changed.
     std::vector<std::uint8_t> untouched;

@@ -154,6 +154,8 @@ public:
             output.charts = whole_charts(*output.charts);
         if (output.face_quality)
             output.face_quality = spread(*output.face_quality);
+        if (!output.selected.empty())
+            output.selected = spread(output.selected);
         if (output.uv)
             output.uv = beside_others(*output.uv);
         if (output.face_color)

@@ -100,6 +100,13 @@ FilterOutput chart_output(const Mesh& mesh, atlas::ChartMap charts, std::vector<
     return output;
 }
 
+void select_charts(const std::vector<std::uint8_t>& charts, FilterOutput& output) {
+    if (std::none_of(charts.begin(), charts.end(), [](auto chosen) { return chosen != 0; }))
+        return;
+    for (const Index c : output.charts->chart)
+        output.selected.push_back(charts[c]);
+}
+
 FilterOutput segmentation_output(const FilterInput& input, const std::vector<Index>& labels,
                                  std::vector<double> face_quality,
                                  const atlas::DiskOptions& options, Progress& progress) {

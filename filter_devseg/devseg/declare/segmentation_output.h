@@ -20,6 +20,10 @@ std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& ch
 std::vector<Color> face_chart_colors(const Mesh& mesh, const atlas::ChartMap& charts,
                                      const std::vector<std::optional<Color>>& given);
 
+/// Selects the faces of the charts that need a look (#charts); where none does, the selection
+/// stays.
+void select_charts(const std::vector<std::uint8_t>& charts, FilterOutput& output);
+
 /// Charts with their colours, and these values. `quality`: #F.
 FilterOutput chart_output(const Mesh& mesh, atlas::ChartMap charts, std::vector<double> quality,
                           ResultValues values);

@@ -97,6 +97,7 @@ FilterOutput run_flatten(const FilterInput& input, const FlattenOptions& options
         {"mended_charts_number", mended},
         {"converged", converged},
         {"worst_chart_energy", energy},
+        {"thin_charts_number", layout.thin},
     };
     if (cuts.cut_charts > 0)
         output.notes.push_back(std::to_string(cuts.cut_charts) +
@@ -177,6 +178,8 @@ FilterDeclaration flatten() {
         .result("converged", "whether all charts reached the tolerance")
         .result("worst_chart_energy", "largest symmetric Dirichlet energy of a chart, 1 for an "
                                       "isometry, no unit")
+        .result("thin_charts_number", "charts too thin for 32-bit coordinates, which stretch them; "
+                                      "their faces are selected")
         .runs(run_flatten);
 }
 

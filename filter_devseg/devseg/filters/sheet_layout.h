@@ -12,7 +12,9 @@ namespace devseg::filters {
 
 struct SheetLayout {
     CornerUv uv;
-    Index unsettled = 0; // faces that rounding flattened
+    Index unsettled = 0;            // faces that rounding flattened
+    int thin = 0;                   // charts that rounding stretches
+    std::vector<std::uint8_t> look; // #F: 1 in those
 };
 
 /// Moves flat charts to their places, rounds them to 32 bit, and spreads them to corners. The sheet
@@ -32,7 +34,8 @@ constexpr const char* effort_help =
 
 pack::PackOptions packing_with(pack::PackEffort effort);
 
-/// Tells the user about faces that rounding flattened.
+/// Tells the user about faces that rounding flattened and charts that it stretches, and selects the
+/// faces of these.
 void note_unsettled(const SheetLayout& layout, declare::FilterOutput& output);
 
 } // namespace devseg::filters

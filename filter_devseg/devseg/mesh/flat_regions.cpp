@@ -14,6 +14,7 @@ struct Tuning {
     double parallel_cosine = 1.0 - 0.5e-6;
     // Of the root of the surface's area: needles have no normal, but they lie in the plane.
     double flat = 1e-6;
+    double least_facet = 0.002; // of the surface
 };
 constexpr Tuning tuning;
 
@@ -109,6 +110,31 @@ void keep_regions_whole(const Mesh& mesh, double share, std::vector<Index>& labe
         if (largest != labels.end())
             label[f] = largest->first;
     }
+}
+
+Facets::Facets(const Mesh& mesh, Index count) {
+    const FaceComponents regions = flat_regions(mesh);
+    const std::vector<double> area = areas_of(mesh, regions);
+    std::vector<Index> size(at(regions.count), 0);
+    for (const Index r : regions.label)
+        ++size[r];
+    std::vector<Index> number(at(regions.count), -1);
+    Index facets = 0;
+    Index places = mesh.face_count();
+    for (Index r = 0; r < regions.count; ++r)
+        if (size[r] > 1 && area[r] >= tuning.least_facet * mesh.total_area) {
+            number[r] = facets++;
+            places -= size[r] - 1;
+        }
+    if (facets == 0 || places < count)
+        return;
+    for (const Index r : regions.label)
+        number_.push_back(number[r]);
+    faces_ = make_buckets<Index>(facets, [&](auto put) {
+        for (const Face f : mesh.all_faces())
+            if (number_[f] >= 0)
+                put(number_[f], Index{f});
+    });
 }
 
 } // namespace devseg::mesh

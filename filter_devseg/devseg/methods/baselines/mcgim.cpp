@@ -70,11 +70,12 @@ McgimResult segment_mcgim(const Mesh& mesh, const McgimOptions& options, Progres
 
     // One chart more at a time, from the face that was reached last [SWGSH03, section 4.1].
     auto placing = progress.part("placing seeds", 0.3);
+    const mesh::Facets facets(mesh, count);
     std::vector<Index> seeds = growth::farthest_point_seeds(
-        mesh, components, static_cast<std::uint32_t>(options.random_seed), placing);
+        mesh, components, static_cast<std::uint32_t>(options.random_seed), placing, facets);
     McgimResult result;
     PathCost cost(mesh);
-    growth::MultiHeap<growth::Offers::best> heaps(mesh);
+    growth::MultiHeap<growth::Offers::best> heaps(mesh, facets);
     const auto grow = [&](Progress& part) {
         cost.start_over(seeds.size());
         heaps.grow(seeds, cost, result.chart, part);

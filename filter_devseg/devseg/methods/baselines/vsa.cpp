@@ -99,8 +99,8 @@ struct Partition {
 
 class Approximation {
 public:
-    Approximation(const Mesh& mesh, Progress& progress)
-        : mesh_(mesh), progress_(progress), cost_(mesh), heaps_(mesh) {}
+    Approximation(const Mesh& mesh, const mesh::Facets& facets, Progress& progress)
+        : mesh_(mesh), facets_(facets), progress_(progress), cost_(mesh), heaps_(mesh, facets) {}
 
     void partition() {
         cost_.set_proxies(proxies_);
@@ -135,7 +135,7 @@ public:
         Index farthest = -1;
         double largest = 0.0;
         for (const Face f : mesh_.all_faces()) {
-            if (now_.chart[f] != worst || f == seeds_[worst])
+            if (now_.chart[f] != worst || facets_.are_one(f, seeds_[worst]))
                 continue;
             const double deviation =
                 std::sqrt(mesh_.face_areas[f] * squared_deviation(mesh_, f, normal));
@@ -156,7 +156,8 @@ public:
     /// The first of `candidates` that is no seed yet; there must be one.
     void add_unused(const std::vector<Index>& candidates) {
         add(*std::find_if(candidates.begin(), candidates.end(), [&](Face f) {
-            return std::find(seeds_.begin(), seeds_.end(), f) == seeds_.end();
+            return std::none_of(seeds_.begin(), seeds_.end(),
+                                [&](Face seed) { return facets_.are_one(f, seed); });
         }));
     }
 
@@ -215,6 +216,7 @@ private:
     }
 
     const Mesh& mesh_;
+    const mesh::Facets& facets_;
     Progress& progress_;
     ProxyCost cost_;
     growth::MultiHeap<growth::Offers::first> heaps_;
@@ -226,11 +228,11 @@ private:
 // The start of [CSAD04, section 3.2]: one chart more at a time, where the error is largest; what no
 // error tells apart (planes) gets seeds that are far from each other. Random starts take the latter
 // everywhere.
-void start(const Mesh& mesh, Index count, int random_seed, Approximation& approximation,
-           Progress& progress) {
+void start(const Mesh& mesh, const mesh::Facets& facets, Index count, int random_seed,
+           Approximation& approximation, Progress& progress) {
     const Index components = mesh::face_components(mesh, [](Index) { return true; }).count;
     const std::vector<Index> far = growth::farthest_point_seeds(
-        mesh, count, static_cast<std::uint32_t>(random_seed), progress);
+        mesh, count, static_cast<std::uint32_t>(random_seed), progress, facets);
     Index charts = 0;
     for (; charts < (random_seed != 0 ? count : components); ++charts)
         approximation.add(far[charts]);
@@ -280,10 +282,11 @@ void approximate(const VsaOptions& options, Approximation& approximation, VsaRes
 VsaResult segment_vsa(const Mesh& mesh, const VsaOptions& options, Progress& progress) {
     check_charts_number(mesh.face_count(), options.charts_number);
     check_ranges(options);
-    Approximation approximation(mesh, progress);
-    auto placing = progress.part("placing seeds", 0.3);
     const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
-    start(mesh, count, options.random_seed, approximation, placing);
+    const mesh::Facets facets(mesh, count);
+    Approximation approximation(mesh, facets, progress);
+    auto placing = progress.part("placing seeds", 0.3);
+    start(mesh, facets, count, options.random_seed, approximation, placing);
 
     auto fitting = progress.part("fitting planes", 0.7);
     VsaResult result;

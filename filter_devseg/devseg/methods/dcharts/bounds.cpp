@@ -67,13 +67,14 @@ private:
                 unknown.push_back(c);
         if (quick && bounds_.chart_l2 > 0.0) {
             auto looking = progress.part("judging charts", 0.3);
+            // Rough charts are measured: those above their bound are told.
+            const double sure =
+                std::min(std::sqrt(1.0 + allowed_excess(tuning.certain)), bounds_.chart_l2);
             parallel_for(
                 static_cast<int>(unknown.size()),
                 [&](int i) {
                     const Index c = unknown[at(i)];
-                    if (judge::is_surely_within(mesh_, draft_.faces[c], draft_.seam,
-                                                std::sqrt(1.0 + allowed_excess(tuning.certain)),
-                                                looking))
+                    if (judge::is_surely_within(mesh_, draft_.faces[c], draft_.seam, sure, looking))
                         known_[c] = Known::within;
                 },
                 looking);
@@ -95,6 +96,16 @@ private:
             draft_.map[which[i]] = std::move(maps[i]);
             known_[which[i]] = Known::map;
         }
+    }
+
+    // Within its bound to the last digit, or named.
+    Standing standing(Index c) const {
+        if (is_above(c, 1.0))
+            return Standing::above;
+        return known_[c] == Known::map && bounds_.chart_l2 > 0.0 &&
+                       draft_.map[c].l2_squared > bounds_.chart_l2 * bounds_.chart_l2
+                   ? Standing::rough
+                   : Standing::kept;
     }
 
     // l2² − 1 that a chart may use of this share of its bound. Roughness counts apart.
@@ -245,9 +256,8 @@ private:
         charts_.seam = draft_.seam;
         charts_.chart = atlas::make_chart_map(mesh_, draft_.chart, charts_.seam, false).chart;
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c)
-            if (!draft_.faces[c].empty() && is_above(c, 1.0))
-                for (const Face f : draft_.faces[c])
-                    charts_.above[f] = 1;
+            for (const Face f : draft_.faces[c])
+                charts_.standing[f] = standing(c);
         if (bounds_.max_excess == infinite && bounds_.linf == 0.0)
             return;
         charts_.l2_stretch = std::sqrt(1.0 + std::max(0.0, draft_.excess()) / mesh_.total_area);

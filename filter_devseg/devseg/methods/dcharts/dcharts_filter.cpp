@@ -6,7 +6,7 @@
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/dcharts/developable_charts.h"
-#include "devseg/methods/dcharts/tuning.h"
+#include "devseg/methods/dcharts/standing.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::dcharts {
@@ -49,17 +49,15 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
     const atlas::ChartMap charts =
         atlas::make_chart_map(input.mesh, segmentation.chart, segmentation.seam, false);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
-    std::vector<std::uint8_t> is_above(at(cuts.charts.count), 0);
-    for (const Face f : input.mesh.all_faces())
-        is_above[cuts.charts.chart[f]] |= segmentation.above[f];
-    const int above = static_cast<int>(std::count(is_above.begin(), is_above.end(), 1));
+    const ChartsAbove above = charts_above(cuts.charts, segmentation.standing);
     ResultValues values = {
         {"charts_number", cuts.charts.count},
         {"hole_charts_number", segmentation.hole_charts},
         {"joined_charts_number", segmentation.joins},
         {"darts_number", segmentation.darts},
-        {"bounds_kept", segmentation.bounds_kept && above == 0},
-        {"charts_above_bound_number", above},
+        {"bounds_kept", segmentation.bounds_kept && !above.any()},
+        {"charts_above_bound_number", above.count},
+        {"rough_charts_number", above.rough},
         {"roughness_l2", std::sqrt(1.0 + segmentation.roughness)},
         {"l2_stretch", segmentation.l2_stretch},
         {"linf_stretch", segmentation.linf_stretch},
@@ -69,14 +67,7 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
     };
     FilterOutput output = chart_output(input.mesh, std::move(cuts.charts),
                                        std::move(segmentation.fitting_error), std::move(values));
-    if (above > 0)
-        output.notes.push_back(std::to_string(above) +
-                               " charts are above their bound of stretch: no smaller part of them "
-                               "could be flattened within it");
-    if (segmentation.roughness > tuning.rough)
-        output.notes.push_back("the surface is rough: its smallest parts have an L2 stretch of " +
-                               std::to_string(std::sqrt(1.0 + segmentation.roughness)) +
-                               ", which counts apart; smooth or simplify it first");
+    tell(above, segmentation.roughness, output);
     return output;
 }
 
@@ -149,9 +140,11 @@ std::vector<FilterDeclaration> filters() {
             .result("hole_charts_number", "charts that were added where no other fitted")
             .result("joined_charts_number", "joins of two charts")
             .result("darts_number", "cuts inside charts, to spots of high stretch")
-            .result("bounds_kept", "whether the final map keeps all bounds, but for roughness")
+            .result("bounds_kept", "whether the final map keeps all bounds")
             .result("charts_above_bound_number",
-                    "charts above max_chart_l2_stretch by more than the roughness")
+                    "charts above a bound of their own; their faces are selected")
+            .result("rough_charts_number",
+                    "of these, charts that are above it by no more than the roughness")
             .result("roughness_l2",
                     "L2 stretch of small neighbourhoods, which no segmentation removes")
             .result("l2_stretch", "with charts_number 0: L2 stretch of the final map, else 0")

@@ -142,6 +142,7 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     MergeOptions merging;
     merging.parts_above = plan.creased ? 0 : options.charts_number;
     merging.keep_corners = plan.creased;
+    merging.exchange_cuts = aim.few && !plan.creased;
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
         merging.chart.hard_l2 = std::sqrt(
@@ -190,23 +191,42 @@ void join_as_smooth(const Mesh& mesh, const SegmentationPlan& plan, const Aim& a
     merge_charts(mesh, merging, draft, progress);
 }
 
+void darts_into(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim, Draft& draft,
+                Progress& progress) {
+    if (!plan.options.add_darts)
+        return;
+    DartOptions darts;
+    darts.chart = aim.chart;
+    cut_darts(mesh, darts, draft, progress);
+}
+
 } // namespace
 
-void improve(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim, Draft& draft,
-             Progress& progress) {
-    if (plan.options.merge_charts) {
+std::vector<Draft> improve(const Mesh& mesh, const SegmentationPlan& plan, Aim aim,
+                           const std::vector<double>& max_excess, Draft draft, Progress& progress) {
+    std::vector<Draft> drafts;
+    if (plan.options.merge_charts && !plan.creased) {
         auto joining = progress.part("joining charts", plan.options.add_darts ? 0.75 : 1.0);
-        auto first = joining.part(0.7);
-        merge_charts(mesh, merge_options(plan, aim), draft, first);
-        if (plan.creased)
-            join_as_smooth(mesh, plan, aim, draft, joining);
-    }
-    if (plan.options.add_darts) {
+        drafts = merge_charts_in_steps(mesh, merge_options(plan, aim), max_excess, std::move(draft),
+                                       joining);
         auto cutting = progress.part("cutting darts", 1.0);
-        DartOptions darts;
-        darts.chart = aim.chart;
-        cut_darts(mesh, darts, draft, cutting);
+        for (Draft& step : drafts)
+            darts_into(mesh, plan, aim, step, cutting);
+        return drafts;
     }
+    // Exact joins come first again in each step.
+    for (const double most : max_excess) {
+        aim.max_excess = most;
+        if (plan.options.merge_charts) {
+            auto joining = progress.part("joining charts", 0.4 * progress.left());
+            merge_charts(mesh, merge_options(plan, aim), draft, joining);
+            join_as_smooth(mesh, plan, aim, draft, joining);
+        }
+        auto cutting = progress.part("cutting darts", 0.2 * progress.left());
+        darts_into(mesh, plan, aim, draft, cutting);
+        drafts.push_back(draft);
+    }
+    return drafts;
 }
 
 namespace {
@@ -216,8 +236,9 @@ Decided join_patches(const Mesh& mesh, const SegmentationPlan& plan, const Aim& 
     auto trying = progress.part("trying charts", 0.07);
     Draft draft = make_draft(mesh, patches.chart, {}, aim.chart.l2, trying);
     auto improving = progress.part(0.93);
-    improve(mesh, plan, aim, draft, improving);
-    return {std::move(patches), std::move(draft)};
+    std::vector<Draft> drafts =
+        improve(mesh, plan, aim, {aim.max_excess}, std::move(draft), improving);
+    return {std::move(patches), std::move(drafts.front())};
 }
 
 } // namespace
@@ -273,7 +294,7 @@ bool keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
     FinalBounds bounds;
     bounds.chart_l2 = options.max_chart_l2_stretch;
     bounds.roughness = is_rough(charts.roughness) ? charts.roughness : 0.0;
-    charts.above.assign(mesh.faces.size(), 0);
+    charts.standing.assign(mesh.faces.size(), Standing::kept);
     if (options.charts_number == 0) {
         bounds.linf = options.max_linf_stretch;
         bounds.max_excess =

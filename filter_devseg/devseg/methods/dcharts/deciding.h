@@ -45,9 +45,9 @@ struct Decided {
 /// The patches that charts are joined from.
 DChartsResult grow_patches(const Mesh& mesh, const SegmentationPlan& plan, Progress& progress);
 
-/// Joins, and cuts darts.
-void improve(const Mesh& mesh, const SegmentationPlan& plan, const Aim& aim, Draft& draft,
-             Progress& progress);
+/// Joins, and cuts darts: a draft for each of the growing bounds of its excess.
+std::vector<Draft> improve(const Mesh& mesh, const SegmentationPlan& plan, Aim aim,
+                           const std::vector<double>& max_excess, Draft draft, Progress& progress);
 
 /// For a given number of charts, on the surface on which is decided.
 Decided decide(const Mesh& mesh, const SegmentationPlan& plan, DChartsResult patches,

@@ -64,13 +64,13 @@ DevelopableCharts find_fewest(const Mesh& mesh, const std::optional<mesh::Coarse
     Decided decided{patches, make_draft(coarse, patches.chart, {}, options.max_l2_stretch, trying)};
     auto splitting = progress.part("splitting charts", 0.04);
     split_worst(coarse, plan, aim, decided.draft, splitting);
-    std::vector<Draft> drafts;
-    for (const double share : tuning.shares) {
-        aim.max_excess = share * allowed * coarse.total_area;
-        auto improving = progress.part(0.4 * progress.left());
-        improve(coarse, plan, aim, decided.draft, improving);
-        drafts.push_back(decided.draft);
-    }
+    std::vector<double> shares;
+    for (const double share : tuning.shares)
+        shares.push_back(share * allowed * coarse.total_area);
+    auto improving = progress.part(0.6 * progress.left());
+    std::vector<Draft> drafts =
+        improve(coarse, plan, aim, shares, std::move(decided.draft), improving);
+    aim.max_excess = shares.back();
     while (true) {
         decided.draft = std::move(drafts.back());
         drafts.pop_back();
@@ -93,7 +93,7 @@ DevelopableCharts segment_component(const Mesh& mesh, const DevelopableChartsOpt
         DevelopableCharts sheet;
         sheet.chart.assign(mesh.faces.size(), 0);
         sheet.seam.assign(mesh.twin.size(), 0);
-        sheet.above.assign(mesh.faces.size(), 0);
+        sheet.standing.assign(mesh.faces.size(), Standing::kept);
         sheet.converged = true;
         sheet.l2_stretch = sheet.linf_stretch = options.charts_number == 0 ? 1.0 : 0.0;
         return sheet;
@@ -141,7 +141,7 @@ DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponent
     result.converged = true;
     result.chart.resize(mesh.faces.size());
     result.seam.assign(mesh.twin.size(), 0);
-    result.above.assign(mesh.faces.size(), 0);
+    result.standing.assign(mesh.faces.size(), Standing::kept);
     double excess = 0.0;
     Index first = 0; // number of the component's first chart
     const atlas::ChartMap whole{components.label, result.seam, components.count};
@@ -157,7 +157,7 @@ DevelopableCharts segment_components(const Mesh& mesh, const mesh::FaceComponent
         const DevelopableCharts charts = segment_component(part, own, segmenting);
         for (const Face f : part.all_faces()) {
             result.chart[faces[f]] = first + charts.chart[f];
-            result.above[faces[f]] = charts.above[f];
+            result.standing[faces[f]] = charts.standing[f];
         }
         result.roughness += share * charts.roughness;
         for (const HalfEdge h : part.all_half_edges())

@@ -25,6 +25,10 @@ struct DevelopableChartsOptions : DChartsOptions {
     static OptionRanges<DevelopableChartsOptions> ranges();
 };
 
+/// How a chart stands to its own bounds: kept, or above them, by no more than the surface's
+/// roughness or by more.
+enum class Standing : std::uint8_t { kept, rough, above };
+
 struct DevelopableCharts {
     std::vector<Index> chart;          // #F, edge-connected
     std::vector<std::uint8_t> seam;    // 3 #F: darts
@@ -37,8 +41,8 @@ struct DevelopableCharts {
     // With charts_number = 0, of the symmetric Dirichlet map of the full surface:
     double l2_stretch = 0.0;
     double linf_stretch = 0.0;
-    bool bounds_kept = true;         // false: rough charts, and single faces that others lie on
-    std::vector<std::uint8_t> above; // #F: 1 in charts above their bound by more than roughness
+    bool bounds_kept = true;        // false: rough charts, and single faces that others lie on
+    std::vector<Standing> standing; // #F: of each face's chart
     double roughness = 0.0; // l2² − 1 that no segmentation can remove, mean over the surface
 };
 

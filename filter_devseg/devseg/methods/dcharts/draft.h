@@ -42,7 +42,7 @@ Draft make_untried_draft(const Mesh& mesh, const std::vector<Index>& chart);
 struct StretchBounds {
     double l2 = 1.005;
     double linf = 1.5;
-    double hard_l2 = infinite; // what not even a small chart may exceed
+    double hard_l2 = infinite;   // what not even a small chart may exceed
     double hard_linf = infinite; // the same of linf
 
     bool hold(const judge::TrialMap& map) const {

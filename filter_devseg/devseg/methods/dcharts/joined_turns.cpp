@@ -46,6 +46,8 @@ std::complex<double> turn_between(const Mesh& mesh, const Draft& draft, const Cl
 
 std::vector<Vec2> joined_turns(const Mesh& mesh, const Draft& draft, const Closing& closing) {
     const auto [a, b] = closing.charts;
+    if (!closing.opened.empty())
+        return {};
     const std::vector<Vec2>& turns_a = draft.map[a].turns;
     const std::vector<Vec2>& turns_b = draft.map[b].turns;
     if (a == b || turns_a.empty() || turns_b.empty())

@@ -7,6 +7,7 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/judge/final_map.h"
+#include "devseg/methods/dcharts/cut_exchange.h"
 #include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
@@ -52,8 +53,9 @@ public:
             const bool may_part = draft_.charts_number() > options_.parts_above;
             if (best != nullptr)
                 close(best->first, best->second);
-            else if (partly_ || !may_part)
+            else if (!may_part || (partly_ && (exchanging_ || !options_.exchange_cuts)))
                 return;
+            exchanging_ = exchanging_ || (partly_ && best == nullptr);
             partly_ = may_part && (partly_ || best == nullptr);
             progress.update((draft_.joins - joins_before) / start);
         }
@@ -63,7 +65,7 @@ private:
     using Entry = std::pair<Closing, Verdict>;
 
     // All closings that there are now, those known with their verdicts.
-    void propose() {
+    void propose(const Progress& progress) {
         std::map<Pair, std::vector<Closing>> chains;
         std::vector<Closing> found = chains_.find(draft_);
         seams_at_corner_.clear();
@@ -77,7 +79,7 @@ private:
         untried_.clear();
         for (auto& [charts, parts] : chains) {
             if (charts.first != charts.second) {
-                Closing whole{charts, {}};
+                Closing whole{charts, {}, {}};
                 for (const Closing& part : parts)
                     whole.edges.insert(whole.edges.end(), part.edges.begin(), part.edges.end());
                 add(std::move(whole), true, last);
@@ -85,6 +87,12 @@ private:
             for (const Closing& part : parts)
                 if (partly_)
                     add_parts(part, last);
+            if (exchanging_ && charts.first == charts.second)
+                for (Closing& part : parts) {
+                    part.opened = shorter_cut(mesh_, draft_, part, progress);
+                    if (!part.opened.empty())
+                        add(std::move(part), false, last);
+                }
         }
     }
 
@@ -97,7 +105,7 @@ private:
             for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {
                 const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
                                           : chain.edges.begin();
-                Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}};
+                Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}, {}};
                 if (length_of(part.edges) < least)
                     break;
                 const Entry* entry = add(std::move(part), false, last);
@@ -116,6 +124,7 @@ private:
     // Returns what is known of it.
     const Entry* add(Closing closing, bool whole, const Verdicts& last) {
         std::vector<Index> key = closing.edges;
+        key.insert(key.end(), closing.opened.begin(), closing.opened.end());
         std::sort(key.begin(), key.end());
         if (encloses_corner(closing))
             return nullptr;
@@ -155,7 +164,7 @@ private:
     void try_promising(Progress& progress) {
         for (bool found = true; found;) {
             found = false;
-            propose();
+            propose(progress);
             for (auto few = most_promising(); !few.empty(); few = most_promising()) {
                 try_again(few, progress);
                 found = true;
@@ -198,7 +207,7 @@ private:
                 TrialEffort effort;
                 effort.wanted_l2 = bounds_of(closing.charts).l2;
                 effort.give_up = true;
-                effort.only_near = !verdict.whole;
+                effort.only_near = !verdict.whole && closing.opened.empty();
                 effort.only_apart = options_.keep_corners;
                 assess(closing,
                        judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
@@ -225,8 +234,8 @@ private:
         const TrialMap& b = draft_.map[second];
         const bool is_join = first != second;
         verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
-        verdict.saved = length_of(closing.edges) - map.cut_length + a.cut_length +
-                        (is_join ? b.cut_length : 0.0);
+        verdict.saved = length_of(closing.edges) - length_of(closing.opened) - map.cut_length +
+                        a.cut_length + (is_join ? b.cut_length : 0.0);
         verdict.map = std::move(map);
         verdict.tried = verdict.fresh = true;
         verdict.confirmed = false;
@@ -249,6 +258,8 @@ private:
             seam[h] = seam[mesh_.twin[h]] = 1;
         for (const HalfEdge h : closing.edges)
             seam[h] = seam[mesh_.twin[h]] = 0;
+        for (const HalfEdge h : closing.opened)
+            seam[h] = seam[mesh_.twin[h]] = 1;
         return seam;
     }
 
@@ -286,6 +297,9 @@ private:
             limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
             limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
         }
+        // Nobody cuts out a splinter: it may be as stretched as it likes, for it adds nothing.
+        if (std::min(a.area, b.area) < tuning.negligible * mesh_.total_area)
+            limit.linf = infinite;
         limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
         limit.linf = std::min(limit.linf, options_.chart.hard_linf);
         return limit;
@@ -386,6 +400,7 @@ private:
         draft_.seam = seam_without(closing);
         const std::vector<HalfEdge> left = left_border(closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
+        draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;
         if (!open_.empty())
             open_[at(a)] = open_[at(b)] = 1;
@@ -409,6 +424,7 @@ private:
     SeamChains chains_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
     bool partly_ = false;            // parts of borders are closed as well
+    bool exchanging_ = false;        // cuts are tried in other places as well
     Verdicts verdicts_;
     std::vector<Entry*> untried_;
     std::map<Index, int> seams_at_corner_; // seam edges at each corner that has any
@@ -418,6 +434,20 @@ private:
 
 void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress) {
     Joining(mesh, options, draft).run(progress);
+}
+
+std::vector<Draft> merge_charts_in_steps(const Mesh& mesh, MergeOptions options,
+                                         const std::vector<double>& max_excess, Draft draft,
+                                         Progress& progress) {
+    std::vector<Draft> drafts;
+    Joining joining(mesh, options, draft);
+    for (const double most : max_excess) {
+        options.max_excess = most;
+        auto step = progress.part(0.5 * progress.left());
+        joining.run(step);
+        drafts.push_back(draft);
+    }
+    return drafts;
 }
 
 } // namespace devseg::dcharts

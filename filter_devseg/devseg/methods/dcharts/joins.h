@@ -23,6 +23,8 @@ struct MergeOptions {
     // Corners of the surface stay on seams, and borders are closed up to them: what is a polyhedron
     // becomes its net.
     bool keep_corners = false;
+    // In the end cuts inside charts are tried in other places, where they are shorter.
+    bool exchange_cuts = false;
     // A join counts only if the final map of the joined chart keeps the bounds: for the surface
     // itself. Else trials decide.
     bool confirm = false;
@@ -34,5 +36,11 @@ struct MergeOptions {
 /// common border, or along a part of it, which leaves the rest as a cut inside the joined chart; a
 /// cut inside a chart is closed where the chart stays flat.
 void merge_charts(const Mesh& mesh, const MergeOptions& options, Draft& draft, Progress& progress);
+
+/// The same for growing bounds of the draft's excess: a draft for each, which goes on from the one
+/// before, with all that the trials of that have found.
+std::vector<Draft> merge_charts_in_steps(const Mesh& mesh, MergeOptions options,
+                                         const std::vector<double>& max_excess, Draft draft,
+                                         Progress& progress);
 
 } // namespace devseg::dcharts

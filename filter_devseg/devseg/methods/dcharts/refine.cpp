@@ -115,7 +115,7 @@ DevelopableCharts refine_charts(const Mesh& mesh, const atlas::ChartMap& given,
     DevelopableCharts charts;
     charts.chart = given.chart;
     charts.seam = inner_cuts(mesh, given);
-    charts.above.assign(mesh.faces.size(), 0);
+    charts.standing.assign(mesh.faces.size(), Standing::kept);
     charts.converged = true;
     auto feeling = progress.part("measuring roughness", 0.1);
     charts.roughness = judge::roughness(mesh, feeling).excess;
@@ -130,8 +130,8 @@ DevelopableCharts refine_charts(const Mesh& mesh, const atlas::ChartMap& given,
     auto keeping = progress.part(progress.left());
     if (bounds.chart_l2 > 0.0 || bounds.linf > 0.0 || bounds.max_excess < infinite)
         keep_bounds(mesh, bounds, DChartsOptions(), merging, charts, keeping);
-    charts.bounds_kept =
-        std::none_of(charts.above.begin(), charts.above.end(), [](auto a) { return a != 0; });
+    charts.bounds_kept = std::all_of(charts.standing.begin(), charts.standing.end(),
+                                     [](Standing standing) { return standing == Standing::kept; });
     charts.fitting_error = fitting_errors(
         mesh, charts.chart, metrics::fit_conics(mesh, charts.chart, count_of(charts.chart)));
     return charts;

@@ -8,6 +8,7 @@
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
 #include "devseg/methods/dcharts/refine.h"
+#include "devseg/methods/dcharts/standing.h"
 #include "devseg/metrics/segmentation.h"
 
 namespace devseg::dcharts {
@@ -35,23 +36,18 @@ FilterOutput run(const FilterInput& input, const RefineOptions& options, Progres
     auto cutting = progress.part("cutting charts to disks", 0.02);
     atlas::DiskCuts cuts = atlas::cut_charts_to_disks(
         input.mesh, atlas::make_chart_map(input.mesh, refined.chart, refined.seam, false), cutting);
-    std::vector<std::uint8_t> is_above(at(cuts.charts.count), 0);
-    for (const Face f : input.mesh.all_faces())
-        is_above[cuts.charts.chart[f]] |= refined.above[f];
-    const int above = static_cast<int>(std::count(is_above.begin(), is_above.end(), 1));
+    const ChartsAbove above = charts_above(cuts.charts, refined.standing);
     ResultValues values = {{"charts_number", cuts.charts.count},
                            {"charts_before_number", given.count},
                            {"joined_charts_number", refined.joins},
                            {"darts_number", refined.darts},
-                           {"charts_above_bound_number", above},
+                           {"charts_above_bound_number", above.count},
+                           {"rough_charts_number", above.rough},
                            {"roughness_l2", std::sqrt(1.0 + refined.roughness)},
                            {"seam_length", metrics::seam_length(input.mesh, cuts.charts)}};
     FilterOutput output = chart_output(input.mesh, std::move(cuts.charts),
                                        std::move(refined.fitting_error), std::move(values));
-    if (above > 0)
-        output.notes.push_back(std::to_string(above) +
-                               " charts are above their bound of stretch: no smaller part of them "
-                               "could be flattened within it");
+    tell(above, refined.roughness, output);
     return output;
 }
 
@@ -87,7 +83,9 @@ std::vector<FilterDeclaration> refinement_filters() {
             .result("joined_charts_number", "joins of two charts")
             .result("darts_number", "cuts inside charts, to spots of high stretch")
             .result("charts_above_bound_number",
-                    "charts above max_chart_l2_stretch by more than the roughness")
+                    "charts above a bound of their own; their faces are selected")
+            .result("rough_charts_number",
+                    "of these, charts that are above it by no more than the roughness")
             .result("roughness_l2",
                     "L2 stretch of small neighbourhoods, which no segmentation removes")
             .result("seam_length", "length of all cut edges, model units")

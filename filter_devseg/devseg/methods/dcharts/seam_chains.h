@@ -10,10 +10,12 @@ namespace devseg::dcharts {
 
 using Pair = std::pair<Index, Index>; // of charts, the lower number first, or twice the same
 
-// Seam edges that may be closed together, each by its half-edge with the lower number.
+// Seam edges that may be closed together, each by its half-edge with the lower number, and what is
+// opened for them inside the chart.
 struct Closing {
     Pair charts;
     std::vector<Index> edges;
+    std::vector<Index> opened;
 };
 
 // Finds the seams: chains of seam edges from node to node. Nodes are vertices where not just two

@@ -28,7 +28,7 @@ struct Tuning {
     // of the area for each √area of border.
     double negligible = 1e-5;     // and of √area: a cut of this length is none
     double small_allowance = 3.0; // of small charts, over the bounds of others
-    double like_spot = 1.1; // stretch over that of the parts' worst spots that is like theirs
+    double like_spot = 1.1;       // stretch over that of the parts' worst spots that is like theirs
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
     double corner_defect = 0.2;

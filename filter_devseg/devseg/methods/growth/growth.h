@@ -10,6 +10,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/graph/heap.h"
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::growth {
@@ -69,7 +70,8 @@ private:
 /// Whether a face keeps the key of its first offer to a chart, or takes the best of all.
 enum class Offers { first, best };
 
-/// Grows charts over the faces that have none until no chart has a candidate.
+/// Grows charts over the faces that have none until no chart has a candidate. A chart that takes a
+/// face of a facet takes all of it.
 ///
 /// A `Cost` answers three questions:
 ///     CandidateHeap::Entry candidate(h, c)   the face behind h, offered to chart c; face −1: not
@@ -80,20 +82,28 @@ enum class Offers { first, best };
 template <Offers offers>
 class MultiHeap {
 public:
-    explicit MultiHeap(const Mesh& mesh) : mesh_(mesh) {}
+    explicit MultiHeap(const Mesh& mesh, mesh::Facets facets = {})
+        : mesh_(mesh), facets_(std::move(facets)) {}
 
-    /// One chart from each seed; these must be distinct faces. `chart` (#F) is overwritten; −1
-    /// where no seed reaches.
+    /// One chart from each seed; these must be distinct faces, no two of one facet. `chart` (#F) is
+    /// overwritten; −1 where no seed reaches.
     template <class Cost>
     void grow(const std::vector<Index>& seeds, Cost& cost, std::vector<Index>& chart,
               const Progress& progress) {
         chart.assign(mesh_.faces.size(), -1);
         const Index count = static_cast<Index>(seeds.size());
+        front_ = seeds;
         for (Index c = 0; c < count; ++c) {
             chart[seeds[c]] = c;
             cost.take(seeds[c], c, 0.0F);
+            for (const Face f : facets_.around(seeds[c]))
+                if (chart[f] < 0) {
+                    chart[f] = c;
+                    cost.take(f, c, 0.0F);
+                    front_.push_back(f);
+                }
         }
-        spread(seeds, count, cost, chart, progress);
+        spread(front_, count, cost, chart, progress);
     }
 
     /// Goes on with `count` charts from faces of theirs.
@@ -116,9 +126,10 @@ public:
             const Face f = entry.face;
             if (chart[f] < 0) { // another chart may have taken it since
                 heaps_[c].pop();
-                chart[f] = c;
-                cost.take(f, c, entry.distance);
-                offer_neighbours(f, cost, chart);
+                take(f, c, entry.distance, cost, chart);
+                for (const Face g : facets_.around(f))
+                    if (chart[g] < 0)
+                        take(g, c, entry.distance, cost, chart);
                 beat();
             }
             tournament.set(c, key_of<Key>(c, cost, chart));
@@ -126,6 +137,13 @@ public:
     }
 
 private:
+    template <class Cost>
+    void take(Face f, Index c, float distance, Cost& cost, std::vector<Index>& chart) {
+        chart[f] = c;
+        cost.take(f, c, distance);
+        offer_neighbours(f, cost, chart);
+    }
+
     template <class Key, class Cost>
     Key key_of(Index c, Cost& cost, const std::vector<Index>& chart) {
         CandidateHeap& heap = heaps_[c];
@@ -139,7 +157,7 @@ private:
         const Index c = chart[f];
         for (const HalfEdge h : half_edges_of(f)) {
             const HalfEdge twin = mesh_.twin[h];
-            if (twin < 0 || chart[face_of(twin)] >= 0)
+            if (twin < 0 || chart[face_of(twin)] >= 0 || facets_.are_one(f, face_of(twin)))
                 continue;
             if (offers == Offers::first && !is_first_offer(twin, c, chart))
                 continue;
@@ -161,7 +179,9 @@ private:
     }
 
     const Mesh& mesh_;
+    const mesh::Facets facets_;
     std::vector<CandidateHeap> heaps_;
+    std::vector<Index> front_; // scratch of grow()
 };
 
 } // namespace devseg::growth

@@ -37,7 +37,7 @@ Index first_seed(const Mesh& mesh, const Remoteness& remoteness, std::uint32_t r
 } // namespace
 
 std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint32_t random_seed,
-                                        Progress& progress) {
+                                        Progress& progress, const mesh::Facets& facets) {
     graph::ShortestPaths<> paths(mesh.faces.size()); // over centroids, from the seeds up to here
     const std::vector<double>& distance = paths.distance;
     std::vector<Index> seeds;
@@ -50,6 +50,8 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
             return seeds;
         progress.update(static_cast<double>(seeds.size()) / count);
         paths.add_source(next);
+        for (const Face f : facets.around(next))
+            paths.add_source(f);
         paths.run([&](Face f, double to_f) {
             for (const HalfEdge h : half_edges_of(f))
                 if (mesh.twin[h] >= 0) {
@@ -65,8 +67,11 @@ std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint
                 next = f;
         if (distance[next] <= 0.0) { // centroids coincide: any face that is not a seed yet
             std::vector<std::uint8_t> taken(mesh.faces.size(), 0);
-            for (const Index s : seeds)
+            for (const Index s : seeds) {
                 taken[s] = 1;
+                for (const Face f : facets.around(s))
+                    taken[f] = 1;
+            }
             for (next = 0; taken[next] != 0;)
                 ++next;
         }

@@ -7,6 +7,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/graph/shortest_paths.h"
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/mesh/mesh.h"
 
 namespace devseg::growth {
@@ -14,9 +15,9 @@ namespace devseg::growth {
 /// `count` distinct faces; each next one is farthest from those before, along paths over face
 /// centroids; other connected components count as infinitely far. Seed value 0 starts at the face
 /// farthest from the centre of the surface, whatever the order of the faces; other values start
-/// at a random face.
+/// at a random face. No two are of one facet.
 std::vector<Index> farthest_point_seeds(const Mesh& mesh, Index count, std::uint32_t random_seed,
-                                        Progress& progress);
+                                        Progress& progress, const mesh::Facets& facets = {});
 
 /// Charts never join components: as many charts as asked for, and at least one for each component.
 inline Index at_least_one_per_component(const Mesh& mesh, int charts_number) {

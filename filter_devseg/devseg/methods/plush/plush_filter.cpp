@@ -79,7 +79,8 @@ std::string note_on_failed(const std::vector<Index>& charts, bool by_strain) {
     for (const Index c : charts)
         names += (names.empty() ? "" : ", ") + std::to_string(c);
     return "patches above " + std::string(by_strain ? "max_strain" : "max_area_change") +
-           " (chart_id): " + names + "; a larger bound or a cleaner mesh helps";
+           " (chart_id): " + names +
+           "; their faces are selected; a larger bound or a cleaner mesh helps";
 }
 
 // A material bounds the strain, unless max_strain was set.
@@ -118,6 +119,10 @@ FilterOutput run_plush(const FilterInput& input, const Options& given, Progress&
                            {"seam_length", metrics::seam_length(mesh, seams.charts)}};
     FilterOutput output = chart_output(mesh, std::move(seams.charts), std::move(seams.area_change),
                                        std::move(values));
+    std::vector<std::uint8_t> failed(at(output.charts->count), 0);
+    for (const Index c : seams.failed)
+        failed[c] = 1;
+    select_charts(failed, output);
     if (!seams.all_developable)
         output.notes.push_back(note_on_failed(seams.failed, options.max_strain > 0.0));
     return output;
@@ -184,7 +189,10 @@ FilterDeclaration plush() {
         .result("largest_strain", "of a face in the accepted maps, as a share, no unit; 0 where "
                                   "patches are judged by areas")
         .result("strain_99", "what 99 % of the area keeps, in the worst patch; 0 as above")
-        .result("all_developable", "whether all patches keep max_strain, or max_area_change")
+        .result(
+            "all_developable",
+            "whether all patches keep max_strain, or max_area_change; the faces of those that do "
+            "not are selected")
         .result("is_symmetric", "whether the model was found to be symmetric")
         .result("mirrored_share", "of the seam length, that has its mirror image within 2 % of the "
                                   "model's diagonal; 0 without a mirror plane")

@@ -19,6 +19,8 @@ struct BalanceTuning {
     // Strips are at most this many faces wide on each side: the time for their cuts grows much
     // faster than their width.
     double strip_steps = 4.0;
+    // Cost of a border through a facet, over its length: more than any way around.
+    double through_facet = 1e6;
 };
 constexpr BalanceTuning tuning;
 
@@ -34,14 +36,17 @@ struct BorderCosts {
 };
 
 BorderCosts measure_costs(const Mesh& mesh, const metrics::GaussAreas& areas,
-                          const BorderBalance& options, Index count) {
+                          const mesh::Facets& facets, const BorderBalance& options, Index count) {
     BorderCosts costs;
     std::vector<Index> valence(mesh.points.size(), 0); // faces of each vertex
     double steps = 0.0;
     for (const HalfEdge h : mesh.all_half_edges()) {
-        costs.border.push_back(static_cast<float>(
-            mesh.edge_length(h) * (areas.crease[h] != 0 ? options.crease_cost : 1.0)));
         const HalfEdge twin = mesh.twin[h];
+        const bool is_inside = twin >= 0 && facets.are_one(face_of(h), face_of(twin));
+        costs.border.push_back(
+            static_cast<float>(mesh.edge_length(h) * (is_inside              ? tuning.through_facet
+                                                      : areas.crease[h] != 0 ? options.crease_cost
+                                                                             : 1.0)));
         costs.step.push_back(
             twin < 0
                 ? 0.0F
@@ -270,10 +275,10 @@ private:
 
 class BorderBalancer {
 public:
-    BorderBalancer(const Mesh& mesh, const metrics::GaussAreas& areas, const BorderBalance& options,
-                   Index count, std::vector<Index>& chart)
+    BorderBalancer(const Mesh& mesh, const metrics::GaussAreas& areas, const mesh::Facets& facets,
+                   const BorderBalance& options, Index count, std::vector<Index>& chart)
         : mesh_(mesh), areas_(areas), options_(options), chart_(chart), count_(count),
-          costs_(measure_costs(mesh, areas, options, count)),
+          costs_(measure_costs(mesh, areas, facets, options, count)),
           crease_(metrics::long_creases(mesh, areas.crease, count)), border_distance_(mesh),
           node_(mesh.faces.size(), -1), relabelling_(mesh, chart), changes_(at(count), 0) {}
 
@@ -371,10 +376,10 @@ private:
 
 } // namespace
 
-void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas,
+void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas, const mesh::Facets& facets,
                      const BorderBalance& options, Index count, std::vector<Index>& chart,
                      Progress& progress) {
-    BorderBalancer balancer(mesh, areas, options, count, chart);
+    BorderBalancer balancer(mesh, areas, facets, options, count, chart);
     for (int sweep = 0; sweep < options.sweeps; ++sweep) {
         progress.update(static_cast<double>(sweep) / options.sweeps);
         balancer.sweep(progress);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "devseg/base/progress.h"
+#include "devseg/mesh/flat_regions.h"
 #include "devseg/metrics/gauss_area.h"
 
 namespace devseg::t_flooding {
@@ -19,8 +20,8 @@ struct BorderBalance {
 /// the stiffness times the size of an average chart over its squared Gauss area. For each two
 /// neighbours in turn: the least cut within a strip along their border, with a price on Gauss area
 /// that agrees with the difference that is left. Charts stay connected and keep their topology.
-/// `chart` (#F) holds labels 0 … count − 1.
-void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas,
+/// `chart` (#F) holds labels 0 … count − 1. Facets that are in one chart stay whole.
+void balance_borders(const Mesh& mesh, const metrics::GaussAreas& areas, const mesh::Facets& facets,
                      const BorderBalance& options, Index count, std::vector<Index>& chart,
                      Progress& progress);
 

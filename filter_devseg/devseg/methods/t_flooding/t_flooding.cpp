@@ -185,10 +185,10 @@ void raise_offsets(const std::vector<double>& area, double damping, std::vector<
 // The rounds of flooding, reseeding and offsets; keeps the best.
 class Rounds {
 public:
-    Rounds(const Mesh& mesh, const metrics::GaussAreas& areas, const TFloodingOptions& options,
-           Progress& progress)
-        : cost_(mesh, areas, options, chart_), heaps_(mesh), border_(mesh), options_(options),
-          scale_(areas.total / options.charts_number), progress_(progress) {}
+    Rounds(const Mesh& mesh, const metrics::GaussAreas& areas, const mesh::Facets& facets,
+           const TFloodingOptions& options, Progress& progress)
+        : cost_(mesh, areas, options, chart_), heaps_(mesh, facets), border_(mesh),
+          options_(options), scale_(areas.total / options.charts_number), progress_(progress) {}
 
     /// One start: seeds move until they come back or stop helping, then only the offsets change.
     /// Without `early_offsets` there are none until then.
@@ -288,13 +288,13 @@ TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& opt
     metrics::GaussAreas areas = metrics::compute_gauss_areas(mesh, options.crease_angle * degrees);
 
     auto placing = progress.part("placing seeds", 0.03);
+    const Index count = growth::at_least_one_per_component(mesh, options.charts_number);
+    const mesh::Facets facets(mesh, count);
     const std::vector<Index> seeds = growth::farthest_point_seeds(
-        mesh, growth::at_least_one_per_component(mesh, options.charts_number),
-        static_cast<std::uint32_t>(options.random_seed), placing);
-    const Index count = static_cast<Index>(seeds.size());
+        mesh, count, static_cast<std::uint32_t>(options.random_seed), placing, facets);
 
     auto flooding = progress.part("flooding", 0.55);
-    Rounds rounds(mesh, areas, options, flooding);
+    Rounds rounds(mesh, areas, facets, options, flooding);
     rounds.run(seeds, true);
     if (!rounds.is_balanced(tuning.unbalanced))
         rounds.run(seeds, false);
@@ -305,7 +305,7 @@ TFloodingResult segment_t_flooding(const Mesh& mesh, const TFloodingOptions& opt
     result.converged = rounds.count() < options.max_iterations;
     if (options.straighten_boundaries) {
         auto straightening = progress.part("straightening borders", 1.0);
-        balance_borders(mesh, areas, {}, count, result.chart, straightening);
+        balance_borders(mesh, areas, facets, {}, count, result.chart, straightening);
     }
     result.chart_gauss_area = metrics::chart_gauss_areas(mesh, areas, result.chart, count);
     result.gauss_area_std = metrics::standard_deviation(result.chart_gauss_area);

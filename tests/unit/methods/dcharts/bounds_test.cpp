@@ -89,7 +89,7 @@ TEST(ChartBounds, EveryChartKeepsItsBoundWhateverTheNumber) {
     for (const int number : {1, 4, 12}) {
         const DevelopableCharts charts = segment(mesh, number);
         EXPECT_LE(worst(mesh, charts), 1.02);
-        EXPECT_EQ(std::count(charts.above.begin(), charts.above.end(), 1), 0);
+        EXPECT_EQ(std::count(charts.standing.begin(), charts.standing.end(), Standing::above), 0);
     }
     EXPECT_GT(worst(mesh, segment(mesh, 1, 0.0)), 1.02) << "the shape needs no bound";
 }
@@ -177,7 +177,7 @@ TEST(ChartBounds, ANoisyCylinderStaysInFewCharts) {
     const Mesh mesh = checks::gated(raw);
     const DevelopableCharts charts = segment(mesh, 10);
     EXPECT_LE(count(charts), 2);
-    EXPECT_EQ(std::count(charts.above.begin(), charts.above.end(), 1), 0);
+    EXPECT_EQ(std::count(charts.standing.begin(), charts.standing.end(), Standing::above), 0);
     EXPECT_GT(charts.roughness, 1e-4);
 }
 

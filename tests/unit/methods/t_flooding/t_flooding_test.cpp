@@ -154,7 +154,7 @@ TEST(TFlooding, BalancingLowersItsObjective) {
     Progress progress;
     BorderBalance options;
     options.sweeps = 30;
-    balance_borders(mesh, areas, options, 2, chart, progress);
+    balance_borders(mesh, areas, {}, options, 2, chart, progress);
     EXPECT_LT(metrics::standard_deviation(metrics::chart_gauss_areas(mesh, areas, chart, 2)),
               0.1 * before);
     const atlas::ChartMap map = atlas::make_chart_map(mesh, chart, {}, false);
