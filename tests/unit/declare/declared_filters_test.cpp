@@ -174,7 +174,9 @@ bool needs_more_than_a_mesh(const std::string& name) {
 // Parameters that work only together with another value.
 ParameterValues needed_for(const std::string& name) {
     if (name == "keep_unfinished")
-        return {{"max_iterations", 1}};
+        return {{"max_iterations", 1}, {"adjust_slits", false}};
+    if (name == "max_net_faces") // nets, of whatever has faces
+        return {{"deform", 2}};
     if (name == "max_area_change")
         return {{"max_strain", 0.0}};
     if (name == "max_l2_stretch" || name == "max_linf_stretch")

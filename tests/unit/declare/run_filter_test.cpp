@@ -214,8 +214,9 @@ TEST(RunFilter, VerticesThatWereJoinedMoveTogether) {
             host.geometry.points.push_back(dome.points[v]);
         host.geometry.faces.push_back({first, first + 1, first + 2});
     }
-    const HostResult r = run("Charts: Deform to Exact Developability", host,
-                             {{"keep_unfinished", true}, {"max_iterations", 3}});
+    const HostResult r =
+        run("Charts: Deform to Exact Developability", host,
+            {{"keep_unfinished", true}, {"max_iterations", 3}, {"adjust_slits", false}});
     ASSERT_EQ(r.points.size(), host.geometry.points.size());
     std::vector<Vec3> place(dome.points.size(), Vec3::Constant(infinite));
     double moved = 0.0;
