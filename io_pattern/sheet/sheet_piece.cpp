@@ -297,9 +297,9 @@ void add_kerf(const ExportOptions& options, const pattern::PatternPiece& piece,
 
 template <class Change>
 void change_points(SheetPiece& piece, Change change) {
-    for (auto* lines : {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys,
-                        &piece.grain, &piece.leaders, &piece.openings, &piece.perforations,
-                        &piece.shadows, &piece.drills})
+    for (auto* lines :
+         {&piece.cut, &piece.sew, &piece.slits, &piece.mountains, &piece.valleys, &piece.grain,
+          &piece.leaders, &piece.openings, &piece.perforations, &piece.shadows, &piece.drills})
         for (std::vector<Vec2>& line : *lines)
             for (Vec2& p : line)
                 p = change(p);

@@ -80,7 +80,7 @@ private:
     // Parts that overlap in a map so near to the best one are not going to come apart.
     bool is_near(const std::vector<Vec2>& start) const {
         return flatten::symmetric_dirichlet_energy(problem_, start) - 1.0 <=
-                   tuning.near_excess * excess_;
+               tuning.near_excess * excess_;
     }
 
     std::vector<Vec2> polish(const std::vector<Vec2>& start) const {

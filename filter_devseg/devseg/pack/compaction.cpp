@@ -397,7 +397,7 @@ private:
     Eigen::AlignedBox2d box_;
     Proximity proximity_;
     std::vector<Bound> bounds_;
-    double goal_ = 0.0;    // the distance to keep
+    double goal_ = 0.0;                  // the distance to keep
     double least_ = 0.0, outside_ = 0.0; // distance up to the reach; how far charts stick out
     std::int64_t work_ = 0;
 };

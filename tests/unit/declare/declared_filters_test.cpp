@@ -180,7 +180,9 @@ bool needs_a_close_bound(const FilterDeclaration& filter, const std::string& nam
 // Parameters that work only together with another value.
 ParameterValues needed_for(const std::string& name) {
     if (name == "keep_unfinished")
-        return {{"max_iterations", 1}};
+        return {{"max_iterations", 1}, {"adjust_slits", false}};
+    if (name == "max_net_faces") // nets, of whatever has faces
+        return {{"deform", 2}};
     if (name == "max_area_change")
         return {{"max_strain", 0.0}};
     if (name == "max_l2_stretch" || name == "max_linf_stretch")
