@@ -6,12 +6,12 @@ import contextlib
 import importlib.metadata
 import platform
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from devseg import cloth, guide, host, ply, scene
+from devseg import host, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame
@@ -20,10 +20,9 @@ from devseg.lengths import shown
 from devseg.load import load_mesh
 from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
-from devseg.obj_parts import Part
-from devseg.obj_writer import write_obj
 from devseg.outputs import staged, to_json
-from devseg.pattern_options import EXPORT_FILTER, PATTERN_FORMATS
+from devseg.pattern_options import EXPORT_FILTER
+from devseg.pattern_writer import MESH_FORMATS, PatternWriter
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
 from devseg.simplify import close_holes, simplify
@@ -34,7 +33,6 @@ COLOR_FILTER = "compute_color_by_chart_per_face"
 FLATTEN_FILTER = "compute_texcoord_parametrization_charts_per_wedge"
 SEGMENTATION_MEASURES = "get_segmentation_measures"
 PARAMETRIZATION_MEASURES = "get_parametrization_measures"
-MESH_FORMATS = ("ply", "obj")
 
 # A finished object of another size than these was hardly meant, unless it is asked for.
 SMALLEST_MM, LARGEST_MM = 20.0, 5000.0
@@ -42,8 +40,6 @@ SMALLEST_MM, LARGEST_MM = 20.0, 5000.0
 LEAST_MM_PER_UNIT = 1e-9
 # A model that is so much longer than high may lie.
 TALL = 1.1
-# Higher levels take several times as long for a tenth of the size.
-PNG_COMPRESSION = 1
 
 
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
@@ -191,7 +187,7 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
     texcoords = old_texcoords(session, options)
     measures = flatten_mesh(session, options, progress)
     pattern, extents = scaled(session, options, loaded.frame, up)
-    writer = _Writer(session, options, folder / name, progress)
+    writer = PatternWriter(session, options, folder / name, progress)
     writer.write_patterns(pattern)
     scene.turn(loaded.meshes, up, back=True)
     writer.write_meshes(loaded.parts, texcoords)
@@ -410,77 +406,3 @@ def old_texcoords(session: Session, options: RunOptions) -> Any:
     if set(MESH_FORMATS) & set(options.formats):
         session.warnings.append(f"the texture coordinates of the file are replaced{lost}; {advice}")
     return coordinates if kept else None
-
-
-class _Writer:
-    """Writes all files but the JSON, and keeps their names by kind."""
-
-    def __init__(
-        self, session: Session, options: RunOptions, stem: Path, progress: Progress
-    ) -> None:
-        self.session = session
-        self.options = options
-        self.stem = stem
-        self.progress = progress
-        self.outputs: dict[str, str] = {}
-        self.guide: dict[str, Any] = {}
-
-    def _target(self, extension: str, suffix: str = "") -> Path:
-        # with_suffix would cut a name such as "part.v2".
-        return self.stem.parent / f"{self.stem.name}{suffix}.{extension}"
-
-    def write_patterns(self, pattern: Mapping[str, Any]) -> None:
-        """What shows the mesh upright: patterns and the picture."""
-        plain, marker = cloth.split(pattern)
-        files = list(cloth.written(plain))
-        for extension in self._formats(PATTERN_FORMATS):
-            for suffix, parameters in files:
-                target = self._target(extension, suffix)
-                results = self.session.export(target, parameters)
-                if suffix:
-                    self.outputs[f"{extension}{suffix}"] = target.name
-            self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
-            if "material" in plain:
-                self.guide["cloth"] = cloth.strains(results, plain["material"])
-        for extension in self.options.formats:
-            if marker and extension in cloth.MARKER_FORMATS:
-                with self.progress.stage(f"marker {extension}"):
-                    target = self._target(extension, "_marker")
-                    results = self.session.export(target, marker)
-                self.guide["marker"] = cloth.marker(results)
-                self.outputs[f"marker_{extension}"] = target.name
-        if self.options.picture:
-            with self.progress.stage("picture"):
-                from devseg.render import render_pair
-
-                data = host.mesh_data(self.session.meshes.current_mesh())
-                render_pair(data).save(self._target("png"), compress_level=PNG_COMPRESSION)
-                self.outputs["png"] = self._target("png").name
-
-    def write_meshes(self, parts: Sequence[Part], texcoords: Any) -> None:
-        """What has the frame of the file."""
-        mesh = self.session.meshes.current_mesh()
-        for extension in self._formats(MESH_FORMATS):
-            target = self._target(extension)
-            if extension == "obj":
-                ids = scene.part_ids(mesh, parts)
-                write_obj(target, mesh, parts, ids, self.session.path)
-                continue
-            attributes = ["chart_id", "seam_edges"]
-            attributes += [scene.PART_ATTRIBUTE] if len(parts) > 1 else []
-            self.session.save(
-                target,
-                binary=True,
-                save_textures=False,
-                **{f"__ca_fs__{name}": True for name in attributes},
-            )
-            ply.finish(target, scene.comments(parts), texcoords)
-
-    def _formats(self, known: Sequence[str]) -> Iterator[str]:
-        """Those of the formats that are asked for, each as a stage of its own."""
-        for extension in self.options.formats:
-            if extension in known:
-                with self.progress.stage(extension):
-                    yield extension
-                if self._target(extension).exists():  # else one for each size
-                    self.outputs[extension] = self._target(extension).name

@@ -197,7 +197,7 @@ def _edge_lines(
     points: np.ndarray, visible: Visible, edges: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pixels of triangles with edges that are marked in #T by 3, and how dark they make them."""
-    near = np.flatnonzero(edges.any(axis=1)[visible.shown])
+    near = np.flatnonzero(edges[visible.shown].any(axis=1))
     shown = visible.shown[near]
     p = points[shown]
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]

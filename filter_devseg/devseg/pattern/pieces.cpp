@@ -8,6 +8,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pattern/bends.h"
+#include "devseg/pattern/chart_areas.h"
 #include "devseg/pattern/cloth_strain.h"
 #include "devseg/pattern/corners.h"
 #include "devseg/pattern/curves.h"
@@ -28,20 +29,6 @@ namespace {
 // margins of the sheet (10 mm), or 0.1 mm on the sheet.
 constexpr double smallest_layout_mm = 1e-10;
 constexpr double largest_layout_mm = 1e12;
-
-// Of the root of the whole area: narrower charts are degenerate faces that some atlas gave a chart
-// of their own. On a sheet of a square metre they are 1 µm wide.
-constexpr double narrow_chart = 1e-6;
-
-// A chart that covers less than this share of its own area has collapsed_chart in the plane.
-constexpr double collapsed_chart = 1e-6;
-
-// Charts that have collapsed_chart are left out up to this share of the model: makers of atlases
-// give faces that they cannot unfold one point.
-constexpr double left_out_share = 1e-3;
-
-// A piece may lose this share of its area to folds before that is reported.
-constexpr double fold_tolerance = 1e-3;
 
 // A layout whose pieces have come to lie on each other is drawn out by these shares, one after the
 // other: nested pieces part by a few gaps of the packing (0.2 %), or not at all.
@@ -73,8 +60,6 @@ double paper_scale(const Mesh& mesh, const PatternOptions& options) {
     return options.height_mm / extent;
 }
 
-constexpr const char* remedy = "; run 'Charts: Flatten' first";
-
 void check_coordinates(const CornerUv& uv) {
     std::vector<Index> bad;
     for (std::size_t f = 0; 3 * f < uv.size(); ++f)
@@ -83,105 +68,12 @@ void check_coordinates(const CornerUv& uv) {
     if (!bad.empty())
         throw InvalidMesh("expected finite texture coordinates, found NaN or infinite ones on " +
                               std::to_string(bad.size()) + (bad.size() == 1 ? " face" : " faces") +
-                              remedy,
+                              flatten_first,
                           bad);
     if (std::all_of(uv.begin(), uv.end(), [&](const Vec2& p) { return p == uv.front(); }))
         throw InvalidMesh(std::string("expected texture coordinates that lay the charts out, "
                                       "found all of them at one point") +
-                          remedy);
-}
-
-struct ChartAreas {
-    std::vector<double> surface;      // of each chart, internal units squared
-    std::vector<double> plane;        // of each chart, signed, uv units squared
-    std::vector<double> covered;      // the same, faces counted without sign
-    std::vector<double> surface_edge; // longest of each chart, internal units
-    std::vector<double> plane_edge;   // the same in the plane, uv units
-    double surface_total = 0.0;
-    double plane_total = 0.0; // of all faces, without sign
-    Index left_out = 0; // small charts that have collapsed_chart: their area in the plane is 0
-    Index crumbs = 0;   // charts without an area worth cutting
-
-    double scale = 1.0; // internal units for one unit of the texture coordinates
-    bool is_crumb(std::size_t c) const {
-        return is_narrow(surface[c], surface_edge[c], surface_total) &&
-               is_narrow(std::abs(plane[c]), plane_edge[c], plane_total);
-    }
-    static bool is_narrow(double area, double edge, double total) {
-        const double width = narrow_chart * std::sqrt(total);
-        return area <= width * std::max(edge, width);
-    }
-    // Signed areas in the plane, 0 for crumbs.
-    std::vector<double> worth_cutting() const {
-        std::vector<double> result = plane;
-        for (std::size_t c = 0; c < result.size(); ++c)
-            if (is_crumb(c))
-                result[c] = 0.0;
-        return result;
-    }
-};
-
-ChartAreas measure_charts(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts,
-                          double scale) {
-    ChartAreas areas;
-    areas.scale = scale;
-    areas.surface.assign(at(charts.count), 0.0);
-    areas.plane.assign(at(charts.count), 0.0);
-    areas.covered.assign(at(charts.count), 0.0);
-    areas.surface_edge.assign(at(charts.count), 0.0);
-    areas.plane_edge.assign(at(charts.count), 0.0);
-    areas.surface_total = mesh.total_area;
-    for (const Face f : mesh.all_faces()) {
-        const double area = plane::uv_area(uv, f);
-        areas.surface[charts.chart[f]] += mesh.face_areas[f];
-        areas.plane[charts.chart[f]] += area;
-        areas.covered[charts.chart[f]] += std::abs(area);
-        for (const HalfEdge h : half_edges_of(f)) {
-            double& longest = areas.surface_edge[charts.chart[f]];
-            double& flat = areas.plane_edge[charts.chart[f]];
-            longest = std::max(longest, mesh.edge_length(h));
-            flat = std::max(flat, (uv[Mesh::next(h)] - uv[h]).norm());
-        }
-        areas.plane_total += std::abs(area);
-    }
-    if (!(areas.plane_total > 0.0) || !std::isfinite(areas.plane_total))
-        throw InvalidMesh(
-            std::string("expected texture coordinates that cover an area, found ") +
-            (areas.plane_total > 0.0 ? "some that are too large to measure" : "none") + remedy);
-    return areas;
-}
-
-// Charts without area in the plane cannot be cut; crumbs need not be. Small ones are left
-// out for that.
-void check_charts(const atlas::ChartMap& charts, ChartAreas& areas) {
-    const double scale = areas.scale;
-    std::vector<std::uint8_t> is_bad(at(charts.count), 0);
-    Index count = 0;
-    double lost = 0.0;
-    for (std::size_t c = 0; c < is_bad.size(); ++c) {
-        areas.crumbs += areas.is_crumb(c) ? 1 : 0;
-        if (!areas.is_crumb(c) &&
-            !(std::abs(areas.plane[c]) * scale * scale >= collapsed_chart * areas.surface[c])) {
-            is_bad[c] = 1;
-            ++count;
-            lost += areas.surface[c];
-        }
-    }
-    if (lost <= left_out_share * areas.surface_total) {
-        for (std::size_t c = 0; c < is_bad.size(); ++c)
-            if (is_bad[c] != 0)
-                areas.plane[c] = 0.0;
-        areas.left_out = count;
-        return;
-    }
-    std::vector<Index> faces;
-    for (std::size_t f = 0; f < charts.chart.size(); ++f)
-        if (is_bad[charts.chart[f]] != 0)
-            faces.push_back(static_cast<Index>(f));
-    throw InvalidMesh("expected charts that lie flat in the texture coordinates, found " +
-                          std::to_string(count) + " of " + std::to_string(charts.count) +
-                          (count == 1 ? " that covers" : " that cover") + " no area" + remedy,
-                      faces);
+                          flatten_first);
 }
 
 // All names equally long, so that they sort: P01 … P12, or P001 … P120.
@@ -191,30 +83,6 @@ void number_pieces(std::vector<PatternPiece>& pieces) {
         const std::string ordinal = std::to_string(i + 1);
         pieces[i].name = 'P' + std::string(digits - ordinal.size(), '0') + ordinal;
     }
-}
-
-void note_folds(Pattern& pattern, const ChartAreas& areas) {
-    if (areas.left_out > 0)
-        pattern.notes.push_back(
-            std::to_string(areas.left_out) +
-            (areas.left_out == 1 ? " small chart covers" : " small charts cover") +
-            " no area in the texture coordinates: left out "
-            "('Charts: Flatten' unfolds all)");
-    if (areas.crumbs > 0)
-        pattern.notes.push_back(std::to_string(areas.crumbs) +
-                                (areas.crumbs == 1 ? " chart is" : " charts are") +
-                                " narrower than a millionth of the model: left out");
-    const auto is_folded = [&](const PatternPiece& piece) {
-        const double whole = areas.covered[piece.chart];
-        return whole - std::abs(areas.plane[piece.chart]) > fold_tolerance * whole;
-    };
-    const auto count = std::count_if(pattern.pieces.begin(), pattern.pieces.end(), is_folded);
-    if (count > 0)
-        pattern.notes.push_back(std::to_string(count) + " of " +
-                                std::to_string(pattern.pieces.size()) +
-                                (count == 1 ? " pieces folds" : " pieces fold") +
-                                " over in the texture coordinates: the outline does not enclose "
-                                "the whole area ('Charts: Flatten' folds nothing)");
 }
 
 void note_mismatches(Pattern& pattern) {

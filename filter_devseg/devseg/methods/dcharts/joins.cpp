@@ -254,35 +254,13 @@ private:
     // The cuts inside the joined chart: those of both, and what is left of the border.
     std::vector<std::uint8_t> seam_without(const Closing& closing) const {
         std::vector<std::uint8_t> seam = draft_.seam;
-        for (const HalfEdge h : left_border(closing))
+        for (const HalfEdge h : left_border(mesh_, draft_, closing))
             seam[h] = seam[mesh_.twin[h]] = 1;
         for (const HalfEdge h : closing.edges)
             seam[h] = seam[mesh_.twin[h]] = 0;
         for (const HalfEdge h : closing.opened)
             seam[h] = seam[mesh_.twin[h]] = 1;
         return seam;
-    }
-
-    std::vector<HalfEdge> left_border(const Closing& closing) const {
-        const auto [a, b] = closing.charts;
-        std::vector<HalfEdge> left;
-        if (a == b)
-            return left;
-        const std::vector<Index>& faces =
-            draft_.faces[draft_.faces[a].size() < draft_.faces[b].size() ? a : b];
-        for (const Face f : faces)
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin < 0 || draft_.chart[face_of(twin)] == draft_.chart[f])
-                    continue;
-                const Index other = draft_.chart[face_of(twin)];
-                const Index edge = std::min<Index>(h, twin);
-                if ((other == a || other == b) &&
-                    std::find(closing.edges.begin(), closing.edges.end(), edge) ==
-                        closing.edges.end())
-                    left.push_back(edge);
-            }
-        return left;
     }
 
     // Stretch up to which a joined chart may be worth having.
@@ -398,7 +376,7 @@ private:
     void close(const Closing& closing, const Verdict& verdict) {
         const auto [a, b] = closing.charts;
         draft_.seam = seam_without(closing);
-        const std::vector<HalfEdge> left = left_border(closing);
+        const std::vector<HalfEdge> left = left_border(mesh_, draft_, closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
         draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;

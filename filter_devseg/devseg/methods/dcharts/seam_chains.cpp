@@ -59,4 +59,23 @@ std::vector<Closing> SeamChains::find(const Draft& draft) const {
     return chains;
 }
 
+std::vector<HalfEdge> left_border(const Mesh& mesh, const Draft& draft, const Closing& closing) {
+    const auto [a, b] = closing.charts;
+    std::vector<HalfEdge> left;
+    if (a == b)
+        return left;
+    for (const Face f : draft.faces[draft.faces[a].size() < draft.faces[b].size() ? a : b])
+        for (const HalfEdge h : half_edges_of(f)) {
+            const HalfEdge twin = mesh.twin[h];
+            if (twin < 0 || draft.chart[face_of(twin)] == draft.chart[f])
+                continue;
+            const Index other = draft.chart[face_of(twin)];
+            const Index edge = std::min<Index>(h, twin);
+            if ((other == a || other == b) &&
+                std::find(closing.edges.begin(), closing.edges.end(), edge) == closing.edges.end())
+                left.push_back(edge);
+        }
+    return left;
+}
+
 } // namespace devseg::dcharts

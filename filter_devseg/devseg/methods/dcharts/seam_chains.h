@@ -36,4 +36,7 @@ private:
     std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
 };
 
+/// What the closing leaves of the border between its two charts, a half-edge for each edge.
+std::vector<HalfEdge> left_border(const Mesh& mesh, const Draft& draft, const Closing& closing);
+
 } // namespace devseg::dcharts
