@@ -164,7 +164,7 @@ declare::Declare<O> with_guide(declare::Declare<O> filter) {
 }
 
 declare::Declare<O> with_cloth(declare::Declare<O> filter) {
-    return filters::with_material(filter)
+    return filters::with_grain(filters::with_material(filter))
         .real(&O::kerf_mm, {"kerf_mm", -1.0, 100.0}, "Kerf (mm)",
               "Width that the cut burns away, in millimetres: outlines move outwards and holes "
               "inwards by half of it. -1 = that of the material with the preset Laser, else 0.")

@@ -380,7 +380,8 @@ SheetPiece compose_piece(const pattern::Pattern& pattern, Index index, const Glu
     for (Index i = 0; i < piece.path_count(); ++i)
         outlines.emplace_back(piece.path(i));
     merge_slits(pattern, index, outlines, result.slits);
-    add_tabs(pattern, tabs.tabs[index], options, outlines, result);
+    if (!tabs.tabs.empty())
+        add_tabs(pattern, tabs.tabs[at(index)], options, outlines, result);
     for (const TabShadow& shadow : tabs.shadows)
         if (shadow.piece == index && options.tab_shadows)
             result.shadows.push_back(shadow.line);

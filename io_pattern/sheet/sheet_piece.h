@@ -70,7 +70,7 @@ struct SheetPiece {
 std::vector<declare::Color> piece_colors(const pattern::Pattern& pattern);
 
 /// The piece as the options want it, where the pattern has it, without texts. `tabs` has a list for
-/// each piece.
+/// each piece, or none.
 SheetPiece compose_piece(const pattern::Pattern& pattern, Index piece, const GlueTabs& tabs,
                          const ExportOptions& options);
 

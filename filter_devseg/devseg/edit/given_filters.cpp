@@ -207,8 +207,8 @@ FilterDeclaration cut_open() {
                               FilterCategory::remeshing, open_help)
         .writes(writes_charts | writes_mesh)
         .result("charts_number", "charts, as many as before")
-        .result(new_vertices_number, "vertices that were duplicated")
         .result("seam_length", "length of all cut edges, model units")
+        .result(new_vertices_number, "vertices that were duplicated")
         .runs(run_open);
 }
 

@@ -109,7 +109,7 @@ std::vector<FilterDeclaration> deformation_filters() {
                   "How far a vertex may move, as a share of the diagonal of the model's box; where "
                   "more would be needed, slits are cut (with 'Adjust slits'). 0 = no limit.")
             .real(&O::max_mean_displacement, "Largest mean displacement",
-                  "The same for the mean over all vertices. 0 = no limit.")
+                  "The same share for the mean over all vertices. 0 = no limit.")
             .writes(writes_charts | writes_points)
             .result("charts_number", "charts, each a disk but for flat holes")
             .result("inner_vertices_number", "vertices inside of charts, whose angles count")

@@ -10,19 +10,11 @@ namespace devseg::filters {
 /// Options derive from pattern::PatternOptions.
 template <class O>
 declare::Declare<O> with_material(declare::Declare<O> filter) {
-    pattern::GrainDirection O::*grain = &O::grain;
     return filter
         .text(&O::material, "material", "Material",
               "What pieces are cut from: " + material::names() +
                   ". Values of its own follow as in fleece, warp=0.12, thickness_mm=2. Empty: "
                   "nothing is said about strain.")
-        .choice(grain, "grain", "Grain",
-                {"Best fit", "Longest side", "Up", "Angle", "Texture v", "Free"},
-                "Where the threads run in each piece: as they strain the material least, along the "
-                "longest side, upwards on the model, at an angle to the texture's v, or along "
-                "that. Free: as they fit best, and layouts turn pieces as they like.")
-        .real(&O::grain_angle, "Angle of the grain (degrees)",
-              "With the grain at an angle: degrees from the texture's v, counterclockwise.")
         .real(&O::thickness_mm, "Thickness (mm)",
               "Thickness of the material in millimetres, which lies inside of the model's surface: "
               "pieces get shorter where they bend. 0 = none.")
@@ -32,6 +24,21 @@ declare::Declare<O> with_material(declare::Declare<O> filter) {
         .real(&O::k_factor, "K factor",
               "Where the length of a bend stays the same: share of the thickness from its inner "
               "side. -1 = that of the material, or 0.5.");
+}
+
+/// For filters that show where the threads run.
+template <class O>
+declare::Declare<O> with_grain(declare::Declare<O> filter) {
+    pattern::GrainDirection O::*grain = &O::grain;
+    return filter
+        .choice(grain, "grain", "Grain",
+                {"Best fit", "Longest side", "Up", "Angle", "Texture v", "Free"},
+                "Where the threads run in each piece. Best fit: as they strain the material least. "
+                "Longest side: along it. Up: upwards on the model. Angle: at an angle to the "
+                "texture's v. Texture v: along that. Free: as they fit best, and layouts turn "
+                "pieces as they like.")
+        .real(&O::grain_angle, "Angle of the grain (degrees)",
+              "With the grain at an angle: degrees from the texture's v, counterclockwise.");
 }
 
 } // namespace devseg::filters

@@ -153,6 +153,11 @@ double total(const std::vector<double>& values) {
 using Piece = pattern::PatternPiece;
 using pattern::Seam;
 
+double grain_angle(const Piece& piece) {
+    constexpr double degrees = 180.0 / pi;
+    return degrees * std::atan2(piece.grain_direction.y(), piece.grain_direction.x());
+}
+
 ResultValues measure_pieces(const pattern::Pattern& pattern) {
     const std::vector<Piece>& pieces = pattern.pieces;
     const auto areas = column(pieces, &Piece::area);
@@ -182,6 +187,9 @@ ResultValues measure_pieces(const pattern::Pattern& pattern) {
         {"piece_compression", compressions},
         {"piece_mean_strain", column(pieces, [](const Piece& p) { return p.strain.mean; })},
         {"piece_area_change", column(pieces, [](const Piece& p) { return p.strain.area_change; })},
+        {"piece_grain_angle", column(pieces, grain_angle)},
+        {"piece_strain_along", column(pieces, [](const Piece& p) { return p.cloth.along; })},
+        {"piece_strain_across", column(pieces, [](const Piece& p) { return p.cloth.across; })},
         {"piece_shape", column(pieces, &Piece::model)}};
 }
 
@@ -312,15 +320,15 @@ FilterDeclaration pieces() {
 
 FilterDeclaration measures() {
     using O = pattern::PatternOptions;
-    return with_material(
-               with_seams(with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
-                                                FilterCategory::measure, measures_help))))
+    return with_grain(with_material(with_seams(
+                          with_scale(Declare<O>("Pattern: Measure", "get_pattern_measures",
+                                                FilterCategory::measure, measures_help)))))
         .needs_uv()
         .shows_outside()
         .result("pieces_number", "pieces")
         .result("shapes_number", "different pieces, mirror images not counted")
         .result("mirrored_pairs_number", "pairs of a piece and its mirror image")
-        .result("folds_number", "edges inside pieces that bend by more than 22.5 degrees")
+        .result("folds_number", "edges inside pieces that bend by more than 3 degrees")
         .result("width_mm", "width of the layout in mm")
         .result("height_mm", "height of the layout in mm")
         .result("area_mm2", "area of all pieces in mm²")
@@ -334,6 +342,10 @@ FilterDeclaration measures() {
         .result("piece_compression", "largest compression in each piece")
         .result("piece_mean_strain", "mean of the larger of the two over each piece")
         .result("piece_area_change", "area of each piece on paper over that on the model, less 1")
+        .result("piece_grain_angle", "direction of the grain of each piece in degrees from x")
+        .result("piece_strain_along",
+                "with a material: largest strain of each piece along the grain")
+        .result("piece_strain_across", "the same across it")
         .result("piece_shape", "for each piece the first piece of its shape, counted from 0")
         .result("seams_number", "seams, darts among them")
         .result("darts_number", "seams of a piece with itself that end at a tip")
