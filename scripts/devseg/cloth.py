@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from devseg.lengths import length, millimetres, number
+from devseg.methods import EFFORTS
 
 GRAINS = {
     "best": "Best fit",
@@ -18,19 +19,11 @@ GRAINS = {
     "texture-v": "Texture v",
     "free": "Free",
 }
-EFFORTS = {"fast": "Fast", "normal": "Normal", "best": "Best"}
 # Formats that hold a marker.
 MARKER_FORMATS = ("svg", "pdf", "dxf")
-# Parameters of the export that shape a marker and nothing else.
-MARKER_PARAMETERS = (
-    "fabric_width_mm",
-    "selvedge_mm",
-    "fold",
-    "nap",
-    "copies",
-    "piece_gap_mm",
-    "effort",
-)
+# Options that shape a marker and nothing else, and the export's parameters that do.
+MARKER_OPTIONS = ("fabric_width_mm", "selvedge_mm", "fold", "nap", "copies", "piece_gap_mm")
+MARKER_PARAMETERS = (*MARKER_OPTIONS, "effort")
 # Those that shape the pieces.
 PIECE_PARAMETERS = ("material", "kerf_mm", "thickness_mm", "bend_radius_mm", "k_factor")
 # Heights of which each gets files of its own; no parameter of the export.
@@ -98,7 +91,6 @@ def add_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--piece-gap-mm", type=millimetres(), metavar="D", help="on the cloth; default: 3"
     )
-    group.add_argument("--effort", choices=EFFORTS, help="to find a short marker; default: normal")
     for name, text in (
         ("fold", "the cloth lies double, folded along its length"),
         ("nap", "all pieces lie the same way round"),
@@ -169,10 +161,10 @@ def _k_factor(text: str) -> float:
 
 def parameters(args: argparse.Namespace) -> dict[str, Any]:
     """The parameters of the export that were given."""
-    names = (*PIECE_PARAMETERS, *MARKER_PARAMETERS)
+    names = (*PIECE_PARAMETERS, *MARKER_OPTIONS)
     given = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-    if "effort" in given:
-        given["effort"] = EFFORTS[given["effort"]]
+    if "fabric_width_mm" in given:
+        given["effort"] = EFFORTS[args.effort]
     if args.sizes:
         given["height_mm"] = args.sizes[-1]
         if args.sizes_apart:
@@ -188,7 +180,7 @@ def check(args: argparse.Namespace, parser: argparse.ArgumentParser) -> None:
         parser.error("--sizes-apart needs --sizes")
     if args.sizes and (args.height_mm or args.longest_mm or args.mm_per_unit):
         parser.error("--sizes gives the height: leave --height-mm and its like out")
-    given = [name for name in MARKER_PARAMETERS if getattr(args, name) is not None]
+    given = [name for name in MARKER_OPTIONS if getattr(args, name) is not None]
     if given and not args.fabric_width_mm:
         option = "selvedge" if given[0] == "selvedge_mm" else given[0].replace("_", "-")
         parser.error(f"--{option} needs the width of the cloth: give --fabric-width-mm")

@@ -98,8 +98,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         "--effort",
         choices=EFFORTS,
         default="normal",
-        help="of packing texture coordinates: fast takes milliseconds, best seconds; "
-        "default: normal",
+        help="of packing texture coordinates, and of markers: fast takes milliseconds, best "
+        "seconds; default: normal",
     )
     parser.add_argument(
         "--no-picture", action="store_false", dest="picture", help="write no NAME.png"
