@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "devseg/atlas/fragments.h"
 #include "devseg/graph/shortest_paths.h"
@@ -19,13 +21,10 @@ growth::ChartProxies proxies_of_charts(const Mesh& mesh, const Draft& draft,
     const Index patches = 1 + *std::max_element(patch.begin(), patch.end());
     const std::vector<metrics::ConicProxy> proxies = metrics::fit_conics(mesh, patch, patches);
     growth::ChartProxies result(draft.faces.size());
-    std::vector<std::uint8_t> seen(proxies.size() * draft.faces.size(), 0);
-    for (std::size_t f = 0; f < patch.size(); ++f) {
-        std::uint8_t& known = seen[at(patch[f]) * draft.faces.size() + at(draft.chart[f])];
-        if (known == 0)
+    std::set<std::pair<Index, Index>> seen; // few of all pairs
+    for (std::size_t f = 0; f < patch.size(); ++f)
+        if (seen.emplace(draft.chart[f], patch[f]).second)
             result[draft.chart[f]].push_back(proxies[patch[f]]);
-        known = 1;
-    }
     return result;
 }
 
