@@ -69,11 +69,9 @@ void MirrorImage::add_line(const Vec3& from, const Vec3& to, double spacing) {
 }
 
 std::optional<Vec3> MirrorImage::way(const Vec3& point, const Vec3& direction) const {
-    const double squared = reach_ * reach_;
-    const Index k = nearest_->nearest(point, [&](Index i) {
-        return (points_[at(i)] - point).squaredNorm() < squared &&
-               std::abs(directions_[at(i)].dot(direction)) > tuning.alike;
-    });
+    const Index k = nearest_->nearest(
+        point, [&](Index i) { return std::abs(directions_[at(i)].dot(direction)) > tuning.alike; },
+        reach_);
     if (k < 0)
         return {};
     const Vec3 d = points_[at(k)] - point; // without what lies along the image
@@ -81,9 +79,8 @@ std::optional<Vec3> MirrorImage::way(const Vec3& point, const Vec3& direction) c
 }
 
 std::optional<Vec3> MirrorImage::way_of_junction(const Vec3& point) const {
-    const double squared = reach_ * reach_;
     const Index k = nearest_junction_->nearest(
-        point, [&](Index i) { return (junctions_[at(i)] - point).squaredNorm() < squared; });
+        point, [](Index) { return true; }, reach_);
     if (k < 0)
         return {};
     return Vec3(junctions_[at(k)] - point);

@@ -23,10 +23,11 @@ public:
         tree_.init(order.begin(), order.end(), boxes.begin(), boxes.end());
     }
 
-    /// The nearest point for which accept(i) holds; of equally near ones the first; −1 = none.
+    /// The nearest point that is nearer than `reach` and for which accept(i) holds; of equally near
+    /// ones the first; −1 = none.
     template <class Accept>
-    Index nearest(const Vec3& p, Accept accept) const {
-        Search<Accept> search{points_, p, accept};
+    Index nearest(const Vec3& p, Accept accept, double reach = infinite) const {
+        Search<Accept> search{points_, p, accept, reach * reach};
         if (!points_.empty())
             Eigen::BVMinimize(tree_, search);
         return search.best;
@@ -40,8 +41,8 @@ private:
         const std::vector<Vec3>& points;
         const Vec3& p;
         const Accept& accept;
+        double least;
         Index best = -1;
-        double least = infinite;
 
         double minimumOnVolume(const Eigen::AlignedBox3d& box) const {
             return box.squaredExteriorDistance(p);
