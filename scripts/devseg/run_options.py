@@ -277,7 +277,7 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         _smooth_seams(args, pattern, parser),
         args.weld,
         given.check(args, parser),
-        method.deforms if args.deform == "auto" else args.deform == "always",
+        None if args.deform == "auto" else args.deform == "always",
         args.close_holes,
         args.effort,
     )

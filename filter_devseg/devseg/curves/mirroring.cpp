@@ -42,11 +42,14 @@ MirrorImage::MirrorImage(const Network& network, const mesh::MirrorPlane& plane,
         if (curve.start >= 0)
             way.push_back(place_of_node(network, curve.start));
         for (Index c = curve.first; c >= 0; c = network.crossings[c].next) {
-            way.push_back(place_of_crossing(network, c));
-            if (c == curve.last)
+            if (c == curve.first && !way.empty() && curve.is_closed())
                 break;
+            way.push_back(place_of_crossing(network, c));
         }
-        way.push_back(curve.is_closed() ? way.front() : place_of_node(network, curve.end));
+        if (!curve.is_closed())
+            way.push_back(place_of_node(network, curve.end));
+        else if (!way.empty())
+            way.push_back(way.front());
         for (std::size_t i = 0; i + 1 < way.size(); ++i)
             add_line(way[i], way[i + 1], spacing);
     }

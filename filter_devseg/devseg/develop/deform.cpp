@@ -29,6 +29,7 @@ struct Tuning {
     int attempts = 3;       // at a surface that does not run through itself, with given slits
     // The same where slits may be cut: the last ones hold whole charts still, one after another.
     int most_attempts = 40;
+    double attempt_share = 0.12; // of the progress that is left: how many follow is not known
     double saddle_turn = 2.0; // what saddles may have too much, over what others may lack: slits to
                               // them cost parts
     int most_focused_rounds = 25;
@@ -368,14 +369,15 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
     const int attempts = options.adjust_slits ? tuning.most_attempts : tuning.attempts;
     DeformResult result;
     while (true) {
-        auto deforming = progress.part("deforming to exact developability", 0.5 * progress.left());
+        auto deforming = progress.part("deforming to exact developability",
+                                       tuning.attempt_share * progress.left());
         DeformResult next = Deformation(mesh, charts, point_of, options, attempt).run(deforming);
         if (attempt.number > 0 && !options.adjust_slits && !next.converged)
             break;
         result = std::move(next);
         Crossings added;
         if (result.converged) {
-            auto looking = progress.part("looking for intersections", 0.3 * progress.left());
+            auto looking = progress.part("looking for intersections", 0.02 * progress.left());
             added = new_crossings(faces, before, by_point(result.points), looking);
         }
         result.new_intersections = static_cast<Index>(added.size());
