@@ -97,6 +97,8 @@ std::vector<Index> shorter_cut(const Mesh& mesh, const Draft& draft, const Closi
                     path.push_back(paths.step[u]);
                 return false;
             }
+            if (seams.is_on(v) && seams.part(v) != from)
+                return true; // a hole: a path that touched it twice would take the chart apart
             for (const HalfEdge h : inner[v])
                 if (const double through = distance + atlas::cut_cost(mesh, h); through < bound)
                     paths.reach(mesh.target(h), through, h);

@@ -67,6 +67,22 @@ TEST(CutExchange, ADartBeginsAtTheNearestBorder) {
     EXPECT_TRUE(atlas::extract_surface(sheet.mesh, draft.faces[0], draft.seam).is_disk());
 }
 
+TEST(CutExchange, KeepsClearOfHoles) {
+    // The straight way up from the dart's tip leads to a hole that closes at x = 0.5.
+    Sheet sheet;
+    sheet.mark(0.5, 0.0, 0.8);
+    const Closing chain = sheet.chains().at(0);
+    sheet.mark(0.5, 0.85, 0.95);
+    const std::vector<Index> path = shorter_cut(sheet.mesh, sheet.draft, chain, Progress());
+    ASSERT_FALSE(path.empty());
+    Draft draft = sheet.draft;
+    for (const HalfEdge h : chain.edges)
+        draft.seam[h] = draft.seam[sheet.mesh.twin[h]] = 0;
+    for (const HalfEdge h : path)
+        draft.seam[h] = draft.seam[sheet.mesh.twin[h]] = 1;
+    EXPECT_EQ(atlas::extract_surface(sheet.mesh, draft.faces[0], draft.seam).loops.size(), 2U);
+}
+
 TEST(CutExchange, TheShortestCutStays) {
     Sheet sheet;
     sheet.mark(0.5, 0.0, 0.4);
