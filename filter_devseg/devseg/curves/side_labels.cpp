@@ -58,8 +58,9 @@ void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vec
 
 } // namespace
 
-atlas::ChartMap label_sides(const Mesh& fine, const atlas::ChartMap& old,
+atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
                             const std::vector<Piece>& pieces, std::vector<Index>& failed) {
+    const Mesh& fine = refinement.mesh;
     atlas::ChartMap charts;
     charts.count = old.count;
     charts.chart.assign(fine.faces.size(), -1);
@@ -76,7 +77,11 @@ atlas::ChartMap label_sides(const Mesh& fine, const atlas::ChartMap& old,
             stack.push_back(g);
         }
     }
-    for (const Face f : fine.all_faces()) // without seams: as they were
+    // Without seams: as they were. Parts of faces are there where the seams that split them failed.
+    for (const mesh::Refinement::Part& part : refinement.parts)
+        if (charts.chart[part.face] < 0)
+            charts.chart[part.face] = old.chart[part.source];
+    for (std::size_t f = 0; f < old.chart.size(); ++f)
         if (charts.chart[f] < 0)
             charts.chart[f] = old.chart[f];
     // Two labels that meet where there is no seam make one of the two charts torn or gone.

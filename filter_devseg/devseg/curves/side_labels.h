@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/mesh/refinement.h"
 
 namespace devseg::curves {
 
@@ -22,7 +23,7 @@ struct Piece {
 /// Labels spread from the two sides of the pieces (sorted) over the finer mesh; components without
 /// seams keep theirs: old face f is face f or a part of it. Curves whose pieces are no edges, or
 /// whose charts would fall apart, are added to `failed`.
-atlas::ChartMap label_sides(const Mesh& fine, const atlas::ChartMap& old,
+atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
                             const std::vector<Piece>& pieces, std::vector<Index>& failed);
 
 } // namespace devseg::curves

@@ -341,7 +341,7 @@ private:
             return;
         renumber();
         result.refinement = mesh::refine(mesh_, std::move(points_), splits_);
-        result.charts = label_sides(result.refinement.mesh, charts_, pieces_, failed_);
+        result.charts = label_sides(result.refinement, charts_, pieces_, failed_);
         fail_longer(result.refinement.mesh);
     }
 
