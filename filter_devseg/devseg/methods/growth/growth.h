@@ -114,8 +114,8 @@ public:
         heaps_.resize(at(count));
         for (CandidateHeap& heap : heaps_)
             heap.clear();
-        for (const Face f : front)
-            offer_neighbours(f, cost, chart);
+        for (const Face f : front) // all are in their charts: no offer was the first
+            offer_neighbours(f, cost, chart, true);
         Tournament<Key> tournament(count);
         for (Index c = 0; c < count; ++c)
             tournament.set(c, key_of<Key>(c, cost, chart));
@@ -153,13 +153,13 @@ private:
     }
 
     template <class Cost>
-    void offer_neighbours(Face f, Cost& cost, const std::vector<Index>& chart) {
+    void offer_neighbours(Face f, Cost& cost, const std::vector<Index>& chart, bool all = false) {
         const Index c = chart[f];
         for (const HalfEdge h : half_edges_of(f)) {
             const HalfEdge twin = mesh_.twin[h];
             if (twin < 0 || chart[face_of(twin)] >= 0 || facets_.are_one(f, face_of(twin)))
                 continue;
-            if (offers == Offers::first && !is_first_offer(twin, c, chart))
+            if (!all && offers == Offers::first && !is_first_offer(twin, c, chart))
                 continue;
             const CandidateHeap::Entry entry = cost.candidate(h, c);
             if (entry.face >= 0)

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "unit/checks.h"
 #include "unit/mesh_edits.h"
+#include "unit/shapes.h"
 
 namespace devseg::growth {
 namespace {
@@ -106,6 +108,29 @@ TEST(Tournament, StartsWithoutCandidates) {
         const Tournament tournament(players);
         EXPECT_EQ(tournament.key(tournament.winner()), infinity);
     }
+}
+
+struct EveryFace {
+    const Mesh& mesh;
+
+    CandidateHeap::Entry candidate(HalfEdge h, Index) const {
+        return {1.0F, 1.0F, face_of(mesh.twin[h])};
+    }
+    float key(Index, const CandidateHeap::Entry& entry) const { return entry.key; }
+    void take(Index, Index, float) const {}
+};
+
+TEST(MultiHeap, ReachesFacesBetweenThoseThatItBeginsWith) {
+    const Mesh mesh = checks::gated(shapes::sphere(1));
+    std::vector<Index> chart(mesh.faces.size(), 0);
+    chart[7] = -1; // all its neighbours are in the chart from the start
+    std::vector<Index> front;
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        if (f != 7)
+            front.push_back(f);
+    EveryFace cost{mesh};
+    MultiHeap<Offers::first>(mesh).spread(front, 1, cost, chart, Progress());
+    EXPECT_EQ(chart[7], 0);
 }
 
 } // namespace
