@@ -80,6 +80,7 @@ std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
             const double stretch = options.max_chart_l2_stretch;
             const double strain = options.max_strain;
             const bool is_above =
+                own.empty() || // it has vanished between its seams
                 (stretch > 0.0 && is_above_stretch(mesh, own, charts.seam, stretch, progress)) ||
                 (strain > 0.0 && is_above_strain(mesh, own, charts.seam, strain, progress));
             result[at(c)] = is_above ? 1 : 0;
