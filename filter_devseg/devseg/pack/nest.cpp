@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "devseg/base/parallel.h"
 #include "devseg/pack/compaction.h"
@@ -87,18 +86,6 @@ Share share_of(const NestProblem& problem) {
 
 SeparationOptions coarse_moves(std::size_t charts) {
     return charts > many_charts ? many_moves : SeparationOptions{};
-}
-
-// Charts from the largest box to the smallest.
-std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
-    std::vector<std::size_t> order(poses.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        const ChartCells& p = poses[a].front();
-        const ChartCells& q = poses[b].front();
-        return p.width * p.height > q.width * q.height;
-    });
-    return order;
 }
 
 Frame frame_of(double width, double aspect) {

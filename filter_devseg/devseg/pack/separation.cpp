@@ -81,6 +81,17 @@ std::int32_t least_of(const std::int32_t* values, Index count) {
 
 } // namespace
 
+std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
+    std::vector<std::size_t> order(poses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const ChartCells& p = poses[a].front();
+        const ChartCells& q = poses[b].front();
+        return p.width * p.height > q.width * q.height;
+    });
+    return order;
+}
+
 Separation::Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed,
                        const Progress& progress, std::vector<std::uint8_t> at_left)
     : poses_(poses), progress_(progress), at_left_(std::move(at_left)), random_state_(seed),

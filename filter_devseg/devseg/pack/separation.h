@@ -89,6 +89,9 @@ private:
 using Layout = std::vector<Spot>; // one for each chart
 using ChartPoses = std::vector<ChartCells>;
 
+/// The numbers of the charts from the largest box, in the first pose, to the smallest.
+std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses);
+
 /// The rectangle to fill, in cells.
 struct Frame {
     Index width = 0;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "devseg/base/parallel.h"
 #include "devseg/pack/compaction.h"
@@ -76,18 +75,6 @@ double width_at(const Outline& outline, double angle) {
 Index columns_of(const StripOptions& options, double cell) {
     // Half of the gap around each item may lie outside.
     return static_cast<Index>(std::floor((options.width + options.gap) / cell));
-}
-
-// The largest first: by the area of their boxes.
-std::vector<std::size_t> by_size(const std::vector<ChartPoses>& poses) {
-    std::vector<std::size_t> order(poses.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        const ChartCells& p = poses[a].front();
-        const ChartCells& q = poses[b].front();
-        return p.width * p.height > q.width * q.height;
-    });
-    return order;
 }
 
 Index used_height(const std::vector<ChartPoses>& poses, const Layout& layout) {
