@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import importlib.util
 import io
 import os
 import sys
 import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from devseg.errors import DevsegError
-from devseg.requirements import loading_advice, version_advice
+from devseg.requirements import PYMESHLAB, installed_version, loading_advice, version_advice
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from types import ModuleType
 
     import numpy as np
@@ -39,6 +41,12 @@ _terminals: list[_Terminal] = []
 
 # The host's plugin of the usual formats; it goes on without plugins that it cannot load.
 _READERS = "libio_base.so"
+# Its plugins with the filters that devseg applies, for processes of its own.
+_FILTERS = tuple(
+    f"libfilter_{name}.so"
+    for name in ("clean", "func", "layer", "meshing", "sampling", "select", "texture")
+)
+_is_own = False
 
 
 @contextlib.contextmanager
@@ -111,13 +119,60 @@ def pymeshlab() -> ModuleType:
     try:
         # It loads some sixty plugins and prints a warning about each that it cannot load.
         with captured() as chatter:
-            import pymeshlab as module
+            module = _own_module() if _is_own else importlib.import_module("pymeshlab")
     except ImportError as error:
         raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
     for line in chatter.text.splitlines():
         if "Cannot load library" in line and _READERS in line:
             raise DevsegError(f"pymeshlab cannot read files: {loading_advice(line)}")
     return module
+
+
+def own_process() -> None:
+    """From now on nobody but devseg uses the host in this process: it starts in half the time.
+
+    Most plugins of the host are left out. NumPy gets one thread: it starts others for products of
+    matrices, of which there are none here.
+    """
+    global _is_own
+    _is_own = True
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def _own_module() -> ModuleType:
+    """The module as its own __init__ makes it, but with the plugins that devseg needs."""
+    spec = importlib.util.find_spec("pymeshlab")
+    if spec is None or spec.origin is None or installed_version("pymeshlab") != PYMESHLAB:
+        return importlib.import_module("pymeshlab")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["pymeshlab"] = module
+    try:
+        core = importlib.import_module("pymeshlab.pmeshlab")
+    except BaseException:
+        del sys.modules["pymeshlab"]
+        raise
+    vars(module).update({name: one for name, one in vars(core).items() if name[0] != "_"})
+    plugins = Path(spec.origin).parent / "lib" / "plugins"
+    for file in (*sorted(plugins.glob("libio_*.so")), *map(plugins.joinpath, _FILTERS)):
+        try:
+            module.load_plugin(str(file))
+        except module.PyMeshLabException as error:
+            print(f"Cannot load library {file}: {error}")
+    for name in module.filter_list():
+        setattr(module.MeshSet, name, filter_method(name))
+    return module
+
+
+def filter_method(name: str) -> Callable[..., dict[str, Any] | None]:
+    """A method that applies a filter, as pymeshlab binds its own: a result only if not empty."""
+
+    def apply(self: Any, **parameters: Any) -> dict[str, Any] | None:
+        return self.apply_filter(name, **parameters) or None
+
+    apply.__name__ = name
+    apply.__qualname__ = f"MeshSet.{name}"
+    apply.__doc__ = f"Applies the filter {name}; see docs/filters.md."
+    return apply
 
 
 @dataclass(frozen=True)

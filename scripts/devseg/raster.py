@@ -26,13 +26,18 @@ class Visible:
         triangle: height by width, index of the triangle in front, -1 for background.
         pixels: that are covered, #P, counted along the rows.
         shown: their triangles, #P.
-        barycentric: of the pixel centres in their triangles, #P by 3, in screen space.
+        weights: of the triangles, see _weights.
     """
 
     triangle: np.ndarray
     pixels: np.ndarray
     shown: np.ndarray
-    barycentric: np.ndarray
+    weights: np.ndarray
+
+    def barycentric(self, chosen: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Of the centres of chosen ones of the #P pixels in their triangles, by 3, on screen."""
+        rows, columns = np.divmod(self.pixels[chosen], self.triangle.shape[1])
+        return _barycentric(self.weights, self.shown[chosen], columns + 0.5, rows + 0.5)
 
 
 def _repeat_ranges(first: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -58,10 +63,7 @@ def rasterize(points: np.ndarray, depth: np.ndarray | None, width: int, height: 
     if coarseness > 1:
         owner = owner.repeat(coarseness, axis=0).repeat(coarseness, axis=1)[:height, :width]
     covered = np.flatnonzero(owner >= 0)
-    rows, columns = np.divmod(covered, width)
-    shown = owner.ravel()[covered]
-    barycentric = _barycentric(_weights(points), shown, columns + 0.5, rows + 0.5)
-    return Visible(owner, covered, shown, barycentric)
+    return Visible(owner, covered, owner.ravel()[covered], _weights(points))
 
 
 def _owners(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> np.ndarray:
