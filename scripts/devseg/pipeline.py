@@ -117,7 +117,7 @@ class Session:
 
     def call(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter of the host that shapes no result, without noting its parameters."""
-        return self._guard(self.meshes.apply_filter, name, **parameters) or {}
+        return self._guard(getattr(self.meshes, name), **parameters) or {}
 
     def export(self, file: Path, parameters: Mapping[str, Any]) -> dict[str, Any]:
         """Writes the pattern, in the format of the file's extension; the filter's results."""
