@@ -10,6 +10,7 @@ so must all files but for the seconds that they tell. Prints a row for each kill
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import os
 import random
@@ -96,12 +97,13 @@ def main() -> int:
     killed = args.out / "killed"
     bad = 0
     for kill in range(args.kills):
-        # Some of them before the first mesh is done.
-        wait = random.uniform(0.05, max(2.5 * whole / args.kills, 1.5))
+        # Some of them come before the first mesh is done, some while reports are written.
+        wait = random.uniform(0.05, max(0.3 * whole, 1.5))
         process = start(command(args, killed), args.plugins)
         time.sleep(wait)
         ended = process.poll() is not None
-        os.killpg(process.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         wrong = halves(killed) if killed.exists() else []
         bad += len(wrong)
