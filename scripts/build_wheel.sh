@@ -86,6 +86,8 @@ build_wheel() {
     mkdir -p "$tree/scripts/devseg/plugins"
     or_die "copying the plugins" install -m 644 -t "$tree/scripts/devseg/plugins" --strip \
         "$root"/build/wheel/plugins/lib{filter_devseg,io_pattern}.so
+    or_die "making the stand-ins" "$python" "$root/scripts/wheel/stand_ins.py" "$pymeshlab" \
+        "$tree/scripts/devseg/plugins"
     or_die "making the wheel" "$python" -m build --no-isolation --wheel --outdir "$tree/dist" "$tree"
     wheel=$(echo "$tree"/dist/*.whl) sdist=$(echo "$tree"/dist/*.tar.gz)
     check_wheel_file "$wheel"

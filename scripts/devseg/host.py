@@ -15,7 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from devseg.errors import DevsegError
-from devseg.requirements import PYMESHLAB, installed_version, loading_advice, version_advice
+from devseg.requirements import (
+    PYMESHLAB,
+    installed_version,
+    loading_advice,
+    stand_in,
+    version_advice,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -140,6 +146,8 @@ def pymeshlab() -> ModuleType:
         with captured() as chatter:
             module = _own_module() if _is_own else importlib.import_module("pymeshlab")
     except ImportError as error:
+        if stand_in(str(error)):
+            return pymeshlab()
         raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
     for line in chatter.text.splitlines():
         if "Cannot load library" in line and _READERS in line:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import re
 import sys
@@ -13,13 +14,14 @@ from devseg.errors import one_line
 PYMESHLAB = "2025.7.post1"
 
 # Libraries of the system that pymeshlab's wheel needs and bare containers lack, and the packages of
-# Debian and Ubuntu that have them.
+# Debian and Ubuntu that have them. Our wheel has stand-ins, see scripts/wheel/stand_ins.py.
 _PACKAGES = {
     "libGL.so.1": "libgl1",
     "libOpenGL.so.0": "libopengl0",
     "libcom_err.so.2": "libcom-err2",
 }
 _MISSING_LIBRARY = re.compile(r"(lib[\w.+-]+\.so[\w.]*): cannot open shared object file")
+_standing_in: set[Path] = set()
 _MISSING_VERSION = re.compile(r"version [`']GLIBC_([\d.]+)' not found")
 
 
@@ -28,6 +30,24 @@ def repair() -> str:
     if (Path(__file__).resolve().parents[2] / "scripts" / "quickstart.sh").is_file():
         return "run scripts/quickstart.sh"
     return "pip install --force-reinstall devseg"
+
+
+def stand_in(error: str) -> bool:
+    """Loads our stand-in for the library that an import misses; whether there is one.
+
+    The system's own library is never replaced. pymeshlab finds the stand-in by its name, as it is
+    loaded already.
+    """
+    library = _MISSING_LIBRARY.search(error)
+    if library is None or library[1] not in _PACKAGES:
+        return False
+    name = library[1].partition(".")[0]
+    file = Path(__file__).resolve().parent / "plugins" / f"stand_in_{name}.so"
+    if not file.is_file() or file in _standing_in:
+        return False
+    ctypes.CDLL(str(file))
+    _standing_in.add(file)
+    return True
 
 
 def loading_advice(error: str) -> str:
