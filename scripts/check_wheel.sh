@@ -3,7 +3,7 @@
 # pattern of the Stanford bunny with it, and prints a row for each: what of, seconds of both.
 #   scripts/check_wheel.sh [PYTHON | debian:DIR]...
 # PYTHON is an interpreter; default: python3. DIR is a Debian without anything else, such as
-#   debootstrap --variant=minbase --include=python3-venv,libgl1,libopengl0,libcom-err2 testing DIR
+#   debootstrap --variant=minbase --include=python3-venv testing DIR
 # whose Python is used inside of it, by root; its packages are fetched from outside.
 
 # shellcheck source=scripts/setup.sh

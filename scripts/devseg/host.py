@@ -18,8 +18,8 @@ from devseg.errors import DevsegError
 from devseg.requirements import (
     PYMESHLAB,
     installed_version,
+    load_stand_ins,
     loading_advice,
-    stand_in,
     version_advice,
 )
 
@@ -141,13 +141,12 @@ def pymeshlab() -> ModuleType:
     # A plugin for another version may be refused, or crash.
     if (advice := version_advice()) is not None:
         raise DevsegError(advice)
+    load_stand_ins()
     try:
         # It loads some sixty plugins and prints a warning about each that it cannot load.
         with captured() as chatter:
             module = _own_module() if _is_own else importlib.import_module("pymeshlab")
     except ImportError as error:
-        if stand_in(str(error)):
-            return pymeshlab()
         raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
     for line in chatter.text.splitlines():
         if "Cannot load library" in line and _READERS in line:

@@ -21,7 +21,6 @@ _PACKAGES = {
     "libcom_err.so.2": "libcom-err2",
 }
 _MISSING_LIBRARY = re.compile(r"(lib[\w.+-]+\.so[\w.]*): cannot open shared object file")
-_standing_in: set[Path] = set()
 _MISSING_VERSION = re.compile(r"version [`']GLIBC_([\d.]+)' not found")
 
 
@@ -32,22 +31,19 @@ def repair() -> str:
     return "pip install --force-reinstall devseg"
 
 
-def stand_in(error: str) -> bool:
-    """Loads our stand-in for the library that an import misses; whether there is one.
+def load_stand_ins() -> None:
+    """Loads our stand-ins for those libraries that the system lacks.
 
-    The system's own library is never replaced. pymeshlab finds the stand-in by its name, as it is
-    loaded already.
+    Others that need a library find the stand-in by its name, as it is loaded already.
     """
-    library = _MISSING_LIBRARY.search(error)
-    if library is None or library[1] not in _PACKAGES:
-        return False
-    name = library[1].partition(".")[0]
-    file = Path(__file__).resolve().parent / "plugins" / f"stand_in_{name}.so"
-    if not file.is_file() or file in _standing_in:
-        return False
-    ctypes.CDLL(str(file))
-    _standing_in.add(file)
-    return True
+    for library in _PACKAGES:
+        name = library.partition(".")[0]
+        file = Path(__file__).resolve().parent / "plugins" / f"stand_in_{name}.so"
+        if file.is_file():
+            try:
+                ctypes.CDLL(library)
+            except OSError:
+                ctypes.CDLL(str(file))
 
 
 def loading_advice(error: str) -> str:
