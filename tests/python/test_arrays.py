@@ -310,3 +310,21 @@ def test_importing_does_no_work_and_names_are_functions(pymeshlab: ModuleType) -
     )
     subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": f"{ROOT}/scripts"})
     assert host.pymeshlab() is pymeshlab and devseg.__version__
+
+
+def test_warnings_come_after_a_failure_of_the_hosts_own() -> None:
+    """The host prints no log any more then, whatever MeshSet is used in the process."""
+    code = """
+import numpy as np, devseg, pymeshlab
+corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0.5, 0.5, 1], [0.5, 0.5, -1]])
+fins = corners, np.array([[0, 1, 2], [1, 3, 2], [1, 2, 4], [2, 1, 5]])
+devseg.load_plugins()
+meshes = pymeshlab.MeshSet()
+meshes.add_mesh(pymeshlab.Mesh(*fins))
+try:
+    meshes.compute_segmentation_dcharts_per_face(charts_number=-1)
+except pymeshlab.PyMeshLabException:
+    print(*devseg.segment(*fins, charts_number=1).warnings, sep="\\n")
+"""
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout.endswith("1 edge has more than two faces and was cut\n")
