@@ -310,6 +310,32 @@ def test_importing_does_no_work_and_names_are_functions(pymeshlab: ModuleType) -
     )
     subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": f"{ROOT}/scripts"})
     assert host.pymeshlab() is pymeshlab and devseg.__version__
+    with pytest.raises(AttributeError, match="no attribute 'unwarp'"):
+        devseg.unwarp  # noqa: B018
+    assert set(devseg.__all__) <= set(dir(devseg))
+    assert all(getattr(devseg, name) is not None for name in devseg.__all__)
+
+
+def test_users_scripts_are_checked_by_the_types_of_the_package(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import numpy as np\n"
+        "import devseg\n"
+        "atlas: devseg.Atlas = devseg.unwrap(np.eye(3), [[0, 1, 2]], progress=lambda s, w: s < 1)\n"
+        "saved: tuple[str, ...] = devseg.pattern(atlas, height_mm=9).save('a.pdf')\n"
+        "devseg.unwarp(atlas)\n"
+        "devseg.pattern(3)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache", script],
+        env={**os.environ, "MYPYPATH": f"{ROOT}/scripts"},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    told = [line for line in done.stdout.splitlines() if line.startswith("script.py")]
+    assert [line.split(":")[1] for line in told] == ["5", "6"], done.stdout
 
 
 def test_warnings_come_after_a_failure_of_the_hosts_own() -> None:
