@@ -10,7 +10,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 clipper_version=6.4.2
 # What is compiled in from Debian's packages; each has its licences in its own file.
-compiled_in=(libeigen3-dev libcgal-dev libboost-dev)
+compiled_in=(libeigen3-dev libcgal-dev libboost-dev fonts-dejavu-core)
 tree=$root/build/wheel/tree
 # Bytes that the wheel may have.
 largest=12000000
@@ -56,6 +56,7 @@ copy_tree() {
     printf 'graft .\nglobal-exclude *.so *.pyc\n' >"$tree/MANIFEST.in"
     # Tools of distributions take files of such names as licences.
     cp "$clipper/polyclipping/License.txt" "$tree/LICENSE.clipper"
+    cp io_pattern/page/three/LICENSE "$tree/LICENSE.three"
     for package in "${compiled_in[@]}"; do
         licence=/usr/share/doc/$package/copyright
         [[ -f $licence ]] || die "expected $licence, which the wheel must hold; found nothing"
@@ -85,6 +86,8 @@ build_wheel() {
     mkdir -p "$tree/scripts/devseg/plugins"
     or_die "copying the plugins" install -m 644 -t "$tree/scripts/devseg/plugins" --strip \
         "$root"/build/wheel/plugins/lib{filter_devseg,io_pattern}.so
+    or_die "making the stand-ins" "$python" "$root/scripts/wheel/stand_ins.py" "$pymeshlab" \
+        "$tree/scripts/devseg/plugins"
     or_die "making the wheel" "$python" -m build --no-isolation --wheel --outdir "$tree/dist" "$tree"
     wheel=$(echo "$tree"/dist/*.whl) sdist=$(echo "$tree"/dist/*.tar.gz)
     check_wheel_file "$wheel"

@@ -3,7 +3,7 @@
 # pattern of the Stanford bunny with it, and prints a row for each: what of, seconds of both.
 #   scripts/check_wheel.sh [PYTHON | debian:DIR]...
 # PYTHON is an interpreter; default: python3. DIR is a Debian without anything else, such as
-#   debootstrap --variant=minbase --include=python3-venv,libgl1,libopengl0,libcom-err2 testing DIR
+#   debootstrap --variant=minbase --include=python3-venv testing DIR
 # whose Python is used inside of it, by root; its packages are fetched from outside.
 
 # shellcheck source=scripts/setup.sh
@@ -11,7 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 # What runs in the environment: the command line, the arrays, and workers of a batch.
 trial='
-import importlib.util, pathlib, subprocess, sys
+import importlib.metadata, importlib.util, pathlib, subprocess, sys
 folder = pathlib.Path(sys.argv[1])
 package = pathlib.Path(importlib.util.find_spec("pymeshlab").origin).parent
 bunny = package / "tests/sample_meshes/bunny10k_textured.obj"
@@ -22,6 +22,10 @@ info = subprocess.run([devseg, "info"], check=True, capture_output=True, text=Tr
 assert "the plugins fit (pymeshlab-2025.07)" in info, info
 cube = package / "tests/sample_meshes/cube.obj"
 subprocess.run([devseg, "batch", cube, "-o", folder / "batch"], check=True)
+files = importlib.metadata.files("devseg")
+licences = {file.name.removeprefix("LICENSE.") for file in files if "licenses" in file.parts}
+inside = {"clipper", "libboost", "libcgal", "libeigen3", "fonts-dejavu-core", "three"}
+assert licences == {"LICENSE", *inside}, licences
 import devseg
 corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 atlas = devseg.unwrap(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -43,8 +47,9 @@ check_python() {
     folder=$(mktemp -d)
     or_die "making an environment" "$python" -m venv "$folder/venv"
     start=$SECONDS
-    or_die "installing the wheel into Python $version" "$folder/venv/bin/python" -m pip install \
-        --disable-pip-version-check "$wheel"
+    # Nothing to compile with is in the path.
+    or_die "installing the wheel into Python $version" env PATH="$folder/venv/bin" \
+        "$folder/venv/bin/python" -m pip install --disable-pip-version-check "$wheel"
     installed=$SECONDS
     # Nothing of this machine but its C library: no compiler, no Qt, none of our own paths.
     or_die "running the wheel with Python $version" env -i PATH="$folder/venv/bin" HOME="$folder" \

@@ -24,6 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Generic, TypeVar, cast
 
+from devseg import host
 from devseg.errors import DevsegError, one_line
 from devseg.progress import CLEAR_LINE
 
@@ -120,17 +121,22 @@ def run_watched(what: str, work: Callable[[Tell], T], limits: Limits = NO_LIMITS
     answers, hers = Pipe(duplex=False)
     parent = os.getpid()
     start = time.monotonic()
-    child = os.fork()
-    if child == 0:
-        answers.close()
-        _be_the_child(parent, hers, work)
-    hers.close()
-    watch = _Watch(what, child, limits, start)
-    try:
-        with ended_by_signals(), answers:
-            result, error = watch.answer(answers)
-    finally:
-        status, usage = _wait(child, kill=watch.over is not None or sys.exc_info()[0] is not None)
+    with ended_by_signals():
+        child = os.fork()
+        if child == 0:
+            try:
+                answers.close()
+                _be_the_child(parent, hers, work)
+            finally:
+                os._exit(1)
+        hers.close()
+        watch = _Watch(what, child, limits, start)
+        try:
+            with answers:
+                result, error = watch.answer(answers)
+        finally:
+            kill = watch.over is not None or sys.exc_info()[0] is not None
+            status, usage = _wait(child, kill)
     if watch.over is not None:
         error = watch.over
     elif watch.silent:
@@ -232,6 +238,7 @@ def _be_the_child(parent: int, out: Connection, work: Callable[[Tell], Any]) -> 
     """Works, sends the answer and ends without the clean-up of what the parent still uses."""
     global _is_child
     _is_child = True
+    host.own_process()
     # The parent tells of Ctrl+C, and ends this process; it also ends with its parent.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for number in (signal.SIGTERM, signal.SIGHUP):

@@ -17,6 +17,7 @@ import threading
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 
+from devseg import host
 from devseg.apart import end_with_parent
 from devseg.batch_store import Record
 from devseg.batch_task import Task, lost, run_task
@@ -124,6 +125,7 @@ def _warm_up() -> None:
 def main() -> None:
     """Serves the connection that the arguments name."""
     end_with_parent(int(sys.argv[2]))
+    host.own_process()
     # Ctrl+C is for the one who asked.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     serve(Connection(int(sys.argv[1])))

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import quote, unquote
-from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
 
 if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
     import numpy as np
 
 _READ = ("triangles", "polylist")  # by the host
@@ -39,6 +39,8 @@ def rewritten(path: Path, folder: Path) -> tuple[Path, list[str]]:
     Returns:
         The file, and notes on what was left out.
     """
+    from xml.etree.ElementTree import ElementTree
+
     root = _root(path)
     if root is None:
         return path, []
@@ -54,7 +56,7 @@ def rewritten(path: Path, folder: Path) -> tuple[Path, list[str]]:
             place = os.path.relpath(path.parent / unquote(element.text.strip()), folder)
             element.text = quote(place)
     target = folder / path.name
-    ElementTree.ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
+    ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
     return target, notes
 
 
@@ -166,19 +168,23 @@ def _triangles(element: Element) -> np.ndarray:
 
 
 def _make_triangles(element: Element) -> None:
+    from xml.etree.ElementTree import SubElement
+
     triangles = _triangles(element)
     element.tag = "triangles"
     element.set("count", str(len(triangles)))
     for p in [child for child in element if _kind(child) in ("p", "ph")]:
         element.remove(p)
-    p = ElementTree.SubElement(element, "p")
+    p = SubElement(element, "p")
     p.text = " ".join(map(str, triangles.ravel().tolist()))
 
 
 def _root(path: Path) -> Element | None:
+    from xml.etree.ElementTree import ParseError, fromstring
+
     try:
-        return ElementTree.fromstring(path.read_bytes())
-    except ElementTree.ParseError:
+        return fromstring(path.read_bytes())
+    except ParseError:
         return None  # the host says what is wrong
 
 

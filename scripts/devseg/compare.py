@@ -11,7 +11,7 @@ from devseg import host
 from devseg.apart import READING, Tell, run_apart
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, Method
-from devseg.outputs import staged, to_json
+from devseg.outputs import plain, staged, to_json
 from devseg.pipeline import (
     FLATTEN_FILTER,
     PARAMETRIZATION_MEASURES,
@@ -78,7 +78,7 @@ def compare(path: Path, options: CompareOptions) -> dict[str, Any]:
         DevsegError: with nothing written.
     """
     with staged(options.out) as folder:
-        return run_apart(str(path), lambda tell: _compare(path, options, folder, tell))
+        return run_apart(str(path), lambda tell: plain(_compare(path, options, folder, tell)))
 
 
 def _compare(path: Path, options: CompareOptions, folder: Path, tell: Tell) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from devseg.given import CHARTS_ATTRIBUTE, EDGES_ATTRIBUTE
 from devseg.lengths import number
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS
-from devseg.outputs import staged, to_json
+from devseg.outputs import plain, staged, to_json
 from devseg.pipeline import FLATTEN_FILTER, PARAMETRIZATION_MEASURES, Session
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
@@ -131,7 +131,7 @@ def edit(path: Path, options: EditOptions) -> dict[str, Any]:
         DevsegError: with nothing written.
     """
     with staged(options.out.parent) as folder:
-        return run_apart(str(path), lambda tell: _edit(path, options, folder, tell))
+        return run_apart(str(path), lambda tell: plain(_edit(path, options, folder, tell)))
 
 
 def _edit(path: Path, options: EditOptions, folder: Path, tell: Tell) -> dict[str, Any]:

@@ -55,6 +55,7 @@ EXAMPLES: dict[str, list[tuple[str, str]]] = {
             "bash, from the next shell on",
         ),
         ("devseg completion zsh > ~/.zfunc/_devseg", "zsh, with ~/.zfunc in fpath"),
+        ("devseg completion fish > ~/.config/fish/completions/devseg.fish", "fish"),
     ],
 }
 

@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
+import importlib.util
 import io
 import os
 import sys
 import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from devseg.errors import DevsegError
-from devseg.requirements import loading_advice, version_advice
+from devseg.requirements import (
+    PYMESHLAB,
+    installed_version,
+    load_stand_ins,
+    loading_advice,
+    version_advice,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from types import ModuleType
 
     import numpy as np
@@ -39,6 +48,30 @@ _terminals: list[_Terminal] = []
 
 # The host's plugin of the usual formats; it goes on without plugins that it cannot load.
 _READERS = "libio_base.so"
+_READ_BY_BASE = (".obj", ".off", ".ply", ".stl")
+_PLUGINS = Path("lib/plugins")
+# What devseg uses of its other plugins: each is loaded when its turn comes, in processes of ours.
+_FILTERS = {
+    "clean": ("meshing_remove_unreferenced_vertices",),
+    "func": ("compute_selection_by_condition_per_face",),
+    "layer": (
+        "delete_current_mesh",
+        "generate_by_merging_visible_meshes",
+        "generate_copy_of_current_mesh",
+        "set_mesh_name",
+    ),
+    "meshing": (
+        "apply_matrix_freeze",
+        "meshing_close_holes",
+        "meshing_decimation_quadric_edge_collapse",
+        "meshing_invert_face_orientation",
+        "set_matrix",
+    ),
+    "sampling": ("get_hausdorff_distance",),
+    "select": ("meshing_remove_selected_faces",),
+    "texture": ("compute_texcoord_transfer_vertex_to_wedge",),
+}
+_is_own = False
 
 
 @contextlib.contextmanager
@@ -108,16 +141,88 @@ def pymeshlab() -> ModuleType:
     # A plugin for another version may be refused, or crash.
     if (advice := version_advice()) is not None:
         raise DevsegError(advice)
+    load_stand_ins()
     try:
         # It loads some sixty plugins and prints a warning about each that it cannot load.
         with captured() as chatter:
-            import pymeshlab as module
+            module = _own_module() if _is_own else importlib.import_module("pymeshlab")
     except ImportError as error:
         raise DevsegError(f"pymeshlab cannot be imported: {loading_advice(str(error))}") from error
     for line in chatter.text.splitlines():
         if "Cannot load library" in line and _READERS in line:
             raise DevsegError(f"pymeshlab cannot read files: {loading_advice(line)}")
     return module
+
+
+def own_process() -> None:
+    """From now on nobody but devseg uses the host in this process: it starts in half the time.
+
+    Plugins of the host are loaded when they are needed. NumPy gets one thread: it starts others for
+    products of matrices, of which there are none here.
+    """
+    global _is_own
+    _is_own = True
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def _own_module() -> ModuleType:
+    """The module as its own __init__ makes it, but for plugins that are not needed yet."""
+    spec = importlib.util.find_spec("pymeshlab")
+    if spec is None or spec.origin is None or installed_version("pymeshlab") != PYMESHLAB:
+        return importlib.import_module("pymeshlab")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["pymeshlab"] = module
+    try:
+        core = importlib.import_module("pymeshlab.pmeshlab")
+    except BaseException:
+        del sys.modules["pymeshlab"]
+        raise
+    vars(module).update({name: one for name, one in vars(core).items() if name[0] != "_"})
+    plugins = Path(spec.origin).parent / _PLUGINS
+    _need(module, plugins / _READERS)
+    for plugin, names in _FILTERS.items():
+        need = functools.partial(_need, module, plugins / f"libfilter_{plugin}.so")
+        for name in names:
+            setattr(module.MeshSet, name, filter_method(name, need))
+    return module
+
+
+@functools.cache
+def _need(module: ModuleType, plugin: Path) -> None:
+    """Loads a plugin of the host, once; as the host does, goes on where it cannot be loaded."""
+    try:
+        module.load_plugin(str(plugin))
+    except module.PyMeshLabException as error:
+        print(f"Cannot load library {plugin}: {error}")
+
+
+def need_readers(extension: str) -> None:
+    """Has the plugins loaded that may read files with this extension."""
+    module = pymeshlab()
+    if _is_own and extension not in _READ_BY_BASE:
+        for plugin in sorted((Path(str(module.__file__)).parent / _PLUGINS).glob("libio_*.so")):
+            _need(module, plugin)
+
+
+def filter_method(
+    name: str, first: Callable[[], None] | None = None
+) -> Callable[..., dict[str, Any] | None]:
+    """A method that applies a filter, as pymeshlab binds its own: a result only if not empty.
+
+    Args:
+        name: of the filter.
+        first: called before the filter is.
+    """
+
+    def apply(self: Any, **parameters: Any) -> dict[str, Any] | None:
+        if first is not None:
+            first()
+        return self.apply_filter(name, **parameters) or None
+
+    apply.__name__ = name
+    apply.__qualname__ = f"MeshSet.{name}"
+    apply.__doc__ = f"Applies the filter {name}; see docs/filters.md."
+    return apply
 
 
 @dataclass(frozen=True)

@@ -106,6 +106,7 @@ def _read(path: Path) -> tuple[Any, str, list[str]]:
     try:
         # Verbose, as only its log tells that vertices were dropped.
         with host.captured() as chatter, _for_the_host(path) as (readable, notes):
+            host.need_readers(readable.suffix.lower())
             meshes = pymeshlab.MeshSet(True)
             _loggers.append(meshes)
             try:

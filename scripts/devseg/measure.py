@@ -8,6 +8,7 @@ from typing import Any
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError
 from devseg.load import load_mesh
+from devseg.outputs import plain
 from devseg.pipeline import PARAMETRIZATION_MEASURES, SEGMENTATION_MEASURES, Session
 from devseg.plugins import load_plugins
 from devseg.ply import restore_attributes
@@ -19,7 +20,7 @@ def measure(path: Path) -> dict[str, Any]:
     Raises:
         DevsegError: for a mesh without texture coordinates.
     """
-    return run_apart(str(path), lambda tell: _measure(path, tell))
+    return run_apart(str(path), lambda tell: plain(_measure(path, tell)))
 
 
 def _measure(path: Path, tell: Tell) -> dict[str, Any]:

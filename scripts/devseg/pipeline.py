@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import importlib.metadata
 import platform
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -11,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import devseg
 from devseg import host, scene
 from devseg.apart import READING, Tell, run_apart
 from devseg.errors import DevsegError, host_message
@@ -20,11 +20,12 @@ from devseg.lengths import shown
 from devseg.load import load_mesh
 from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
-from devseg.outputs import staged, to_json
+from devseg.outputs import plain, staged, to_json
 from devseg.pattern_options import EXPORT_FILTER
 from devseg.pattern_writer import MESH_FORMATS, PatternWriter
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
+from devseg.requirements import installed_version
 from devseg.simplify import close_holes, simplify
 
 DEFORM_FILTER = "apply_coord_developable_charts"
@@ -116,7 +117,7 @@ class Session:
 
     def call(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter of the host that shapes no result, without noting its parameters."""
-        return self._guard(self.meshes.apply_filter, name, **parameters) or {}
+        return self._guard(getattr(self.meshes, name), **parameters) or {}
 
     def export(self, file: Path, parameters: Mapping[str, Any]) -> dict[str, Any]:
         """Writes the pattern, in the format of the file's extension; the filter's results."""
@@ -154,9 +155,8 @@ class Session:
 
 def versions() -> dict[str, str]:
     """Versions of everything that shapes the result."""
-    names = ("devseg", "pymeshlab", "numpy", "pillow")
-    found = {name: importlib.metadata.version(name) for name in names}
-    return {**found, "python": platform.python_version()}
+    found = {name: installed_version(name) or "none" for name in ("pymeshlab", "numpy", "pillow")}
+    return {"devseg": devseg.__version__, **found, "python": platform.python_version()}
 
 
 def run(path: Path, options: RunOptions) -> dict[str, Any]:
@@ -166,7 +166,7 @@ def run(path: Path, options: RunOptions) -> dict[str, Any]:
         DevsegError: with nothing written.
     """
     with staged(options.out) as folder:
-        return run_apart(str(path), lambda tell: process(path, options, folder, tell))
+        return run_apart(str(path), lambda tell: plain(process(path, options, folder, tell)))
 
 
 def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[str, Any]:

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from devseg import host
 from devseg.errors import DevsegError, host_message
 from devseg.requirements import loading_advice, repair
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 PLUGIN_FILES = ("libfilter_devseg.so", "libio_pattern.so")
 
@@ -69,18 +65,6 @@ def load_plugins() -> list[str]:
     # pymeshlab has bound the filters of its own plugins and no others.
     new = [name for name in pymeshlab.filter_list() if not hasattr(pymeshlab.MeshSet, name)]
     for name in new:
-        setattr(pymeshlab.MeshSet, name, _method(name))
+        setattr(pymeshlab.MeshSet, name, host.filter_method(name))
     _loaded.extend(new)
     return list(new)
-
-
-def _method(name: str) -> Callable[..., dict[str, Any] | None]:
-    """A method that applies a filter, as pymeshlab binds its own: a result only if not empty."""
-
-    def apply(self: Any, **parameters: Any) -> dict[str, Any] | None:
-        return self.apply_filter(name, **parameters) or None
-
-    apply.__name__ = name
-    apply.__qualname__ = f"MeshSet.{name}"
-    apply.__doc__ = f"Applies the filter {name}; see docs/filters.md."
-    return apply

@@ -26,20 +26,26 @@ class Visible:
         triangle: height by width, index of the triangle in front, -1 for background.
         pixels: that are covered, #P, counted along the rows.
         shown: their triangles, #P.
-        barycentric: of the pixel centres in their triangles, #P by 3, in screen space.
+        weights: of the triangles, see _weights.
     """
 
     triangle: np.ndarray
     pixels: np.ndarray
     shown: np.ndarray
-    barycentric: np.ndarray
+    weights: np.ndarray
+
+    def barycentric(self, chosen: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Of the centres of chosen ones of the #P pixels in their triangles, by 3, on screen."""
+        rows, columns = np.divmod(self.pixels[chosen], self.triangle.shape[1])
+        return _barycentric(self.weights, self.shown[chosen], columns + 0.5, rows + 0.5)
 
 
-def _repeat_ranges(first: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Owner and value of every element of the ranges [first, first + count)."""
-    owner = np.repeat(np.arange(len(count)), count)
+def _ranges(first: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """The values of the ranges [first, first + count), one after the other."""
     before = np.cumsum(count) - count
-    return owner, np.arange(len(owner)) - before[owner] + first[owner]
+    values = np.repeat(first - before, count)
+    values += np.arange(len(values))
+    return values
 
 
 def rasterize(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> Visible:
@@ -58,10 +64,7 @@ def rasterize(points: np.ndarray, depth: np.ndarray | None, width: int, height: 
     if coarseness > 1:
         owner = owner.repeat(coarseness, axis=0).repeat(coarseness, axis=1)[:height, :width]
     covered = np.flatnonzero(owner >= 0)
-    rows, columns = np.divmod(covered, width)
-    shown = owner.ravel()[covered]
-    barycentric = _barycentric(_weights(points), shown, columns + 0.5, rows + 0.5)
-    return Visible(owner, covered, shown, barycentric)
+    return Visible(owner, covered, owner.ravel()[covered], _weights(points))
 
 
 def _owners(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> np.ndarray:
@@ -71,15 +74,14 @@ def _owners(points: np.ndarray, depth: np.ndarray | None, width: int, height: in
     top = np.clip(np.ceil(edges.top - 0.5), 0, height).astype(np.int64)
     bottom = np.clip(np.ceil(edges.bottom - 0.5), 0, height).astype(np.int64)
     for chunk in _chunks(bottom - top, points, width):
-        which, row = _repeat_ranges(top[chunk], (bottom - top)[chunk])
-        which = chunk[which]
+        rows = (bottom - top)[chunk]
+        which, row = np.repeat(chunk, rows), _ranges(top[chunk], rows)
         y = row + 0.5
         left, right = edges.span(which, y)
         first = np.clip(np.ceil(left - 0.5), 0, width).astype(np.int64)
         last = np.clip(np.ceil(right - 0.5), 0, width).astype(np.int64)
         count = np.maximum(last - first, 0)
-        span, column = _repeat_ranges(first, count)
-        hidden.draw(which, y, span, column, np.repeat(row * width, count) + column)
+        hidden.draw(which, y, count, _ranges(first, count), row * width)
     return hidden.owner.reshape(height, width)
 
 
@@ -104,21 +106,33 @@ class _HiddenSurfaces:
         self,
         which: np.ndarray,
         y: np.ndarray,
-        span: np.ndarray,
+        count: np.ndarray,
         column: np.ndarray,
-        pixel: np.ndarray,
+        begin: np.ndarray,
     ) -> None:
-        """Draws spans of rows: their triangles and heights, and of each pixel its span."""
+        """Draws spans of rows.
+
+        Args:
+            which: triangle of each span.
+            y: height of each span.
+            count: pixels of each span.
+            column: of each pixel, span after span.
+            begin: first pixel of the row of each span.
+        """
+        pixel = np.repeat(begin, count) + column
+        owner = np.repeat(which, count)
         if self.plane is None:
-            self.owner[pixel] = which[span]
+            self.owner[pixel] = owner
             return
-        start = self.plane[1][which] * y + self.plane[2][which]
-        z = start[span] + self.plane[0][which][span] * (column + 0.5)
+        z = np.repeat(self.plane[0][which], count)
+        z *= column + 0.5
+        z += np.repeat(self.plane[1][which] * y + self.plane[2][which], count)
         # Slivers have wild planes; between its corners a triangle cannot leave their depths.
-        z = np.clip(z, self.nearest[which][span], self.farthest[which][span])
+        ends = (np.repeat(end[which], count) for end in (self.nearest, self.farthest))
+        z = np.clip(z, *ends)
         np.minimum.at(self.zbuffer, pixel, z)
-        front = np.flatnonzero(z == self.zbuffer[pixel])
-        self.owner[pixel[front]] = which[span[front]]
+        front = z == self.zbuffer[pixel]
+        self.owner[pixel[front]] = owner[front]
 
 
 def _chunks(rows: np.ndarray, points: np.ndarray, width: int) -> list[np.ndarray]:

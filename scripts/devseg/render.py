@@ -47,13 +47,13 @@ def render_pair(data: MeshData, size: int = 800) -> Image.Image:
         data: a mesh with charts and texture coordinates.
         size: height of the picture in pixels; it is twice as wide.
     """
-    canvas = np.ones((size, 2 * size, 3), dtype=np.float32)
+    canvas = np.empty((size, 2 * size, 3), dtype=np.uint8)
     # NumPy lets other threads work while it does.
     with ThreadPoolExecutor(1) as pool:
         mesh = pool.submit(_mesh_panel, data, size)
         canvas[:, size:], labels = _pattern_panel(data, size)
         canvas[:, :size] = mesh.result()
-    image = _image(canvas)
+    image = Image.fromarray(canvas)
     _draw_numbers(image, labels, (size, 0))
     return image
 
@@ -68,9 +68,9 @@ def render_meshes(data: Sequence[MeshData], titles: Sequence[str], size: int = 6
     """
     foot = size // 10
     panels = [_mesh_panel(one, size) for one in data]
-    canvas = np.ones((size + foot, size * len(panels), 3), dtype=np.float32)
+    canvas = np.full((size + foot, size * len(panels), 3), 255, dtype=np.uint8)
     canvas[:size] = np.concatenate(panels, axis=1)
-    image = _image(canvas)
+    image = Image.fromarray(canvas)
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(size=foot // 2)
     for i, title in enumerate(titles):
@@ -93,10 +93,6 @@ def view_rotation(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return chosen
 
 
-def _image(canvas: np.ndarray) -> Image.Image:
-    return Image.fromarray((canvas * 255 + 0.5).astype(np.uint8))
-
-
 def _fit(points: np.ndarray, size: int) -> np.ndarray:
     """Points (any shape, last axis x y with y up), centred in a square image with y down."""
     sides = points[..., 0].ravel(), points[..., 1].ravel()
@@ -114,7 +110,10 @@ def _mesh_panel(data: MeshData, size: int) -> np.ndarray:
     points = _fit(corners[:, :, :2], size)
     visible = rasterize(points, -corners[:, :, 2], size, size)
     light = _corner_light(seen, data.faces)
-    brightness, gloss = (_interpolated(visible, part) for part in light)
+    inside = visible.barycentric()
+    brightness, gloss = (
+        np.einsum("pk,pk->p", inside, part.astype(np.float32)[visible.shown]) for part in light
+    )
     color = data.colors.astype(np.float32)[visible.shown] * brightness[:, None]
     color = np.clip(color + gloss[:, None], 0, 1)
     return _compose(points, visible, _charts(visible, data), color, data)
@@ -138,14 +137,17 @@ def _charts(visible: Visible, data: MeshData) -> np.ndarray:
 def _compose(
     points: np.ndarray, visible: Visible, charts: np.ndarray, color: np.ndarray, data: MeshData
 ) -> np.ndarray:
-    """Colours of the visible pixels on white, with lines around charts and along seams."""
+    """Colours of the visible pixels on white, with lines around charts and along seams: bytes."""
     line = _soft(_changes(charts)).ravel()
     near, darkness = _edge_lines(points, visible, data.seams)
     line[near] = np.maximum(line[near], darkness)
-    image = np.ones((line.size, 3), dtype=np.float32)
-    image[visible.pixels] = color
-    drawn = np.flatnonzero(line)
-    image[drawn] += line[drawn, None] * (INK - image[drawn])
+    image = np.full((line.size, 3), 255, dtype=np.uint8)
+    for pixels, below in (
+        (np.flatnonzero(line), np.ones(3, dtype=np.float32)),
+        (visible.pixels, color),
+    ):
+        shade = below + line[pixels, None] * (INK - below)
+        image[pixels] = (shade * 255 + 0.5).astype(np.uint8)
     return image.reshape(*charts.shape, 3)
 
 
@@ -173,11 +175,6 @@ def _corner_light(seen: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.n
     return _shade(normals)
 
 
-def _interpolated(visible: Visible, values: np.ndarray) -> np.ndarray:
-    """Values at the corners of triangles, #T by 3, at the visible pixels."""
-    return np.einsum("pk,pk->p", visible.barycentric, values.astype(np.float32)[visible.shown])
-
-
 def _normalized(vectors: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(length > 0, length, 1.0)
@@ -197,17 +194,18 @@ def _edge_lines(
     points: np.ndarray, visible: Visible, edges: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pixels of triangles with edges that are marked in #T by 3, and how dark they make them."""
-    near = np.flatnonzero(edges[visible.shown].any(axis=1))
+    marked = np.asarray(edges.any(axis=1))
+    near = np.flatnonzero(marked[visible.shown])
     shown = visible.shown[near]
-    p = points[shown]
-    e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    inside = visible.barycentric(near)
+    e1, e2 = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     area = np.abs(e1[:, 0] * e2[:, 1] - e1[:, 1] * e2[:, 0])
     line = np.zeros(len(near), dtype=np.float32)
     for k in range(3):
-        length = np.linalg.norm(p[:, (k + 1) % 3] - p[:, k], axis=1)
+        length = np.linalg.norm(points[:, (k + 1) % 3] - points[:, k], axis=1)
         # The corner opposite of the edge from k to k+1 is k+2.
         height = area / np.where(length > 0, length, 1)
-        distance = visible.barycentric[near, (k + 2) % 3] * height
+        distance = inside[:, (k + 2) % 3] * height[shown]
         darkness = np.clip(LINE + 0.5 - distance, 0, 1) * edges[shown, k]
         line = np.maximum(line, darkness)
     return visible.pixels[near], line
@@ -226,12 +224,16 @@ def _changes(image: np.ndarray) -> np.ndarray:
 
 def _soft(mask: np.ndarray) -> np.ndarray:
     """A mask with soft edges, from 0 to 1; nothing comes in from outside of the image."""
-    soft = mask.astype(np.float32)
+    soft = mask.astype(np.uint8)  # sixteenths, at the end
     for axis in (0, 1):
-        padded = np.pad(soft, [(1, 1) if k == axis else (0, 0) for k in (0, 1)])
-        before, after = np.split(padded, [2], axis=axis)[1], np.split(padded, [-2], axis=axis)[0]
-        soft = 0.5 * soft + 0.25 * (before + after)
-    return np.minimum(SOFT_LINE * soft, 1)
+        sums = 2 * soft
+        # Views along this axis: both neighbours of a pixel weigh half of it.
+        into, out_of = np.moveaxis(sums, axis, 0), np.moveaxis(soft, axis, 0)
+        into[1:] += out_of[:-1]
+        into[:-1] += out_of[1:]
+        soft = sums
+    # Only so many values.
+    return np.minimum(SOFT_LINE * np.arange(17, dtype=np.float32) / 16, 1)[soft]
 
 
 @dataclass(frozen=True)

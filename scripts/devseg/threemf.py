@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
 
 _DEEPEST = 16  # components within each other; a file may name itself
 
@@ -118,10 +119,12 @@ def _runs(
 
 
 def _tree(path: Path) -> Element | None:
+    from xml.etree.ElementTree import ParseError, fromstring
+
     model = _model(path)
     try:
-        return ElementTree.fromstring(model) if model else None
-    except ElementTree.ParseError:
+        return fromstring(model) if model else None
+    except ParseError:
         return None  # the host says what is wrong
 
 
@@ -134,6 +137,8 @@ def _text(element: Element, name: str) -> str:
 
 
 def _model(path: Path) -> bytes | None:
+    import zipfile
+
     try:
         with zipfile.ZipFile(path) as archive:
             return archive.read(_MODEL)

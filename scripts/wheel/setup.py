@@ -27,7 +27,7 @@ class PluginWheel(bdist_wheel):
 
     def run(self) -> None:
         """Refuses to make a wheel that could do nothing."""
-        if len(list(PLUGINS.glob("*.so"))) != 2:
+        if len(list(PLUGINS.glob("lib*.so"))) != 2:
             sys.exit(
                 f"error: expected both plugins in {PLUGINS}, found none; a source distribution "
                 "is compiled by scripts/build_wheel.sh, which makes a wheel to install"

@@ -15,6 +15,7 @@ import pytest
 import meshes
 from devseg import apart
 from devseg.apart import Tell, run_apart
+from devseg.cli import main
 from devseg.errors import DevsegError
 
 
@@ -154,3 +155,27 @@ def _runs(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:
         return False
+
+
+@pytest.mark.parametrize("command", ["run", "measure", "compare"])
+def test_the_parent_imports_neither_the_host_nor_numpy(
+    command: str, obj: Callable, tmp_path: Path
+) -> None:
+    """Either would take as long as everything else that it does."""
+    mesh = obj(meshes.cube())
+    words = {
+        "run": [mesh, "-o", tmp_path],
+        "measure": [tmp_path / "mesh.ply"],
+        "compare": [mesh, "-o", tmp_path, "--methods", "vsa", "--charts", "6"],
+    }
+    assert main(["run", str(mesh), "-o", str(tmp_path)]) == 0
+    code = (
+        "import sys, devseg.cli\n"
+        "assert devseg.cli.main(sys.argv[1:]) == 0\n"
+        "assert not {'numpy', 'pymeshlab'} & set(sys.modules)\n"
+    )
+    subprocess.run(
+        [sys.executable, "-c", code, command, *map(str, words[command])],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )

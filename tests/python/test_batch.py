@@ -261,13 +261,16 @@ def test_a_batch_that_is_killed_goes_on(
     run_batch(find_inputs([folder]), options(whole, jobs=2), quiet)
     random.seed(7)
     kills = int(os.environ.get("DEVSEG_BATCH_KILLS", "3"))
-    for _ in range(kills):
+    for kill in range(kills):
         words = command("batch", folder, "-o", out, "--jobs", 2, "--formats", "svg")
         words += ["--timeout", "100", "--seams", "edges", "--no-picture"]
-        process = subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
-        process.stderr.readline()
+        process = subprocess.Popen(
+            words, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True
+        )
+        if kill % 3:  # else at any time, before the first mesh is done as well
+            process.stderr.readline()
         time.sleep(random.uniform(0, 0.5))
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)  # with its workers and their children
         process.wait()
         process.stderr.close()
         for name in (p.parent.name for p in out.glob("meshes/*/*/*.json")):

@@ -36,7 +36,7 @@ def test_every_command_has_examples_and_every_example_is_right(
     assert "\n  devseg batch meshes -o out --jobs 8\n" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "tcsh"])
 def test_completion(shell: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["completion", shell]) == 0
     script = capsys.readouterr().out
@@ -44,11 +44,18 @@ def test_completion(shell: str, capsys: pytest.CaptureFixture[str], tmp_path: Pa
     if shell == "bash":
         (tmp_path / "devseg").write_text(script)
         completed = subprocess.run(
-            ["bash", "-c", "source devseg; COMP_WORDS=(devseg ba); COMP_CWORD=1; _shtab_devseg; "
+            ["bash", "-c", "source ./devseg; COMP_WORDS=(devseg ba); COMP_CWORD=1; _shtab_devseg; "
              'echo "${COMPREPLY[@]}"'],
             cwd=tmp_path, capture_output=True, text=True, check=True,
         )  # fmt: skip
         assert completed.stdout == "batch\n" and completed.stderr == ""
+    if shell == "fish":
+        start = "complete -c devseg -n '__fish_seen_subcommand_from batch'"
+        lines = script.splitlines()
+        assert f"{start} -s o -l out -r -F -d 'for all'" in lines
+        assert any(line.startswith(f"{start} -l seams -x -a 'smooth edges' -d ") for line in lines)
+        # Every quotation ends in its line.
+        assert all(len(shlex.split(line.replace("\\'", ""))) > 3 for line in lines)
 
 
 def test_info_for_programs_tells_the_same_as_for_people(

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -39,9 +41,9 @@ PARAMETERS: dict[str, dict[str, Any]] = {
 }
 
 
-def in_new_python(code: str) -> str:
+def in_new_python(code: str, *words: str) -> str:
     """Output of a script in a process of its own."""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -67,6 +69,31 @@ assert all(hasattr(pymeshlab.MeshSet, name) for name in names)
 print(*names)
 """
     assert set(in_new_python(code).split()) >= set(PARAMETERS)
+
+
+def test_a_process_of_ours_has_all_that_devseg_uses_of_the_host() -> None:
+    """Its other plugins are left out: which of its filters do our sources name?"""
+    code = """
+import devseg, sys
+from devseg import host
+if sys.argv[1:]:
+    host.own_process()
+names = devseg.load_plugins()
+meshes = host.pymeshlab().MeshSet
+if sys.argv[1:]:
+    before = host.pymeshlab().plugin_number()
+    one = meshes()
+    one.add_mesh(host.pymeshlab().Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    one.meshing_invert_face_orientation(forceflip=True)
+    assert host.pymeshlab().plugin_number() == before + 1 < 10
+print(*(n for n in dir(meshes) if n not in names))
+"""
+    every = set(in_new_python(code).split())
+    ours = set(in_new_python(code, "own").split())
+    sources = Path(devseg.__file__).parent.glob("*.py")
+    words = {word for file in sources for word in re.findall(r"\b[a-z_]{8,}\b", file.read_text())}
+    used = words & every
+    assert used <= ours < every and len(used) > 10
 
 
 def test_plain_pymeshlab_works() -> None:

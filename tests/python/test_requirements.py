@@ -44,8 +44,8 @@ def test_a_system_that_is_too_old_is_told(tmp_path: Path) -> None:
 
 
 def test_another_pymeshlab_is_told(tmp_path: Path) -> None:
-    patch = "import importlib.metadata as m; m.version = lambda name: '2023.12.post3'\n"
-    done = run(patch + COMMAND, tmp_path)
+    (tmp_path / "pymeshlab-2023.12.post3.dist-info").mkdir()
+    done = run(f"import sys; sys.path.insert(0, '.')\n{COMMAND}", tmp_path)
     assert done.stderr == (
         "devseg: error: expected pymeshlab 2025.7.post1, found 2023.12.post3; "
         "pip install pymeshlab==2025.7.post1\n"
@@ -57,6 +57,7 @@ def test_no_pymeshlab_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         raise importlib.metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(importlib.metadata, "version", missing)
+    monkeypatch.setattr(sys, "path", [])
     advice = requirements.version_advice()
     assert advice == (
         "expected pymeshlab 2025.7.post1, found none; pip install pymeshlab==2025.7.post1"
@@ -65,6 +66,8 @@ def test_no_pymeshlab_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_version_is_the_one_of_the_package() -> None:
     assert requirements.version_advice() is None
+    for name in ("pymeshlab", "numpy", "pillow"):
+        assert requirements.installed_version(name) == importlib.metadata.version(name)
     pyproject = (ROOT / "pyproject.toml").read_text()
     assert f'"pymeshlab=={requirements.PYMESHLAB}"' in pyproject
 

@@ -13,6 +13,7 @@ from types import ModuleType
 import pytest
 
 from conftest import ROOT
+from devseg import requirements
 
 NAME = "devseg-1-py3-none-manylinux_2_35_x86_64.whl"
 LIBRARY = "libQt5Core.so.5"
@@ -67,3 +68,47 @@ def test_a_wheel_without_plugins_is_not_made(tmp_path: Path) -> None:
     )
     assert done.returncode == 1 and not list(tmp_path.rglob("*.whl"))
     assert done.stderr.splitlines()[-1].startswith("error: expected both plugins in scripts/devseg")
+
+
+@pytest.fixture
+def stand_ins(tmp_path: Path, pymeshlab: ModuleType) -> Path:
+    """The folder of a package whose plugins are the stand-ins."""
+    (tmp_path / "plugins").mkdir()
+    script = ROOT / "scripts" / "wheel" / "stand_ins.py"
+    package = Path(pymeshlab.__file__).parent
+    subprocess.run([sys.executable, script, package, tmp_path / "plugins"], check=True)
+    return tmp_path
+
+
+def test_the_host_runs_without_libraries_of_screens(stand_ins: Path) -> None:
+    """Those that are loaded already serve in place of the system's."""
+    code = """
+import ctypes, pathlib, sys
+for file in pathlib.Path(sys.argv[1]).iterdir():
+    ctypes.CDLL(str(file))
+import devseg
+corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+devseg.unwrap(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+print(pathlib.Path("/proc/self/maps").read_text())
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code, stand_ins / "plugins"],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert len(set(re.findall(r"/stand_in_\w+", done.stdout))) == 3
+    assert not re.search(r"/(libGL|libOpenGL|libcom_err)\.so", done.stdout)
+
+
+def test_a_stand_in_is_loaded_for_a_library_that_is_missing(
+    stand_ins: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (stand_ins / "plugins" / "stand_in_libc.so").write_text("no library: the system has one")
+    shutil.copy(stand_ins / "plugins/stand_in_libGL.so", stand_ins / "plugins/stand_in_libodd.so")
+    monkeypatch.setattr(requirements, "__file__", str(stand_ins / "requirements.py"))
+    monkeypatch.setattr(
+        requirements, "_PACKAGES", {"libc.so.6": "", "libodd.so.3": "", "no.so": ""}
+    )
+    requirements.load_stand_ins()
+    assert str(stand_ins / "plugins/stand_in_libodd.so") in Path("/proc/self/maps").read_text()
