@@ -46,13 +46,18 @@ struct FlattenResult {
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 
-/// Whether a map that lies on itself is worth pushing its parts apart. Called from all threads.
-using WorthPushing = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
+/// What charts that must stay in one piece are asked about a map. Called from all threads.
+struct WholeChart {
+    using Test = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
+    Test worth_pushing; // it lies on itself: is it worth pushing its parts apart?
+    Test enough;        // it is large, and its energy within 1e-4 of the least: is that enough?
+};
 
 /// The same without cutting anything apart: where that would be done, the chart is `torn`, and its
-/// map the last one.
+/// map the last one. Large charts take the map that is `enough`, unless it lies on itself and is
+/// worth pushing apart.
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
-                                     FlattenMethod method, const WorthPushing& worth,
+                                     FlattenMethod method, const WholeChart& whole,
                                      Progress& progress);
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along
