@@ -56,7 +56,7 @@ double worst_l2(const std::vector<TrialMap>& maps) {
     return worst;
 }
 
-// Of charts that may be cut apart; with a bound (0: none), of charts that must stay in one piece.
+// Of charts that may be cut apart; with a bound, of charts that must stay in one piece.
 std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
                               const std::vector<Index>& which, const double* most_l2,
                               Progress& progress) {
@@ -82,7 +82,6 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
     std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, most_l2, judging);
     edit.changed = static_cast<Index>(which.size());
     edit.l2_stretch = worst_l2(maps);
-    edit.linf_stretch = 1.0;
     for (const TrialMap& map : maps)
         edit.linf_stretch = std::max(edit.linf_stretch, map.linf);
     return maps;
@@ -238,11 +237,7 @@ Edit split_charts(const Mesh& mesh, const ChartMap& charts, const std::vector<In
             changed.push_back(edit.charts.chart[at(f)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    // Maps in one piece are made sooner, and most parts have one.
-    const double no_bound = 0.0;
-    std::vector<TrialMap> maps = finish(mesh, changed, &no_bound, edit, progress);
-    if (std::any_of(maps.begin(), maps.end(), [](const TrialMap& map) { return !map.flat; }))
-        maps = finish(mesh, changed, nullptr, edit, progress);
+    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress);
     for (const TrialMap& map : maps)
         if (!bounds.force && map.area < tuning.least_part * mesh.total_area)
             refuse("a part would be a sliver, of " + text_of(100.0 * map.area / mesh.total_area) +

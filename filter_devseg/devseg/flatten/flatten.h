@@ -46,16 +46,17 @@ struct FlattenResult {
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 
-/// What charts that must stay in one piece are asked about a map. Called from all threads.
+/// What a chart that must stay in one piece has to keep to. Called from all threads.
 struct WholeChart {
-    using Test = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
-    Test worth_pushing; // it lies on itself: is it worth pushing its parts apart?
-    Test enough;        // it is large, and its energy within 1e-4 of the least: is that enough?
+    /// Whether a map is good enough but for parts that overlap, which are pushed apart then.
+    std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)> is_good;
+    /// Maps whose symmetric Dirichlet energy clearly stays above are not finished, unless they are
+    /// good.
+    double give_up_energy = infinite;
 };
 
 /// The same without cutting anything apart: where that would be done, the chart is `torn`, and its
-/// map the last one. Large charts take the map that is `enough`, unless it lies on itself and is
-/// worth pushing apart.
+/// map the last one.
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
                                      FlattenMethod method, const WholeChart& whole,
                                      Progress& progress);

@@ -47,7 +47,6 @@ constexpr Tuning tuning;
 struct Map {
     std::vector<Vec2> uv;
     bool converged = true;
-    bool rough = false; // not polished, although it might have been: it is enough
 };
 
 // One chart with all that its maps need. Methods return nothing where they find no map without
@@ -64,19 +63,8 @@ public:
         return attempt([&] { return map_by(method); });
     }
 
-    bool is_worth_pushing(const FlatteningProblem& problem, const std::vector<Vec2>& uv) const {
-        return whole_ == nullptr || whole_->worth_pushing(problem, uv);
-    }
-
-    /// The least energy, without peaks. True, or throws NumericalFailure.
-    bool polish(Map& map) const {
-        SymmetricDirichletResult result =
-            minimise_symmetric_dirichlet(problem_, map.uv, {}, progress_);
-        map.uv = std::move(result.uv);
-        map.converged = result.converged;
-        map.rough = false;
-        smooth_out(map);
-        return true;
+    bool is_good(const std::vector<Vec2>& uv) const {
+        return whole_ == nullptr || whole_->is_good(problem_, uv);
     }
 
 private:
@@ -142,34 +130,41 @@ private:
         if (problem_.faces.size() == 1) // needles leave a solver no digits, and need none
             return single_face();
         Map map;
-        if (auto refined = attempt([&] { return coarse_to_fine(); })) {
-            map.uv = std::move(*refined);
+        const bool is_large = surface_.face_count() > tuning.most_polished_faces;
+        const auto refined = attempt([&] { return coarse_to_fine(); });
+        if (refined) {
+            map.uv = *refined;
             settle_peaks(problem_, map.uv, progress_);
-            const bool is_large = surface_.face_count() > tuning.most_polished_faces;
-            map.rough = !is_large && is_enough(map.uv);
-            if (is_large || map.rough) {
-                smooth_out(map);
-                return map;
-            }
         } else if (auto start = valid_start(problem_)) {
             map.uv = std::move(*start);
         } else {
             return std::nullopt;
         }
-        polish(map);
+        if (!refined || !is_large)
+            map = polish(map.uv);
+        relieve_peaks(problem_, false, map.uv, progress_);
+        scale_to_area(problem_, map.uv);
         return map;
     }
 
-    bool is_enough(std::vector<Vec2> uv) const {
-        if (whole_ == nullptr)
-            return false;
-        scale_to_area(problem_, uv);
-        return whole_->enough(problem_, uv);
+    Map polish(const std::vector<Vec2>& start) const {
+        SymmetricDirichletOptions options;
+        if (whole_ != nullptr)
+            options.give_up_energy = whole_->give_up_energy;
+        const auto minimise = [&](const std::vector<Vec2>& from) {
+            return minimise_symmetric_dirichlet(problem_, from, options, progress_);
+        };
+        SymmetricDirichletResult result = minimise(start);
+        if (result.energy > options.give_up_energy && is_good_at_scale(result.uv)) {
+            options.give_up_energy = infinite;
+            result = minimise(result.uv);
+        }
+        return {std::move(result.uv), result.converged};
     }
 
-    void smooth_out(Map& map) const {
-        relieve_peaks(problem_, false, map.uv, progress_);
-        scale_to_area(problem_, map.uv);
+    bool is_good_at_scale(std::vector<Vec2> uv) const {
+        scale_to_area(problem_, uv);
+        return is_good(uv);
     }
 
     Map single_face() const {
@@ -320,10 +315,7 @@ public:
                 return tear(open);
             return tear([&] { return halve(mesh_, surface_); }); // the halves are easier
         }
-        Pairs pairs = take(*map);
-        if (!pairs.empty() && map->rough && flattening_.is_worth_pushing(problem_, chart_.uv) &&
-            attempt([&] { return flattening_.polish(*map); }))
-            pairs = take(*map);
+        const Pairs pairs = take(*map);
         return tear(may_push(pairs) ? push(pairs) : pairs);
     }
 
@@ -359,7 +351,7 @@ private:
     bool may_push(const Pairs& pairs) const {
         return !pairs.empty() && (method_ == FlattenMethod::symmetric_dirichlet || chart_.mended) &&
                surface_.face_count() <= tuning.most_polished_faces &&
-               flattening_.is_worth_pushing(problem_, chart_.uv);
+               flattening_.is_good(chart_.uv);
     }
 
     // What still overlaps.

@@ -17,13 +17,6 @@ namespace devseg::judge {
 
 namespace {
 
-struct Tuning {
-    // Share of a bound's l2² − 1: where a map whose energy is within 1e-4 of the least is farther
-    // from the bound, what is still to gain does not change the verdict.
-    double doubtful = 0.1;
-};
-constexpr Tuning tuning;
-
 // The charts as a mesh of their own.
 struct Extract {
     Mesh mesh;
@@ -137,20 +130,14 @@ std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
-    const double most = most_l2 * most_l2 - 1.0;
-    const auto excess = [&](const flatten::FlatteningProblem& problem,
-                            const std::vector<Vec2>& uv) {
+    flatten::WholeChart asked;
+    asked.is_good = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
         TrialMap map;
         measure_stretch(problem, uv, map);
-        return map.l2_squared - 1.0;
+        return most_l2 <= 0.0 || map.l2_squared <= most_l2 * most_l2;
     };
-    flatten::WholeChart asked;
-    asked.worth_pushing = [&](const auto& problem, const auto& uv) {
-        return most_l2 <= 0.0 || excess(problem, uv) <= most;
-    };
-    asked.enough = [&](const auto& problem, const auto& uv) {
-        return most_l2 <= 0.0 || std::abs(excess(problem, uv) - most) > tuning.doubtful * most;
-    };
+    if (most_l2 > 0.0) // l2² − 1 is 1.5 times the excess of the energy, or more
+        asked.give_up_energy = most_l2 * most_l2;
     const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
         part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, asked, flattening);
     Measures measures(part, charts);
