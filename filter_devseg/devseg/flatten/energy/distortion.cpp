@@ -139,42 +139,36 @@ double distortion(const FlatteningProblem& problem, const Positions& x) {
     return sum / (4.0 * problem.total_area);
 }
 
-namespace {
-
-inline Eigen::Matrix2d stress_of(const Eigen::Matrix2d& j) {
+Eigen::Vector4d density_gradient(const Eigen::Matrix2d& j) {
     const double det = j.determinant();
     Eigen::Matrix2d cofactor; // ∂ det / ∂ J
     cofactor << j(1, 1), -j(1, 0), -j(0, 1), j(0, 0);
-    return 0.5 * ((1.0 + 1.0 / (det * det)) * j - (j.squaredNorm() / (det * det * det)) * cofactor);
+    const Eigen::Matrix2d stress =
+        0.5 * ((1.0 + 1.0 / (det * det)) * j - (j.squaredNorm() / (det * det * det)) * cofactor);
+    return {stress(0, 0), stress(1, 0), stress(0, 1), stress(1, 1)};
 }
 
-// Adds what face f, with this Jacobian, pulls at its corners. Columns are written as such: rows of
-// a matrix cost as much as all the rest.
+namespace {
+
+// Adds what face f, with this Jacobian, pulls at its corners.
 inline void add_force(const FlatteningProblem& problem, std::size_t f, const Eigen::Matrix2d& j,
-                      double* x, double* y) {
-    const Eigen::Matrix2d force =
-        (problem.area[f] / problem.total_area) * stress_of(j) * problem.inverse[f].transpose();
+                      Positions& gradient) {
+    const Eigen::Vector4d stress = density_gradient(j);
+    const Eigen::Matrix2d force = (problem.area[f] / problem.total_area) *
+                                  Eigen::Map<const Eigen::Matrix2d>(stress.data()) *
+                                  problem.inverse[f].transpose();
     const Triangle& t = problem.faces[f];
-    x[t[1]] += force(0, 0);
-    y[t[1]] += force(1, 0);
-    x[t[2]] += force(0, 1);
-    y[t[2]] += force(1, 1);
-    x[t[0]] -= force(0, 0) + force(0, 1);
-    y[t[0]] -= force(1, 0) + force(1, 1);
+    gradient.row(t[1]) += force.col(0).transpose();
+    gradient.row(t[2]) += force.col(1).transpose();
+    gradient.row(t[0]) -= (force.col(0) + force.col(1)).transpose();
 }
 
 } // namespace
 
-Eigen::Vector4d density_gradient(const Eigen::Matrix2d& j) {
-    const Eigen::Matrix2d stress = stress_of(j);
-    return {stress(0, 0), stress(1, 0), stress(0, 1), stress(1, 1)};
-}
-
 Positions distortion_gradient(const FlatteningProblem& problem, const Positions& x) {
     Positions gradient = Positions::Zero(x.rows(), 2);
     for (std::size_t f = 0; f < problem.faces.size(); ++f)
-        add_force(problem, f, jacobian(problem, x, f), gradient.col(0).data(),
-                  gradient.col(1).data());
+        add_force(problem, f, jacobian(problem, x, f), gradient);
     return gradient;
 }
 
@@ -188,7 +182,7 @@ double distortion_with_gradient(const FlatteningProblem& problem, const Position
         if (!(det > 0.0))
             return infinite;
         sum += problem.area[f] * j.squaredNorm() * (1.0 + 1.0 / (det * det));
-        add_force(problem, f, j, gradient.col(0).data(), gradient.col(1).data());
+        add_force(problem, f, j, gradient);
     }
     return sum / (4.0 * problem.total_area);
 }
