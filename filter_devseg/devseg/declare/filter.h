@@ -114,6 +114,7 @@ struct FilterOutput {
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
+    bool charts_go_on = false; // the charts of a refinement are those that the mesh has already
     // #F: numbers of corners, to cut the host's mesh open: those of one vertex with the same number
     // stay together. How many vertices that adds comes with the values (new_vertices_number).
     std::optional<std::vector<Triangle>> fans;

@@ -19,7 +19,8 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
 
 /// The same for charts that must stay in one piece, sooner: one that would be cut apart is not, and
 /// its stretch is that of the map that lies on itself; infinite where there is none without flips.
-/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always).
+/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always);
+/// such a map is not finished, and its stretch may be a little too large.
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, double most_l2,
                                  Progress& progress);
