@@ -72,6 +72,7 @@ struct ExportOptions : pattern::PatternOptions {
     double piece_gap_mm = 3.0;    // between two pieces on the cloth
     Effort effort = Effort::normal;
 
+    std::string material_names; // of the model's materials, with commas; empty: by their numbers
     std::string sizes; // heights in mm, drawn over each other; empty: the one size
 
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home

@@ -291,7 +291,7 @@ def _smooth_seams(
         parser.error(f"--seams smooth does not apply to --method {args.method}")
     if args.seams == "smooth" and args.keep_texcoords:
         parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
-    if args.seams or args.charts_from or args.keep_seams:
+    if args.seams or args.charts_from or args.keep_seams or args.material_borders:
         return args.seams == "smooth"  # seams that somebody has chosen stay where they are
     if args.material and METHODS[args.method].bounds_material:
         return False  # patches were judged with their seams on edges: curves strain them more

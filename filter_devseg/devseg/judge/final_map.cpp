@@ -69,6 +69,7 @@ public:
         excess_[at(c)] += map.excess();
         whole.area += map.area;
         whole.linf = std::max(whole.linf, map.linf);
+        whole.strain.take_worse(map.strain);
         const std::vector<Vec2> turns = flatten::face_turns(problem, flat.uv);
         for (std::size_t f = 0; f < turns.size(); ++f) {
             const Index place = place_[at(flat.surface.face[f])];

@@ -106,6 +106,7 @@ struct PatternPiece {
     double short_side = 0.0;
     PieceStrain strain;
     ClothStrain cloth;            // where the pattern has a material
+    Index fabric = 0;             // what it is cut from: position in Pattern::fabrics
     std::vector<PieceFold> folds; // every edge that bends by more than fold_angle
 
     /// Outline 0 is the outer one, outline i is hole i − 1.
@@ -131,6 +132,7 @@ struct Pattern {
     double width = 0.0;      // mm
     double height = 0.0;     // mm
     std::optional<material::Material> material;
+    std::vector<std::string> fabrics; // names of the model's materials; empty where it is of one
     double mm_per_unit = 1.0;       // as used, from height_mm where that was given
     double hem_length = 0.0;        // mm, of all edges of pieces that are sewn to nothing
     Mesh mesh;                      // with the faces cut that cuts of pieces go through; #F faces

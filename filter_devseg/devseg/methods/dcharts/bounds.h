@@ -12,9 +12,13 @@ struct FinalBounds {
     double chart_l2 = 0.0;        // L2 stretch of each chart, above the roughness
     double roughness = 0.0;       // l2² − 1 that no segmentation can remove
     double linf = 0.0;            // stretch of the worst spot
+    double strain = 0.0;          // of 99 % of each chart, twice as much anywhere; above roughness
     double max_excess = infinite; // Σ A (l2² − 1) over the charts, internal units squared
     bool add_darts = true;        // where they bring a chart within its bound
     bool may_cut = true;          // else the charts are only judged
+
+    /// Of this share of the bound, and what the roughness adds; infinite without a bound.
+    double allowed_strain(double share) const;
 };
 
 /// Judges every chart by its final map. Charts above a bound get darts where these are enough, and
