@@ -57,6 +57,11 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
               "-1 = as along seams, and none around holes.")
         .real(&O::dart_allowance_mm, {"dart_allowance_mm", -1.0, 1e4}, "Dart allowance (mm)",
               "Width of the allowance along darts in millimetres. 0 = none, -1 = as along seams.")
+        .real(&O::zip_allowance_mm, {"zip_allowance_mm", -1.0, 1e4}, "Zip allowance (mm)",
+              "Width of the allowance along seams that get a zip in millimetres. -1 = as along "
+              "seams.")
+        .text(&O::zip_seams, "zip_seams", "Seams with a zip",
+              "Numbers of the seams that get a zip, with commas between them, such as 3,7.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "

@@ -135,6 +135,11 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
     pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    for (const Index seam : options.allowance().zip_seams)
+        if (seam >= static_cast<Index>(pattern.seams.size()))
+            throw InvalidParameter("zip_seams: expected numbers of seams up to " +
+                                   std::to_string(pattern.seams.size()) + ", found " +
+                                   std::to_string(seam + 1));
     sheet::set_fabrics(face_material, options.material_names, pattern);
     auto laying = progress.part(has_pictures ? 0.15 : 0.3);
     sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
