@@ -75,7 +75,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--flatten",
         choices=FLATTENINGS,
-        help="default: symmetric-dirichlet; lpfb with --method plush",
+        help="default: symmetric-dirichlet; lpfb with --method plush, and where --material bounds "
+        "the strain of charts",
     )
     parser.add_argument(
         "--seams",
@@ -260,7 +261,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         segmentation["material"] = args.material
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
-    flattening = args.flatten or method.flatten
+    bounds_strain = args.material and method.bounds_material
+    flattening = args.flatten or ("lpfb" if bounds_strain else method.flatten)
     return RunOptions(
         args.out,
         method,

@@ -101,7 +101,7 @@ def main() -> int:
             before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
             charts = {"charts_number": args.charts} if args.charts else {}
             made = meshes.apply_filter(method.filter, material=material, **charts)
-            meshes.apply_filter(FLATTEN, method=FLATTENINGS[method.flatten])
+            meshes.apply_filter(FLATTEN, method=FLATTENINGS["lpfb"])
             seconds = resource.getrusage(resource.RUSAGE_SELF).ru_utime - before
             with tempfile.TemporaryDirectory() as folder:
                 found = meshes.apply_filter(

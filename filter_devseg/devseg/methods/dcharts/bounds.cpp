@@ -93,7 +93,8 @@ private:
         std::vector<std::vector<Index>> faces;
         for (const Index c : which)
             faces.push_back(draft_.faces[c]);
-        std::vector<TrialMap> maps = judge::final_maps(mesh_, faces, draft_.seam, progress);
+        std::vector<TrialMap> maps = 
+            judge::final_maps(mesh_, faces, draft_.seam, progress, bounds_.purpose());
         for (std::size_t i = 0; i < which.size(); ++i) {
             draft_.map[which[i]] = std::move(maps[i]);
             known_[which[i]] = Known::map;
@@ -242,6 +243,7 @@ private:
         if (bounds_.chart_l2 > 0.0)
             merging.chart.hard_l2 = std::sqrt(1.0 + allowed_excess(tuning.certain));
         merging.chart.strain = bounds_.allowed_strain(tuning.certain);
+        merging.purpose = bounds_.purpose();
         merging.open = touched_;
         auto joining = progress.part("joining charts", 1.0);
         merge_charts(mesh_, merging, draft_, joining);

@@ -2,6 +2,7 @@
 // not. That ends, because single faces are isometric.
 #pragma once
 
+#include "devseg/judge/final_map.h"
 #include "devseg/methods/dcharts/developable_charts.h"
 #include "devseg/methods/dcharts/joins.h"
 
@@ -19,6 +20,10 @@ struct FinalBounds {
 
     /// Of this share of the bound, and what the roughness adds; infinite without a bound.
     double allowed_strain(double share) const;
+    /// Of the final map: what is sewn keeps the lengths of its seams.
+    judge::MapFor purpose() const {
+        return strain > 0.0 ? judge::MapFor::cloth : judge::MapFor::texture;
+    }
 };
 
 /// Judges every chart by its final map. Charts above a bound get darts where these are enough, and

@@ -141,7 +141,8 @@ std::vector<FilterDeclaration> filters() {
                   "How much longer or shorter lines in the material may get in the final map of a "
                   "chart, as a share: 0.1 = 10 % on 99 % of its area, and at most twice that "
                   "anywhere. 0 for no bound. Charts above it get darts or are split. Roughness "
-                  "counts apart.")
+                  "counts apart. The final map is that of LPFB then, which keeps both sides of "
+                  "seams equally long: flatten with it.")
             .text(&O::material, "material", "Material",
                   "What the pieces are cut from: " + material::names() +
                       ", also with values of its own as in fleece, warp=0.12. Where max_strain is "

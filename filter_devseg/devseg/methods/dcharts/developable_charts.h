@@ -22,7 +22,8 @@ struct DevelopableChartsOptions : DChartsOptions {
     double max_linf_stretch = 0.0; // 0: no bound
     // Of each chart's final map, whatever the number of charts; 0: no bound, the paper alone.
     double max_chart_l2_stretch = 1.02;
-    // The same of strain: of 99 % of each chart, and twice as much anywhere.
+    // The same of strain: of 99 % of each chart, and twice as much anywhere. The final map is that
+    // of LPFB then.
     double max_strain = 0.0;
 
     static OptionRanges<DevelopableChartsOptions> ranges();
