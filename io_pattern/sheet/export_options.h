@@ -75,7 +75,7 @@ struct ExportOptions : pattern::PatternOptions {
     Effort effort = Effort::normal;
 
     std::string material_names; // of the model's materials, with commas; empty: by their numbers
-    std::string sizes; // heights in mm, drawn over each other; empty: the one size
+    std::string sizes;          // heights in mm, drawn over each other; empty: the one size
 
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are

@@ -39,9 +39,8 @@ void part_shapes(pattern::Pattern& pattern) {
     const std::vector<pattern::PatternPiece> before = pattern.pieces;
     for (std::size_t p = 0; p < before.size(); ++p) {
         pattern::PatternPiece& piece = pattern.pieces[p];
-        piece.model =
-            first.emplace(std::pair(piece.model, piece.fabric), static_cast<Index>(p))
-                .first->second;
+        piece.model = first.emplace(std::pair(piece.model, piece.fabric), static_cast<Index>(p))
+                          .first->second;
         piece.mirrored = before[p].mirrored != before[at(piece.model)].mirrored;
         piece.quantity = piece.mirrored_quantity = 0;
         pattern::PatternPiece& model = pattern.pieces[at(piece.model)];

@@ -73,8 +73,8 @@ struct PatternLayout {
     LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
     std::vector<FabricStrip> fabrics; // of a marker: one for each sheet
-    std::vector<SizedPieces> sizes; // but the one of the layout
-    Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
+    std::vector<SizedPieces> sizes;   // but the one of the layout
+    Index seams_without_tab = 0;      // for lack of room, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is

@@ -59,9 +59,8 @@ Needs find_needs(const pattern::Pattern& pattern, const PatternLayout& layout,
     return needs;
 }
 
-std::vector<std::pair<std::string, std::string>> needs_texts(const pattern::Pattern& pattern,
-                                                             const Needs& needs,
-                                                             const ExportOptions& options) {
+std::vector<std::pair<std::string, std::string>>
+needs_texts(const pattern::Pattern& pattern, const Needs& needs, const ExportOptions& options) {
     const auto number = [](double value, int decimals) {
         return writers::number_text(value, decimals);
     };

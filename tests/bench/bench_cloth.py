@@ -5,8 +5,8 @@ Usage: python tests/bench/bench_cloth.py [--method plush] [--height-mm H] [--mat
 One line for each model and material: pieces; what the export tells (pieces above the limits, the
 largest use of them by 99 % of a piece's area, and by a face, within the limits up to 1 and 2); and
 the strain of the finished pieces as measured here: from the layer of 'Pattern: Generate Pieces',
-whose triangles are compared with those of the model by their three edge lengths alone. Of 99 % of the
-worst piece's area, and of the worst face, both longer or shorter.
+whose triangles are compared with those of the model by their three edge lengths alone. Of 99 % of
+the worst piece's area, and of the worst face, both longer or shorter.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ FLATTEN = "compute_texcoord_parametrization_charts_per_wedge"
 def strains(flat: np.ndarray, solid: np.ndarray) -> np.ndarray:
     """The largest strain of a line in each triangle (#F by 3 corners), on the solid over the flat.
 
-    Squared lengths of lines are quadratic forms in barycentric directions: with e1, e2 two edges and
-    E, F, G their products, the extreme ratios are the roots of det(A - t B) = 0.
+    Squared lengths of lines are quadratic forms in barycentric directions: with e1, e2 two edges
+    and E, F, G their products, the extreme ratios are the roots of det(A - t B) = 0.
     """
 
     def form(triangles: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -50,7 +50,7 @@ def strains(flat: np.ndarray, solid: np.ndarray) -> np.ndarray:
 
 
 def measured(meshes: Any, **parameters: Any) -> tuple[float, float]:
-    """Strain of 99 % of the area of the worst piece, and of the worst face, of the finished pieces."""
+    """Strain of 99 % of the area of the worst finished piece, and of the worst face."""
     solid = meshes.current_mesh()
     number = meshes.current_mesh_id()
     height = np.ptp(solid.vertex_matrix()[:, 1])

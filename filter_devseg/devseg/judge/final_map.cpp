@@ -116,12 +116,11 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
-    const flatten::FlattenResult result =
-        flatten::flatten_charts(part.mesh, disks,
-                                purpose == MapFor::cloth
-                                    ? flatten::FlattenMethod::lpfb
-                                    : flatten::FlattenMethod::symmetric_dirichlet,
-                                flattening);
+    const flatten::FlattenResult result = flatten::flatten_charts(
+        part.mesh, disks,
+        purpose == MapFor::cloth ? flatten::FlattenMethod::lpfb
+                                 : flatten::FlattenMethod::symmetric_dirichlet,
+        flattening);
     Measures measures(part, charts);
     for (const flatten::FlatChart& flat : result.flat)
         measures.add(flat);

@@ -182,8 +182,7 @@ std::vector<double> limit_uses(const Pattern& pattern, double mm) {
             faces.push_back(f);
     for (const FaceMetric& face : face_metrics(pattern.mesh, pattern.corner_place, faces, mm)) {
         const Vec2& grain = pattern.pieces[at(pattern.face_piece[at(face.face)])].grain_direction;
-        uses[at(face.face)] =
-            signed_use(face, std::atan2(grain.y(), grain.x()), *pattern.material);
+        uses[at(face.face)] = signed_use(face, std::atan2(grain.y(), grain.x()), *pattern.material);
     }
     return uses;
 }

@@ -93,7 +93,7 @@ private:
         std::vector<std::vector<Index>> faces;
         for (const Index c : which)
             faces.push_back(draft_.faces[c]);
-        std::vector<TrialMap> maps = 
+        std::vector<TrialMap> maps =
             judge::final_maps(mesh_, faces, draft_.seam, progress, bounds_.purpose());
         for (std::size_t i = 0; i < which.size(); ++i) {
             draft_.map[which[i]] = std::move(maps[i]);

@@ -45,7 +45,7 @@ struct DevelopableCharts {
     // With charts_number = 0, of the symmetric Dirichlet map of the full surface:
     double l2_stretch = 0.0;
     double linf_stretch = 0.0;
-    flatten::Strain strain; // with max_strain: the worst of all charts
+    flatten::Strain strain;         // with max_strain: the worst of all charts
     bool bounds_kept = true;        // false: rough charts, and single faces that others lie on
     std::vector<Standing> standing; // #F: of each face's chart
     double roughness = 0.0; // l2² − 1 that no segmentation can remove, mean over the surface

@@ -163,8 +163,9 @@ TEST(Marker, EachMaterialHasAStripOfItsOwn) {
 TEST(Marker, MaterialsHaveAsManyNames) {
     EXPECT_TRUE(squares_of({7, 7, 7, 7}, "one, two").fabrics.empty()) << "of one material";
     EXPECT_EQ(squares_of({7, 3, 7, 7}, "").fabrics.back(), "material 7");
-    const std::string error =
-        checks::error_of<InvalidParameter>([] { squares_of({7, 3, 7, 7}, "one"); });
+    const std::string error = checks::error_of<InvalidParameter>([] {
+        squares_of({7, 3, 7, 7}, "one");
+    });
     EXPECT_TRUE(checks::contains(error, "material_names")) << error;
 }
 

@@ -110,8 +110,8 @@ std::pair<double, double> final_strain(const Mesh& mesh, const DevelopableCharts
     Progress progress;
     const atlas::DiskCuts disks = atlas::cut_charts_to_disks(
         mesh, atlas::make_chart_map(mesh, charts.chart, charts.seam, false), progress);
-    const flatten::FlattenResult result = flatten::flatten_charts(
-        mesh, disks.charts, flatten::FlattenMethod::lpfb, progress);
+    const flatten::FlattenResult result =
+        flatten::flatten_charts(mesh, disks.charts, flatten::FlattenMethod::lpfb, progress);
     double most_of_it = 0.0;
     double worst = 0.0;
     for (const flatten::FlatChart& flat : result.flat) {
