@@ -5,7 +5,8 @@ Usage: python tests/bench/bench_marker.py [--width-mm W] [--seconds S] [--grain 
 Meshes have texture coordinates, such as NAME.ply of `devseg run`. Instances of strip packing in
 the JSON of jagua-rs, as those of ESICUP, are read as well: they are scaled to the width. One line
 for each: pieces, the share of the cloth that both cover, and seconds. spyrrow works S seconds on
-one core by the clock, and both CPU times are told: a busy machine needs more. It knows no holes, so outlines count alone.
+one core by the clock, and both CPU times are told: a busy machine needs more. It knows no holes, so
+outlines count alone.
 """
 
 from __future__ import annotations
