@@ -57,6 +57,11 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
               "-1 = as along seams, and none around holes.")
         .real(&O::dart_allowance_mm, {"dart_allowance_mm", -1.0, 1e4}, "Dart allowance (mm)",
               "Width of the allowance along darts in millimetres. 0 = none, -1 = as along seams.")
+        .real(&O::zip_allowance_mm, {"zip_allowance_mm", -1.0, 1e4}, "Zip allowance (mm)",
+              "Width of the allowance along seams that get a zip in millimetres. -1 = as along "
+              "seams.")
+        .text(&O::zip_seams, "zip_seams", "Seams with a zip",
+              "Numbers of the seams that get a zip, with commas between them, such as 3,7.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "
@@ -183,6 +188,9 @@ declare::Declare<O> with_cloth(declare::Declare<O> filter) {
                  "How many times the whole pattern lies on the cloth, a number.")
         .real(&O::piece_gap_mm, {"piece_gap_mm", 0.0, 1e3}, "Gap on the cloth (mm)",
               "Least distance of two pieces on the cloth in millimetres.")
+        .text(&O::material_names, "material_names", "Names of materials",
+              "Names of the materials in material_id, in the order of their numbers, with commas "
+              "between them: each has a cloth of its own on a marker. Empty: their numbers.")
         .text(&O::sizes, "sizes", "Sizes",
               "Heights of the finished model in millimetres, such as 200,250,300: all sizes over "
               "each other in colours of their own, with the numbers of the largest. They replace "
@@ -223,6 +231,17 @@ declare::ResultValues guide_values(const PatternFile& file) {
 // How the material is strained in each piece, and the cloth of a marker.
 declare::ResultValues cloth_values(const PatternFile& file) {
     using Strain = pattern::ClothStrain;
+    using Strip = sheet::FabricStrip;
+    double length = 0.0;
+    double covered = 0.0;
+    double cloth = 0.0;
+    int single = 0;
+    for (const Strip& strip : file.fabrics) {
+        length += strip.length;
+        covered += strip.covered;
+        cloth += strip.use > 0.0 ? strip.covered / strip.use : 0.0;
+        single += static_cast<int>(strip.single_layer_pieces);
+    }
     const auto above = std::count_if(file.cloth.begin(), file.cloth.end(),
                                      [](const Strain& strain) { return !strain.is_within; });
     return {{"piece_strain_along", declare::column(file.cloth, &Strain::along)},
@@ -239,14 +258,18 @@ declare::ResultValues cloth_values(const PatternFile& file) {
             {"seam_ease_mm",
              declare::column(file.seam_list,
                              [](const pattern::Seam& seam) { return std::abs(seam.mismatch()); })},
-            {"fabric_length_mm", file.fabric.length},
-            {"fabric_use", file.fabric.use},
-            {"single_layer_pieces_number", static_cast<int>(file.fabric.single_layer_pieces)}};
+            {"piece_fabric", declare::column(file.piece_fabric, [](Index k) { return k; })},
+            {"fabric_area_mm2", declare::column(file.needs.fabric_mm2, [](double a) { return a; })},
+            {"fabric_lengths_mm", declare::column(file.fabrics, &Strip::length)},
+            {"fabric_uses", declare::column(file.fabrics, &Strip::use)},
+            {"fabric_length_mm", length},
+            {"fabric_use", cloth > 0.0 ? covered / cloth : 0.0},
+            {"single_layer_pieces_number", single}};
 }
 
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
-    PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
+    PatternFile file = make_pattern_file(input.mesh, *input.uv, input.material, options, progress);
     declare::FilterOutput output;
     output.notes = std::move(file.notes);
     output.values = {{"pieces_number", file.pieces},
@@ -315,7 +338,11 @@ const declare::FilterDeclaration& export_filter() {
             .result("piece_worst_y_mm", "the same upwards")
             .result("pieces_above_limits_number", "pieces that strain the material too much")
             .result("seam_ease_mm", "of each seam, how much longer one side is, to be gathered")
-            .result("fabric_length_mm", "length of the cloth of a marker; 0 = no marker")
+            .result("piece_fabric", "which of the model's materials each piece is cut from, from 0")
+            .result("fabric_area_mm2", "where there are several: area inside the cut lines of each")
+            .result("fabric_lengths_mm", "length of the cloth of each of them on a marker")
+            .result("fabric_uses", "share of each that pieces cover")
+            .result("fabric_length_mm", "length of all cloths of a marker; 0 = no marker")
             .result("fabric_use", "share of the cloth between selvedges that pieces cover")
             .result("single_layer_pieces_number", "pieces cut from one layer of folded cloth")
             .runs(run_export);

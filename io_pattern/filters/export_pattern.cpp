@@ -8,6 +8,7 @@
 #include "page/page.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
+#include "sheet/fabrics.h"
 #include "sheet/sheet_drawing.h"
 #include "sheet/sizes.h"
 #include "writers/dxf_writer.h"
@@ -125,6 +126,7 @@ sheet::ExportOptions format_options(sheet::ExportOptions options, Format format)
 } // namespace
 
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const std::vector<Index>& face_material,
                               const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
     const sheet::ExportOptions options =
@@ -132,7 +134,13 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     sheet::page_format(options); // says what is wrong with it before the work begins
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
-    const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    for (const Index seam : options.allowance().zip_seams)
+        if (seam >= static_cast<Index>(pattern.seams.size()))
+            throw InvalidParameter("zip_seams: expected numbers of seams up to " +
+                                   std::to_string(pattern.seams.size()) + ", found " +
+                                   std::to_string(seam + 1));
+    sheet::set_fabrics(face_material, options.material_names, pattern);
     auto laying = progress.part(has_pictures ? 0.15 : 0.3);
     sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
     auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
@@ -167,11 +175,12 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
     file.assembly = layout.assembly;
     file.seam_list = pattern.seams;
-    for (const pattern::PatternPiece& piece : pattern.pieces)
+    for (const pattern::PatternPiece& piece : pattern.pieces) {
+        file.piece_fabric.push_back(piece.fabric);
         if (pattern.material)
             file.cloth.push_back(piece.cloth);
-    if (layout.fabric)
-        file.fabric = *layout.fabric;
+    }
+    file.fabrics = std::move(layout.fabrics);
     file.notes = pattern.notes;
     const int missing = writers::missing_glyphs(title_of(options.output_file));
     if (missing > 0 && format == Format::pdf)

@@ -24,14 +24,17 @@ struct PatternFile {
     assembly::Assembly assembly;
     std::vector<pattern::Seam> seam_list;
     std::vector<pattern::ClothStrain> cloth; // of each piece, where there is a material
-    sheet::FabricStrip fabric;               // of a marker
+    std::vector<sheet::FabricStrip> fabrics; // of a marker
+    std::vector<Index> piece_fabric;         // of each piece; 0 where the model is of one material
     Index pages = 0;                         // of a PDF; 0 for other formats
     std::vector<std::string> notes;          // for the user, one sentence each
 };
 
-/// The file options.output_file in the format of its extension; the caller writes it. Throws
+/// The file options.output_file in the format of its extension; the caller writes it.
+/// `face_material`: a number for each face (#F), or empty. Throws
 /// InvalidParameter for options outside of their range, InvalidMesh and Cancelled.
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const std::vector<Index>& face_material,
                               const sheet::ExportOptions& options, Progress& progress);
 
 } // namespace devseg::exporting

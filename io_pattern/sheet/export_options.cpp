@@ -114,10 +114,33 @@ void check_marker(const ExportOptions& options) {
 
 } // namespace
 
+AllowanceWidths ExportOptions::allowance() const {
+    AllowanceWidths widths = hem_allowance_mm < 0.0
+                                 ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
+                                 : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
+    if (dart_allowance_mm >= 0.0)
+        widths.darts = dart_allowance_mm;
+    if (zip_allowance_mm >= 0.0 && !zip_seams.empty())
+        widths.zips = zip_allowance_mm;
+    const char* const end = zip_seams.data() + zip_seams.size();
+    for (const char* from = zip_seams.data(); from < end;) {
+        Index number = 0;
+        const auto read = std::from_chars(from, end, number);
+        if (read.ec != std::errc() || number < 1 || (read.ptr != end && *read.ptr != ','))
+            throw InvalidParameter("zip_seams: expected numbers of seams such as 3,7, found '" +
+                                   zip_seams + "'");
+        widths.zip_seams.push_back(number - 1);
+        from = read.ptr + 1;
+    }
+    return widths;
+}
+
 ExportOptions resolved(const ExportOptions& given) {
     ExportOptions options = given;
     check("seam_allowance_mm", options.seam_allowance_mm, 0.0, "a width of 0 mm or more");
     check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
+          "a width of 0 mm or more, or -1 for that of seams");
+    check("zip_allowance_mm", options.zip_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
     check("dart_allowance_mm", options.dart_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
@@ -151,6 +174,9 @@ ExportOptions resolved(const ExportOptions& given) {
         options.glue_tabs = options.tabs != TabSides::none;
     if (options.perforation_mm > 0.0)
         options.fold_lines = true;
+    if (options.zip_allowance_mm >= 0.0 && options.zip_seams.empty())
+        throw InvalidParameter("zip_seams: expected the seams that get a zip, found none; give "
+                               "their numbers or leave zip_allowance_mm out");
     if (options.glue_tabs && options.allowance().largest() > 0.0)
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
                                "both; set the allowances to 0 or choose another preset");

@@ -34,6 +34,8 @@ struct ExportOptions : pattern::PatternOptions {
     double seam_allowance_mm = 0.0;
     double hem_allowance_mm = -1.0;  // along open borders; below 0: as along seams, holes none
     double dart_allowance_mm = -1.0; // along darts; below 0: as along seams
+    double zip_allowance_mm = -1.0;  // along seams with a zip; below 0: as along seams
+    std::string zip_seams;           // their numbers, with commas
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
@@ -72,7 +74,8 @@ struct ExportOptions : pattern::PatternOptions {
     double piece_gap_mm = 3.0;    // between two pieces on the cloth
     Effort effort = Effort::normal;
 
-    std::string sizes; // heights in mm, drawn over each other; empty: the one size
+    std::string material_names; // of the model's materials, with commas; empty: by their numbers
+    std::string sizes;          // heights in mm, drawn over each other; empty: the one size
 
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
@@ -86,14 +89,8 @@ struct ExportOptions : pattern::PatternOptions {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
     bool is_marker() const { return fabric_width_mm > 0.0; }
-    AllowanceWidths allowance() const {
-        AllowanceWidths widths = hem_allowance_mm < 0.0
-                                     ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
-                                     : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
-        if (dart_allowance_mm >= 0.0)
-            widths.darts = dart_allowance_mm;
-        return widths;
-    }
+    /// Throws InvalidParameter for zip_seams that are no numbers.
+    AllowanceWidths allowance() const;
 };
 
 /// The options with all that the preset stands for. Throws InvalidParameter for values outside of

@@ -263,8 +263,11 @@ std::vector<std::string> layout_notes(const pattern::Pattern& pattern,
          "no room for a number that can be read: the cover of a PDF names them");
     note(layout.left_out.pieces.size(), pattern.pieces.size(), " piece", " pieces",
          "no room for a name that can be read: the cover of a PDF names them");
-    if (layout.fabric && layout.fabric->single_layer_pieces > 0)
-        notes.push_back(std::to_string(layout.fabric->single_layer_pieces) +
+    Index single = 0;
+    for (const FabricStrip& fabric : layout.fabrics)
+        single += fabric.single_layer_pieces;
+    if (single > 0)
+        notes.push_back(std::to_string(single) +
                         " of the pieces on folded cloth have neither a mirror image nor an axis "
                         "along the grain: cut them from the upper layer alone");
     return notes;

@@ -46,13 +46,14 @@ struct PatternSheet {
     Index rows = 1;
 };
 
-/// A roll of cloth that all pieces lie on.
+/// A roll of cloth that all pieces lie on, or those of one of the model's materials.
 struct FabricStrip {
     std::string material;
     double width = 0.0;    // mm, with both selvedges
     double selvedge = 0.0; // mm
     double length = 0.0;   // mm
-    double use = 0.0;      // share of the cloth between the selvedges that pieces cover
+    double covered = 0.0;  // mm², by pieces
+    double use = 0.0;      // the same as a share of the cloth between the selvedges
     bool is_folded = false;
     Index single_layer_pieces = 0; // cut from the upper layer of folded cloth alone
 };
@@ -71,9 +72,9 @@ struct PatternLayout {
     assembly::Assembly assembly; // the order in which the pieces are put together
     LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
-    std::optional<FabricStrip> fabric;
-    std::vector<SizedPieces> sizes; // but the one of the layout
-    Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
+    std::vector<FabricStrip> fabrics; // of a marker: one for each sheet
+    std::vector<SizedPieces> sizes;   // but the one of the layout
+    Index seams_without_tab = 0;      // for lack of room, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is

@@ -279,8 +279,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         numbers, text};
     for (writers::DrawingLayer& layer : size_layers(layout, plan.sheets, options.notch_kind))
         drawing.layers.push_back(std::move(layer));
-    if (layout.fabric)
-        drawing.layers.push_back(fabric_layer(layout, plan.sheets.front()));
+    if (!layout.fabrics.empty())
+        drawing.layers.push_back(fabric_layer(layout, plan.sheets));
     return drawing;
 }
 

@@ -22,6 +22,14 @@ NOTCHES = {"slit": "Slit", "triangle": "Triangle"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
+def _numbers(text: str) -> str:
+    """Numbers of seams, from 1 on, with commas."""
+    words = [word.strip() for word in text.split(",")]
+    if not all(word.isdecimal() and int(word) > 0 for word in words):
+        raise argparse.ArgumentTypeError(f"expected numbers of seams such as 3,7, found '{text}'")
+    return ",".join(words)
+
+
 def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     """The options that shape svg, pdf and dxf files, beside the scale."""
     group = parser.add_argument_group("pattern files (svg, pdf, dxf)")
@@ -48,6 +56,12 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         type=millimetres(),
         metavar="A",
         help="along darts; default: as seams",
+    )
+    group.add_argument(
+        "--zip-seams", type=_numbers, metavar="N,M", help="numbers of the seams that get a zip"
+    )
+    group.add_argument(
+        "--zip-allowance-mm", type=millimetres(), metavar="A", help="along them; default: as seams"
     )
     group.add_argument(
         "--notch-kind", choices=NOTCHES, help="a slit, or a triangle to cut out; default: slit"
@@ -166,6 +180,8 @@ _PARAMETERS = (
     "seam_allowance_mm",
     "hem_allowance_mm",
     "dart_allowance_mm",
+    "zip_allowance_mm",
+    "zip_seams",
     "drill_marks",
     "max_piece_mm",
     "simplify_mm",

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from devseg import cloth, guide, host, ply, scene
+from devseg.given import MATERIAL_ATTRIBUTE
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.pattern_options import PATTERN_FORMATS
@@ -48,7 +49,10 @@ class PatternWriter:
                 results = self.session.export(target, parameters)
                 if suffix:
                     self.outputs[f"{extension}{suffix}"] = target.name
+            names = cloth.fabrics(plain)
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
+            if names:
+                self.guide["materials"] = cloth.materials(results, names)
             if "material" in plain:
                 self.guide["cloth"] = cloth.strains(results, plain["material"])
         for extension in self.options.formats:
@@ -56,7 +60,7 @@ class PatternWriter:
                 with self.progress.stage(f"marker {extension}"):
                     target = self._target(extension, "_marker")
                     results = self.session.export(target, marker)
-                self.guide["marker"] = cloth.marker(results)
+                self.guide["marker"] = cloth.marker(results, cloth.fabrics(marker))
                 self.outputs[f"marker_{extension}"] = target.name
         if self.options.picture:
             with self.progress.stage("picture"):
@@ -77,6 +81,7 @@ class PatternWriter:
                 continue
             attributes = ["chart_id", "seam_edges"]
             attributes += [scene.PART_ATTRIBUTE] if len(parts) > 1 else []
+            attributes += [MATERIAL_ATTRIBUTE] if self.options.given.material_borders else []
             self.session.save(
                 target,
                 binary=True,

@@ -179,7 +179,7 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
         loaded = load_mesh(path, options.objects)
         up = options.up or loaded.frame.up or "y"
         with host.captured():
-            prepare(path, loaded.meshes, loaded.parts, options.given)
+            materials = prepare(path, loaded.meshes, loaded.parts, options.given)
         scene.turn(loaded.meshes, up)
     mesh = loaded.meshes.current_mesh()
     size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
@@ -187,6 +187,8 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
     texcoords = old_texcoords(session, options)
     measures = flatten_mesh(session, options, progress)
     pattern, extents = scaled(session, options, loaded.frame, up)
+    if materials:
+        pattern["material_names"] = ", ".join(name.replace(",", ";") for name in materials)
     writer = PatternWriter(session, options, folder / name, progress)
     writer.write_patterns(pattern)
     scene.turn(loaded.meshes, up, back=True)
@@ -264,8 +266,7 @@ def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
 
 def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Flattens the charts; measures of them, by kind."""
-    chosen = options.given.charts_from or options.given.keep_seams
-    kept = {"keep": "Seams"} if chosen else {}
+    kept = {"keep": "Seams"} if options.given.has_seams else {}
     with progress.stage("flatten"):
         method, effort = FLATTENINGS[options.flatten], EFFORTS[options.effort]
         flat = session.apply(FLATTEN_FILTER, method=method, effort=effort, **kept)

@@ -366,7 +366,8 @@ private:
         if (options_.confirm && verdict.map.flat) {
             auto judging = progress.part(0.0);
             TrialMap map =
-                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
+                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging, options_.purpose)
+                    .front();
             map.cut_length = verdict.map.cut_length;
             assess(closing, std::move(map), verdict);
         }

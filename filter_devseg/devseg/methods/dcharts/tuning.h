@@ -48,7 +48,10 @@ struct Tuning {
     Index decimated_creased_faces = 24000; // where they must run along creases
     Index faces_per_chart = 150;           // of the coarse surface, at least
     double worth_decimation = 2.0;         // faces over those of the coarse surface
-    double rough = 0.002;       // l2² − 1 of small neighbourhoods: less is tessellation
+    double rough = 0.002; // l2² − 1 of small neighbourhoods: less is tessellation
+    // Strain of 99 % of a rough surface over the root of its l2² − 1, which is about the mean of
+    // squared strains: as of a normal distribution.
+    double rough_tail = 2.6;
     double least_chart = 0.002; // of the surface: less are slivers nobody wants to cut out
 
     // What border is worth against the fitting error of faces.
