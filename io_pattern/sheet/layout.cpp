@@ -100,7 +100,7 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
 }
 
 // One sheet that is about as high as wide.
-void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
+void nest_freely(PatternLayout& layout, bool keep_grain, double bleed, Progress& progress) {
     double area = 0.0;
     double widest = 0.0;
     std::vector<const SheetPiece*> pieces;
@@ -111,7 +111,7 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     }
     NestingOptions nesting;
     const double side = std::max(std::sqrt(area / covered_share), widest);
-    nesting.gap = std::min(piece_gap, pattern::gap_share * side);
+    nesting.gap = std::max(bleed, std::min(piece_gap, pattern::gap_share * side));
     nesting.width = side + nesting.gap;
     nesting.keep_grain = keep_grain;
     const Nesting nested = nest_pieces(pieces, nesting, progress);
@@ -183,8 +183,9 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         return layout;
     }
     const bool keep_grain = options.grain_line && options.grain != pattern::GrainDirection::free;
-    if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
-        nest_freely(layout, keep_grain, laying);
+    if (options.glue_tabs || options.allowance().largest() > 0.0 || options.bleed() > 0.0 ||
+        pieces_touch(layout.pieces))
+        nest_freely(layout, keep_grain, options.bleed(), laying);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
     const pack::Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
     for (SheetPiece& piece : layout.pieces)

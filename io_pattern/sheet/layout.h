@@ -19,6 +19,7 @@ constexpr double sheet_gap = 2.0 * sheet_margin;
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
 constexpr double piece_gap = 3.0; // mm
+static_assert(widest_bleed <= piece_gap, "the print of a piece reaches no other one");
 
 struct NestingOptions {
     double width = 0.0;      // mm
