@@ -145,8 +145,9 @@ std::string add_pictures(const pattern::Pattern& pattern, const sheet::PatternLa
                          const sheet::ExportOptions& options, const Look& look, Progress& progress,
                          writers::Drawing& drawing) {
     if (look.is_empty())
-        throw InvalidMesh("expected a mesh with a texture or colours of its own, found none; leave "
-                          "texture out");
+        throw InvalidParameter(
+            "texture: expected None for a model without textures and colours of its "
+            "own, found Automatic; leave texture out");
     const sheet::DrawingPlan plan = sheet::plan_drawing(layout, options.scale_check);
     std::vector<sheet::SheetPiece> pieces = layout.pieces;
     double area = 0.0;

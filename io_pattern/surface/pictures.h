@@ -28,8 +28,8 @@ struct Look {
 /// Adds a picture for each piece to the drawing of the layout, 300 pixels for an inch, or fewer for
 /// drawings of several square metres: inside of the cut lines and a bleed around them. What lies
 /// beyond the faces, such as tabs, has the colour of the nearest place of the piece. Faces without
-/// colours are white. Returns a note for the user, or nothing. Throws InvalidMesh where nothing has
-/// a colour, and Cancelled.
+/// colours are white. Returns a note for the user, or nothing. Throws InvalidParameter where
+/// nothing has a colour, and Cancelled.
 std::string add_pictures(const pattern::Pattern& pattern, const sheet::PatternLayout& layout,
                          const sheet::ExportOptions& options, const Look& look, Progress& progress,
                          writers::Drawing& drawing);

@@ -102,8 +102,8 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--texture",
         choices=TEXTURES,
-        help="auto: print the textures of the model on the pieces (svg, pdf, png), else the colours "
-        "of its faces, else those of its vertices; default: none",
+        help="auto: print the textures of the model on the pieces (svg, pdf, png), else the "
+        "colours of its faces, else those of its vertices; default: none",
     )
     group.add_argument(
         "--bleed",

@@ -106,5 +106,7 @@ class PatternWriter:
             if extension in known:
                 with self.progress.stage(extension):
                     yield extension
-                if extension != "png" and self._target(extension).exists():  # else one for each size
+                if (
+                    extension != "png" and self._target(extension).exists()
+                ):  # else one for each size
                     self.outputs[extension] = self._target(extension).name

@@ -54,7 +54,7 @@ class RunOptions:
         method: segmentation method.
         segmentation: parameters of its filter that differ from the defaults.
         flatten: key of FLATTENINGS.
-        formats: svg, pdf, dxf, ply, obj.
+        formats: svg, pdf, dxf, html, png, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
         target_faces: simplify the mesh to so many faces first; None: leave it.
         deforms: whether charts are deformed until they unfold exactly; None: as the method does.
