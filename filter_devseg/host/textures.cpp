@@ -19,6 +19,7 @@ using Corners = CMeshO::CoordType; // one number for each corner of a face
 constexpr const char* old_u = "texcoord_before_u";
 constexpr const char* old_v = "texcoord_before_v";
 constexpr const char* old_page = "texture_before";
+constexpr const char* stand_in = "dummy.png"; // what hosts show for images that they cannot read
 constexpr const char* old_color = "color_before"; // 65536 red + 256 green + blue
 
 template <class Model>
@@ -55,6 +56,15 @@ plane::Image as_pixels(const QImage& image) {
     return pixels;
 }
 
+std::vector<plane::Image> read_images(const MeshModel& model) {
+    std::vector<plane::Image> images;
+    for (const std::string& name : model.cm.textures)
+        images.push_back(QFileInfo(to_qstring(name)).fileName() == stand_in
+                             ? plane::Image()
+                             : as_pixels(image_of(model, name, 0)));
+    return images;
+}
+
 } // namespace
 
 void read_textures(MeshModel& model, declare::HostMesh& host) {
@@ -64,8 +74,7 @@ void read_textures(MeshModel& model, declare::HostMesh& host) {
     const std::vector<double> page = read_face_attribute(m, old_page);
     if (!Allocator::IsValidHandle(m, u) || !Allocator::IsValidHandle(m, v) || page.empty())
         return;
-    for (const std::string& name : m.textures)
-        host.textures.push_back(as_pixels(image_of(model, name, 0)));
+    host.textures = read_images(model);
     for (std::size_t f = 0; f < m.face.size(); ++f) {
         if (m.face[f].IsD())
             continue;
@@ -115,8 +124,7 @@ void read_surface(MeshModel& model, declare::HostMesh& host) {
     CMeshO& m = model.cm;
     read_textures(model, host);
     if (host.uv_before.empty() && model.hasDataMask(MeshModel::MM_WEDGTEXCOORD)) {
-        for (const std::string& name : m.textures)
-            host.textures.push_back(as_pixels(image_of(model, name, 0)));
+        host.textures = read_images(model);
         host.uv_before = read_wedge_uv(m);
         for (const auto& f : m.face)
             if (!f.IsD())

@@ -89,9 +89,8 @@ writers::Drawing draw(const Source& source, const sheet::ExportOptions& options,
                       Progress& progress, std::vector<std::string>& notes) {
     writers::Drawing drawing = sheet::draw_sheets(source.layout, options);
     if (options.texture != sheet::SurfacePrint::none)
-        if (std::string note = surface::add_pictures(source.pattern, source.layout, options,
-                                                     source.look, progress, drawing);
-            !note.empty())
+        for (std::string& note : surface::add_pictures(source.pattern, source.layout, options,
+                                                       source.look, progress, drawing))
             notes.push_back(std::move(note));
     if (options.registration_marks && marks)
         drawing.layers.push_back(surface::registration_marks(

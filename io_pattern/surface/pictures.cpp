@@ -141,9 +141,14 @@ void paint(const sheet::SheetPiece& piece, const std::vector<Index>& faces, cons
 
 } // namespace
 
-std::string add_pictures(const pattern::Pattern& pattern, const sheet::PatternLayout& layout,
-                         const sheet::ExportOptions& options, const Look& look, Progress& progress,
-                         writers::Drawing& drawing) {
+double print_pixel(double area) {
+    return std::max(tuning.pixel, std::sqrt(area / tuning.most_pixels));
+}
+
+std::vector<std::string> add_pictures(const pattern::Pattern& pattern,
+                                      const sheet::PatternLayout& layout,
+                                      const sheet::ExportOptions& options, const Look& look,
+                                      Progress& progress, writers::Drawing& drawing) {
     if (look.is_empty())
         throw InvalidParameter(
             "texture: expected None for a model without textures and colours of its "
@@ -156,7 +161,7 @@ std::string add_pictures(const pattern::Pattern& pattern, const sheet::PatternLa
         drawing.images.push_back(frame_of(piece, options.bleed()));
         area += drawing.images.back().size.prod();
     }
-    const double pixel = std::max(tuning.pixel, std::sqrt(area / tuning.most_pixels));
+    const double pixel = print_pixel(area);
     const Faces all(pattern, look, pixel);
     std::vector<std::vector<Index>> faces(pattern.pieces.size());
     for (const Face f : pattern.mesh.all_faces())
@@ -173,10 +178,16 @@ std::string add_pictures(const pattern::Pattern& pattern, const sheet::PatternLa
                   drawing.images[at(i)]);
         },
         progress);
-    if (pixel == tuning.pixel)
-        return "";
-    return "the print has " + writers::number_text(25.4 / pixel, 0) +
-           " pixels for an inch: 300 would be too many on a pattern of this size";
+    std::vector<std::string> notes;
+    if (look.lost_images() > 0)
+        notes.push_back(std::to_string(look.lost_images()) + " of " +
+                        std::to_string(look.images.size()) +
+                        " textures could not be read: their faces are printed in the colours of "
+                        "the model, or white");
+    if (pixel > tuning.pixel)
+        notes.push_back("the print has " + writers::number_text(25.4 / pixel, 0) +
+                        " pixels for an inch: 300 would be too many on a pattern of this size");
+    return notes;
 }
 
 } // namespace devseg::surface

@@ -1,6 +1,8 @@
 // What a model looks like comes to lie where its faces do.
 #include "surface/pictures.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "devseg/base/errors.h"
@@ -62,8 +64,8 @@ struct Model {
         pattern = pattern::make_pattern(mesh, uv, options, progress);
         layout = sheet::lay_out_pattern(pattern, options, progress);
         drawing = sheet::draw_sheets(layout, options);
-        note = add_pictures(pattern, layout, options, {mesh, image_uv, page, images, color},
-                            progress, drawing);
+        notes = add_pictures(pattern, layout, options, {mesh, image_uv, page, images, color},
+                             progress, drawing);
     }
 
     // What is printed at a place of the drawing that the piece's picture shows.
@@ -108,7 +110,7 @@ struct Model {
     pattern::Pattern pattern;
     sheet::PatternLayout layout;
     writers::Drawing drawing;
-    std::string note;
+    std::vector<std::string> notes;
 };
 
 sheet::ExportOptions papercraft() {
@@ -185,6 +187,13 @@ TEST(Pictures, RefuseWhatHasNoColours) {
     Model model(shapes::cube(1), false);
     model.color.clear();
     EXPECT_THROW(model.draw(papercraft()), InvalidParameter);
+    Model lost(shapes::cube(1), true);
+    lost.images[1] = {};
+    lost.draw(papercraft());
+    EXPECT_EQ(lost.notes.size(), 1U);
+    lost.images[0] = {};
+    lost.color.clear();
+    EXPECT_THROW(lost.draw(papercraft()), InvalidParameter);
     model.color.assign(3 * model.mesh.faces.size(), {1, 2, 3});
     sheet::ExportOptions wide = papercraft();
     wide.bleed_mm = 4.0;
@@ -192,16 +201,9 @@ TEST(Pictures, RefuseWhatHasNoColours) {
 }
 
 TEST(Pictures, LargePatternsHaveFewerPixels) {
-    Model model(shapes::cube(1), false);
-    sheet::ExportOptions options = papercraft();
-    options.page = "none";
-    options.mm_per_unit = 1000.0;
-    model.draw(options);
-    EXPECT_NE(model.note, "");
-    double pixels = 0.0;
-    for (const writers::DrawingImage& image : model.drawing.images)
-        pixels += static_cast<double>(image.rgb.size()) / 3.0;
-    EXPECT_LE(pixels, 1.6e8);
+    EXPECT_DOUBLE_EQ(print_pixel(2e5), 25.4 / 300.0);
+    for (const double area : {2e6, 1e8})
+        EXPECT_LE(area / std::pow(print_pixel(area), 2), 1.6e8);
 }
 
 TEST(Registration, MarksLieInTheMargin) {
