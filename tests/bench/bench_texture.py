@@ -39,15 +39,7 @@ def main() -> None:
             for texture in ("None", "Automatic"):
                 target = Path(folder) / f"{texture}.{kind}"
                 start = time.process_time()
-                found = session.export(
-                    target,
-                    {
-                        "preset": "Papercraft",
-                        "page": "a4",
-                        "mm_per_unit": scale,
-                        "texture": texture,
-                    },
-                )
+                found = session.export(target, {**paper, "texture": texture})
                 seconds = time.process_time() - start
                 size = sum(file.stat().st_size for file in Path(folder).glob(f"{texture}*.{kind}"))
                 print(

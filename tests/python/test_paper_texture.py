@@ -38,6 +38,7 @@ def picture(seed: int) -> np.ndarray:
 def two_textures(tmp_path: Path) -> Path:
     """A tube, which unfolds exactly, whose lower half shows another image than the upper one."""
     vertices, faces = meshes.cylinder()
+    places = 0.5 + 0.3 * vertices[:, ::2] + 0.05 * vertices[:, 1:2]
     materials, words, corners = [], [], []
     for i in range(2):
         Image.fromarray(picture(i)).save(tmp_path / f"image{i}.png")
