@@ -48,10 +48,7 @@ def two_textures(tmp_path: Path) -> Path:
     for i in range(2):
         words.append(f"usemtl skin{i}")
         for face in faces[upper == bool(i)]:
-            corners += [
-                "vt {:.9g} {:.9g}".format(*(0.5 + 0.3 * vertices[v, ::2] + 0.05 * vertices[v, 1]))
-                for v in face
-            ]
+            corners += ["vt {:.9g} {:.9g}".format(*places[v]) for v in face]
             last = len(corners)
             words.append("f " + " ".join(f"{v + 1}/{last - 2 + k}" for k, v in enumerate(face)))
     rows = ["mtllib tube.mtl"] + ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in vertices]
