@@ -18,6 +18,10 @@ namespace devseg::sheet {
 
 namespace {
 
+// Of paper, at its widest place: fingers and tweezers hold no less.
+constexpr double least_glued_width = 3.0; // mm
+constexpr std::size_t most_names = 5;     // of a note
+
 // Turns that are tried for the least box around a piece, within a quarter. The exact box, which
 // lies on an edge of the outline, took more pages.
 constexpr int box_turns = 30;
@@ -160,6 +164,9 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         tabs =
             make_tabs(pattern, {options.tab_depth_mm, options.tabs, options.border_tabs}, tabbing);
     layout.seams_without_tab = tabs.seams_without;
+    for (std::size_t i = 0; i < pattern.pieces.size() && options.glue_tabs; ++i)
+        if (2.0 * pattern.pieces[i].label_radius < least_glued_width)
+            layout.narrow.push_back(static_cast<Index>(i));
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
@@ -264,6 +271,14 @@ std::vector<std::string> layout_notes(const pattern::Pattern& pattern,
          "no room for a number that can be read: the cover of a PDF names them");
     note(layout.left_out.pieces.size(), pattern.pieces.size(), " piece", " pieces",
          "no room for a name that can be read: the cover of a PDF names them");
+    std::string names;
+    for (std::size_t i = 0; i < layout.narrow.size() && i < most_names; ++i)
+        names += (i > 0 ? ", " : " (") + pattern.pieces[layout.narrow[i]].name;
+    note(layout.narrow.size(), pattern.pieces.size(), " piece", " pieces",
+         ("less than 3 mm at the widest place" + names +
+          (layout.narrow.size() > most_names ? ", ...)" : ")") +
+          ": make the model larger, or give fewer charts or faces")
+             .c_str());
     if (layout.fabric && layout.fabric->single_layer_pieces > 0)
         notes.push_back(std::to_string(layout.fabric->single_layer_pieces) +
                         " of the pieces on folded cloth have neither a mirror image nor an axis "

@@ -75,6 +75,7 @@ struct PatternLayout {
     std::optional<FabricStrip> fabric;
     std::vector<SizedPieces> sizes; // but the one of the layout
     Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
+    std::vector<Index> narrow;      // pieces too narrow to be glued, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is
