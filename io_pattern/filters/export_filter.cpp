@@ -141,6 +141,19 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
+declare::Declare<O> with_print(declare::Declare<O> filter) {
+    return filter
+        .choice(&O::texture, "texture", "Texture on the pieces", {"None", "Automatic"},
+                "Automatic: what the model looks like is printed on the pieces of SVG, PDF and "
+                "PNG files: its textures, else the colours of its faces, else those of its "
+                "vertices. Tabs go on with the colours beside them.")
+        .real(&O::bleed_mm, {"bleed_mm", 0.0, sheet::widest_bleed}, "Bleed (mm)",
+              "How far the texture is printed beyond the cut lines, in millimetres.")
+        .boolean(&O::registration_marks, "registration_marks", "Registration marks",
+                 "Marks in the corners of each sheet, on a layer of their own, by which a cutter "
+                 "finds what was printed.");
+}
+
 declare::Declare<O> with_files(declare::Declare<O> filter) {
     return filter
         .choice(
@@ -269,7 +282,10 @@ declare::ResultValues cloth_values(const PatternFile& file) {
 
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
-    PatternFile file = make_pattern_file(input.mesh, *input.uv, input.material, options, progress);
+    const surface::Look look{input.mesh, input.uv_before, input.page_before, input.textures,
+                             input.corner_color};
+    PatternFile file =
+        make_pattern_file(input.mesh, *input.uv, input.material, look, options, progress);
     declare::FilterOutput output;
     output.notes = std::move(file.notes);
     output.values = {{"pieces_number", file.pieces},
@@ -281,8 +297,12 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
                      {"pages_number", file.pages}};
     for (const auto& values : {guide_values(file), cloth_values(file)})
         output.values.insert(output.values.end(), values.begin(), values.end());
-    output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
-        writers::save_file(path, bytes);
+    output.save = [path = options.output_file, bytes = std::move(file.bytes),
+                   pages = std::move(file.page_bytes)] {
+        for (std::size_t i = 0; i < pages.size(); ++i)
+            writers::save_file(page_file(path, i, pages.size()), pages[i]);
+        if (pages.empty())
+            writers::save_file(path, bytes);
     };
     return output;
 }
@@ -291,14 +311,15 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
 
 const declare::FilterDeclaration& export_filter() {
     static const declare::FilterDeclaration filter =
-        with_cloth(with_guide(with_files(with_paper(with_seams(with_scale(
+        with_cloth(with_guide(with_files(with_print(with_paper(with_seams(with_scale(
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
                                  "File to write; its extension says the format: .svg, .pdf, "
-                                 ".dxf or .html.")))))))
+                                 ".dxf, .html or .png, a file for each page."))))))))
             .needs_uv()
             .shows_outside()
+            .takes_surface()
             .result("pieces_number", "pieces in the file")
             .result("seams_number", "seams, darts among them")
             .result("unnumbered_seams_number", "seams without room for the number that they "
@@ -308,7 +329,9 @@ const declare::FilterDeclaration& export_filter() {
             .result("untabbed_seams_number", "seams without room for the glue tab that they should "
                                              "have")
             .result("sheets_number", "sheets that the pieces lie on")
-            .result("pages_number", "pages of a PDF, cover included; 0 for other formats")
+            .result("pages_number",
+                    "pages of a PDF, cover included, or files of a .png; 0 for other "
+                    "formats")
             .result("piece_section", "section that each piece is made in, counted from 0")
             .result("seam_first_piece", "for each seam the piece of its first side, from 0")
             .result("seam_second_piece", "the same of its second side")

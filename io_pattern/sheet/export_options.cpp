@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/material/material.h"
 #include "writers/text.h"
 
@@ -147,6 +148,9 @@ ExportOptions resolved(const ExportOptions& given) {
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("perforation_mm", options.perforation_mm, 0.0, "cuts of 0 mm or more");
     check("perforation_gap_mm", options.perforation_gap_mm, 0.1, "gaps of 0.1 mm or more");
+    if (!(options.bleed_mm >= 0.0 && options.bleed_mm <= widest_bleed))
+        refuse_option("bleed_mm", "a width from 0 to 3 mm, the distance of two pieces",
+                      options.bleed_mm);
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
     check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");

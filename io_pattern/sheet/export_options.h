@@ -23,6 +23,8 @@ enum class Grouping { layer, piece };
 enum class Effort { fast, normal, best };
 /// Texts of an SVG: as text, or as outlines of its letters.
 enum class TextKind { text, paths };
+/// What is printed on the pieces: nothing, or what the model's surface looks like.
+enum class SurfacePrint { none, automatic };
 /// Folds as lines, as short strokes outside of the outlines, where nobody sees them later, or not.
 enum class FoldMarks { lines, outside, none };
 
@@ -63,6 +65,10 @@ struct ExportOptions : pattern::PatternOptions {
     bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
     bool scale_check = true; // the same: squares to check the scale with
 
+    SurfacePrint texture = SurfacePrint::none;
+    double bleed_mm = 2.0;           // of the print, beyond the cut lines
+    bool registration_marks = false; // that cutters find the print by
+
     double kerf_mm = -1.0; // width of the cut; below 0: of the material, with the preset Laser
 
     // A marker: all pieces on a roll of cloth, which replaces the pages.
@@ -88,6 +94,8 @@ struct ExportOptions : pattern::PatternOptions {
     bool marks_openings() const {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
+    /// What the print adds around each piece.
+    double bleed() const { return texture == SurfacePrint::none ? 0.0 : bleed_mm; }
     bool is_marker() const { return fabric_width_mm > 0.0; }
     /// Throws InvalidParameter for zip_seams that are no numbers.
     AllowanceWidths allowance() const;
@@ -96,6 +104,8 @@ struct ExportOptions : pattern::PatternOptions {
 /// The options with all that the preset stands for. Throws InvalidParameter for values outside of
 /// their range.
 ExportOptions resolved(const ExportOptions& options);
+
+constexpr double widest_bleed = 3.0; // mm: pieces on pages have this distance
 
 constexpr double tile_overlap = 10.0; // mm that two pages of one sheet share, to be glued
 

@@ -19,6 +19,7 @@ constexpr double sheet_gap = 2.0 * sheet_margin;
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
 constexpr double piece_gap = 3.0; // mm
+static_assert(widest_bleed <= piece_gap, "the print of a piece reaches no other one");
 
 struct NestingOptions {
     double width = 0.0;      // mm
@@ -75,6 +76,7 @@ struct PatternLayout {
     std::vector<FabricStrip> fabrics; // of a marker: one for each sheet
     std::vector<SizedPieces> sizes;   // but the one of the layout
     Index seams_without_tab = 0;      // for lack of room, where tabs were asked for
+    std::vector<Index> narrow;        // pieces too narrow to be glued, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is

@@ -204,8 +204,9 @@ void lay_out_strip(const pattern::Pattern& pattern, const ExportOptions& options
                           (piece.at_fold ? 2.0 : 1.0);
     }
     check_widths(laid, items, room);
-    const pack::StripResult strip =
-        pack::pack_strip(items, {room, options.piece_gap_mm, effort_of(options.effort)}, progress);
+    const pack::StripResult strip = pack::pack_strip(
+        items, {room, std::max(options.piece_gap_mm, options.bleed()), effort_of(options.effort)},
+        progress);
     fabric.length = strip.length;
     fabric.use = fabric.covered / (strip.length * room * (options.fold ? 2.0 : 1.0));
     for (std::size_t i = 0; i < laid.size(); ++i) {

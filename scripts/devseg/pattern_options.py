@@ -10,7 +10,7 @@ from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
 # Formats that the export filter writes.
-PATTERN_FORMATS = ("svg", "pdf", "dxf", "html")
+PATTERN_FORMATS = ("svg", "pdf", "dxf", "html", "png")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
@@ -18,6 +18,7 @@ TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
 TABS = {"one": "One", "both": "Both", "alternating": "Alternating", "none": "None"}
 FOLD_MARKS = {"lines": "Lines", "outside": "Outside", "none": "None"}
+TEXTURES = {"none": "None", "auto": "Automatic"}
 NOTCHES = {"slit": "Slit", "triangle": "Triangle"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
@@ -31,8 +32,8 @@ def _numbers(text: str) -> str:
 
 
 def add_pattern_options(parser: argparse.ArgumentParser) -> None:
-    """The options that shape svg, pdf and dxf files, beside the scale."""
-    group = parser.add_argument_group("pattern files (svg, pdf, dxf)")
+    """The options that shape pattern files, beside the scale."""
+    group = parser.add_argument_group("pattern files (svg, pdf, dxf, png)")
     group.add_argument("--preset", choices=PRESETS, help="what to make; default: plain")
     group.add_argument(
         "--page",
@@ -113,6 +114,19 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         help="sides of seams with glue tabs; default: one to fold, else none",
     )
     group.add_argument(
+        "--texture",
+        choices=TEXTURES,
+        help="auto: print the textures of the model on the pieces (svg, pdf, png), else the "
+        "colours of its faces, else those of its vertices; default: none",
+    )
+    group.add_argument(
+        "--bleed",
+        type=millimetres(),
+        dest="bleed_mm",
+        metavar="B",
+        help="of the texture beyond the cut lines, at most 3; default: 2",
+    )
+    group.add_argument(
         "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
     )
     group.add_argument(
@@ -151,6 +165,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("drill-marks", "a cross where each dart ends"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
+        ("registration-marks", "marks by which a cutter finds what was printed"),
     ):
         group.add_argument(f"--{name}", action="store_true", help=text, default=None)
     group.add_argument(
@@ -205,6 +220,8 @@ _PARAMETERS = (
     "sewing_mm_per_minute",
     "stuffing_g_per_litre",
     "scale_check",
+    "bleed_mm",
+    "registration_marks",
 )
 
 # The option that sets a parameter of the export filter.
@@ -220,6 +237,7 @@ OPTION_OF = {
             "text",
             "tabs",
             "fold_marks",
+            "texture",
         )
     },
     **{
@@ -237,6 +255,7 @@ OPTION_OF = {
     "dxf_kind": "--dxf",
     "perforation_mm": "--perforation",
     "perforation_gap_mm": "--perforation",
+    "bleed_mm": "--bleed",
 }
 
 _CHOICES = {
@@ -248,6 +267,7 @@ _CHOICES = {
     "text": TEXTS,
     "tabs": TABS,
     "fold_marks": FOLD_MARKS,
+    "texture": TEXTURES,
 }
 
 

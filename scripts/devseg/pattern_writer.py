@@ -21,6 +21,17 @@ MESH_FORMATS = ("ply", "obj")
 # Higher levels take several times as long for a tenth of the size.
 PNG_COMPRESSION = 1
 
+# What follows NAME in pattern files of pixels.
+PAGE = "_page"
+
+
+def pages(target: Path, results: Mapping[str, Any]) -> list[Path]:
+    """The files of a pattern of pixels: one for each page."""
+    count = int(results["pages_number"])
+    if count == 1:
+        return [target]
+    return [target.with_name(f"{target.stem}_{i + 1}{target.suffix}") for i in range(count)]
+
 
 class PatternWriter:
     """Writes all files but the JSON, and keeps their names by kind."""
@@ -45,10 +56,14 @@ class PatternWriter:
         files = list(cloth.written(plain))
         for extension in self._formats(PATTERN_FORMATS):
             for suffix, parameters in files:
-                target = self._target(extension, suffix)
+                # NAME.png is the picture of the mesh.
+                own = PAGE + suffix if extension == "png" else suffix
+                target = self._target(extension, own)
                 results = self.session.export(target, parameters)
-                if suffix:
-                    self.outputs[f"{extension}{suffix}"] = target.name
+                for page in pages(target, results) if extension == "png" else [target]:
+                    if page.stem != self.stem.name:
+                        kind = page.stem.removeprefix(self.stem.name)
+                        self.outputs[f"{extension}{kind}"] = page.name
             names = cloth.fabrics(plain)
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
             if names:
@@ -96,5 +111,7 @@ class PatternWriter:
             if extension in known:
                 with self.progress.stage(extension):
                     yield extension
-                if self._target(extension).exists():  # else one for each size
+                if (
+                    extension != "png" and self._target(extension).exists()
+                ):  # else one for each size
                     self.outputs[extension] = self._target(extension).name

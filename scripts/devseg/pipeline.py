@@ -21,7 +21,7 @@ from devseg.load import load_mesh
 from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
 from devseg.outputs import plain, staged, to_json
-from devseg.pattern_options import EXPORT_FILTER
+from devseg.pattern_options import EXPORT_FILTER, TEXTURES
 from devseg.pattern_writer import MESH_FORMATS, PatternWriter
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
@@ -55,7 +55,7 @@ class RunOptions:
         method: segmentation method.
         segmentation: parameters of its filter that differ from the defaults.
         flatten: key of FLATTENINGS.
-        formats: svg, pdf, dxf, ply, obj.
+        formats: svg, pdf, dxf, html, png, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
         target_faces: simplify the mesh to so many faces first; None: leave it.
         deforms: whether charts are deformed until they unfold exactly; None: as the method does.
@@ -225,7 +225,8 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
             close_holes(session, options.close_holes)
     if options.target_faces is not None:
         with progress.stage("simplify"):
-            found["simplification"] = simplify(session, options.target_faces)
+            textured = options.pattern.get("texture") == TEXTURES["auto"]
+            found["simplification"] = simplify(session, options.target_faces, textured)
     with progress.stage("segment"):
         made = _make_charts(session, options)
     found["method_results"] = made

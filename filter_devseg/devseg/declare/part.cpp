@@ -126,7 +126,7 @@ public:
 
     FilterInput input() const {
         FilterInput part{
-            mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {}, {}, {}, {},
+            mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {}, {}, {}, {}, {},
             {},    {}, {}};
         if (whole_.charts)
             part.charts = charts();
