@@ -129,12 +129,13 @@ void mirror_sheets(PatternLayout& layout) {
         piece.mirror(0.5 * layout.sheets[piece.sheet].size.x());
 }
 
-// For each sheet, where its pages end within it: paper is cut and glued there.
+// Lines that no text may cross: where pages end within their sheet, as paper is cut and glued
+// there, and the crosses in the strips. For each sheet.
 std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& layout) {
     std::vector<std::vector<std::array<Vec2, 2>>> borders(layout.sheets.size());
-    for (std::size_t s = 0; s < borders.size(); ++s) {
+    for (std::size_t s = 0; s < borders.size() && layout.page; ++s) {
         const PatternSheet& sheet = layout.sheets[s];
-        const double margin = layout.page ? layout.page->margin : 0.0;
+        const double margin = layout.page->margin;
         const auto add = [&](Index pages, int axis) {
             for (Index k = 1; k < pages; ++k)
                 for (const double strip : {-margin, 0.0, tile_overlap, tile_overlap + margin}) {
@@ -147,6 +148,9 @@ std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& 
         };
         add(sheet.columns, 0);
         add(sheet.rows, 1);
+        for (const Vec2& place : strip_crosses(sheet, *layout.page))
+            for (const Vec2& arm : {Vec2(cross_arm, 0.0), Vec2(0.0, cross_arm)})
+                borders[s].push_back({place - arm, place + arm});
     }
     return borders;
 }
@@ -244,6 +248,24 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     }
     nesting.sheet_count = static_cast<Index>(sheets.size());
     return nesting;
+}
+
+std::vector<Vec2> strip_crosses(const PatternSheet& sheet, const PageFormat& page) {
+    std::vector<Vec2> places;
+    const auto add = [&](Index strips, Index pages, int axis) {
+        for (Index k = 1; k < strips; ++k)
+            for (Index j = 0; j < pages; ++j)
+                for (const double share : {0.25, 0.75}) {
+                    Vec2 place;
+                    place[axis] = page.margin + k * page.step()[axis] + 0.5 * tile_overlap;
+                    place[1 - axis] = page.margin + j * page.step()[1 - axis] +
+                                      share * page.printable()[1 - axis];
+                    places.push_back(place);
+                }
+    };
+    add(sheet.columns, sheet.rows, 0);
+    add(sheet.rows, sheet.columns, 1);
+    return places;
 }
 
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,

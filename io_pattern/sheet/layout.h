@@ -47,6 +47,11 @@ struct PatternSheet {
     Index rows = 1;
 };
 
+/// Where crosses are printed in the strips that pages share, on every page that shows them; from
+/// the sheet's lower left corner. `page` is the format of the sheet's pages.
+std::vector<Vec2> strip_crosses(const PatternSheet& sheet, const PageFormat& page);
+constexpr double cross_arm = 2.5; // mm
+
 /// A roll of cloth that all pieces lie on, or those of one of the model's materials.
 struct FabricStrip {
     std::string material;
