@@ -155,6 +155,9 @@ declare::Declare<O> with_guide(declare::Declare<O> filter) {
         .boolean(&O::step_numbers, "step_numbers", "Step numbers",
                  "Write the step of the assembly that does it behind the number of each seam: "
                  "12 (3) is seam 12, done in step 3.")
+        .text(&O::piece_materials, "piece_materials", "Materials of pieces",
+              "What some pieces are cut from instead, such as P03=felt, P04=felt: areas are told "
+              "for each material. Limits of strain and allowances stay those of the material.")
         .real(&O::sewing_mm_per_minute, {"sewing_mm_per_minute", 1.0, 1e6},
               "Sewing rate (mm per minute)",
               "Seam that is sewn in a minute, pinning included, in millimetres; for the time "
@@ -212,6 +215,7 @@ declare::ResultValues guide_values(const PatternFile& file) {
             {"opening_from_mm", declare::column(plan.openings, &Opening::from)},
             {"opening_to_mm", declare::column(plan.openings, &Opening::to)},
             {"material_mm2", file.needs.material_mm2},
+            {"piece_material_mm2", declare::column(file.needs.piece_mm2, itself)},
             {"seams_mm", file.needs.seam_mm},
             {"hems_mm", file.needs.hem_mm},
             {"sewing_minutes", file.needs.minutes},
@@ -297,6 +301,7 @@ const declare::FilterDeclaration& export_filter() {
             .result("opening_from_mm", "where each opening begins, in mm from the seam's start")
             .result("opening_to_mm", "where it ends")
             .result("material_mm2", "area inside all cut lines in mm²")
+            .result("piece_material_mm2", "the same of each piece, with its copies")
             .result("seams_mm", "length of all seams in mm")
             .result("hems_mm", "length of all hems in mm")
             .result("sewing_minutes", "time to sew them")

@@ -74,6 +74,7 @@ struct ExportOptions : pattern::PatternOptions {
 
     std::string sizes; // heights in mm, drawn over each other; empty: the one size
 
+    std::string piece_materials; // P03=felt, P04=felt: what these pieces are cut from instead
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
 

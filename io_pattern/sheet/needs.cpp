@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "devseg/assembly/sections.h"
+#include "devseg/base/errors.h"
 #include "devseg/plane/plane.h"
 #include "writers/text.h"
 
@@ -19,6 +21,35 @@ std::string names(const pattern::Pattern& pattern, const std::vector<Index>& pie
                                           : ", ") +
                 pattern.pieces[at(pieces[i])].name;
     return text;
+}
+
+std::string trimmed(const std::string& text) {
+    const std::size_t from = text.find_first_not_of(' ');
+    return from == std::string::npos ? ""
+                                     : text.substr(from, text.find_last_not_of(' ') + 1 - from);
+}
+
+// Of each piece: the one that was given for it, or that of the pattern.
+std::vector<std::string> materials_of(const pattern::Pattern& pattern,
+                                      const ExportOptions& options) {
+    std::vector<std::string> materials(pattern.pieces.size(),
+                                       pattern.material ? pattern.material->name : "");
+    std::stringstream list(options.piece_materials);
+    for (std::string entry; std::getline(list, entry, ',');) {
+        const std::size_t sign = entry.find('=');
+        const std::string name = trimmed(entry.substr(0, sign));
+        const std::string material =
+            sign == std::string::npos ? "" : trimmed(entry.substr(sign + 1));
+        const auto piece = std::find_if(pattern.pieces.begin(), pattern.pieces.end(),
+                                        [&](const auto& p) { return p.name == name; });
+        if (piece == pattern.pieces.end() || material.empty())
+            throw InvalidParameter("piece_materials: expected names of pieces with their material, "
+                                   "such as " +
+                                   pattern.pieces.front().name + "=felt, found '" + trimmed(entry) +
+                                   "'");
+        materials[static_cast<std::size_t>(piece - pattern.pieces.begin())] = material;
+    }
+    return materials;
 }
 
 std::string labels(const pattern::Pattern& pattern, const std::vector<Index>& seams) {
@@ -37,9 +68,21 @@ std::string verb(const ExportOptions& options) {
 Needs find_needs(const pattern::Pattern& pattern, const PatternLayout& layout,
                  const ExportOptions& options, Index pages) {
     Needs needs;
+    needs.piece_mm2.assign(pattern.pieces.size(), 0.0);
     for (const SheetPiece& piece : layout.pieces)
-        for (const std::vector<Vec2>& ring : piece.cut)
+        for (const std::vector<Vec2>& ring : piece.cut) {
             needs.material_mm2 += plane::signed_area(ring);
+            needs.piece_mm2[at(piece.piece)] += plane::signed_area(ring);
+        }
+    const std::vector<std::string> materials = materials_of(pattern, options);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        auto known = std::find_if(needs.materials.begin(), needs.materials.end(),
+                                  [&](const auto& m) { return m.name == materials[i]; });
+        if (known == needs.materials.end())
+            known = needs.materials.insert(known, {materials[i], 0.0, {}});
+        known->mm2 += needs.piece_mm2[i];
+        known->pieces.push_back(static_cast<Index>(i));
+    }
     for (const pattern::Seam& seam : pattern.seams)
         needs.seam_mm += 0.5 * (seam.sides[0].length + seam.sides[1].length);
     needs.hem_mm = pattern.hem_length;
@@ -53,15 +96,18 @@ Needs find_needs(const pattern::Pattern& pattern, const PatternLayout& layout,
     return needs;
 }
 
-std::vector<std::pair<std::string, std::string>> needs_texts(const Needs& needs,
-                                                             const ExportOptions& options) {
+std::vector<std::pair<std::string, std::string>>
+needs_texts(const pattern::Pattern& pattern, const Needs& needs, const ExportOptions& options) {
     const auto number = [](double value, int decimals) {
         return writers::number_text(value, decimals);
     };
     const bool is_sewn = options.craft() == assembly::Craft::sewing;
     std::vector<std::pair<std::string, std::string>> texts;
-    texts.emplace_back(is_sewn ? "Fabric" : "Paper or board",
-                       number(1e-2 * needs.material_mm2, 0) + " cm\xc2\xb2 inside the cut lines");
+    const std::string kind = is_sewn ? "Fabric" : "Paper or board";
+    for (const Needs::Material& m : needs.materials)
+        texts.emplace_back(m.name.empty() ? kind : kind + ", " + m.name,
+                           number(1e-2 * m.mm2, 0) + " cm\xc2\xb2 inside the cut lines" +
+                               (needs.materials.size() > 1 ? ": " + names(pattern, m.pieces) : ""));
     texts.emplace_back("Seams", number(1e-3 * needs.seam_mm, 2) + " m");
     if (needs.hem_mm > 0.0)
         texts.emplace_back("Hems", number(1e-3 * needs.hem_mm, 2) + " m");

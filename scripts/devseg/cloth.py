@@ -25,7 +25,14 @@ MARKER_FORMATS = ("svg", "pdf", "dxf")
 MARKER_OPTIONS = ("fabric_width_mm", "selvedge_mm", "fold", "nap", "copies", "piece_gap_mm")
 MARKER_PARAMETERS = (*MARKER_OPTIONS, "effort")
 # Those that shape the pieces.
-PIECE_PARAMETERS = ("material", "kerf_mm", "thickness_mm", "bend_radius_mm", "k_factor")
+PIECE_PARAMETERS = (
+    "material",
+    "piece_materials",
+    "kerf_mm",
+    "thickness_mm",
+    "bend_radius_mm",
+    "k_factor",
+)
 # Heights of which each gets files of its own; no parameter of the export.
 APART = "sizes_apart"
 _GATHERED_MM = 0.5  # sides of a seam that differ by more are told
@@ -46,6 +53,11 @@ def add_options(group: argparse._ArgumentGroup) -> None:
         type=material,
         metavar="NAME|FILE",
         help="cotton, fleece, leather and others, or a JSON file: limits of strain, nap, allowance",
+    )
+    group.add_argument(
+        "--piece-materials",
+        metavar="P03=NAME,...",
+        help="what some pieces are cut from instead, for the areas that are told",
     )
     group.add_argument(
         "--grain",

@@ -23,7 +23,7 @@ def assembly(results: Mapping[str, Any]) -> dict[str, Any]:
     Args:
         results: of the export filter.
     """
-    width = max(2, len(str(int(results["pieces_number"]))))
+    names = _names(results)
     first, second = _whole(results["seam_first_piece"]), _whole(results["seam_second_piece"])
     done = _whole(results["seam_step"])
     openings = [
@@ -49,22 +49,43 @@ def assembly(results: Mapping[str, Any]) -> dict[str, Any]:
                 "kind": KINDS[kind],
                 "section": _letters(section),
                 "seams": seams,
-                "pieces": [f"P{piece + 1:0{width}d}" for piece in pieces],
+                "pieces": [names[piece] for piece in pieces],
             }
         )
     return {
         "sections": {
-            f"P{piece + 1:0{width}d}": _letters(section)
-            for piece, section in enumerate(_whole(results["piece_section"]))
+            name: _letters(section)
+            for name, section in zip(names, _whole(results["piece_section"]), strict=True)
         },
         "steps": steps,
         "openings": openings,
     }
 
 
-def needs(results: Mapping[str, Any]) -> dict[str, Any]:
-    """Areas, lengths, time, stuffing and paper."""
-    return {name: results[name] for name in NEEDS}
+def needs(results: Mapping[str, Any], parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Areas, lengths, time, stuffing and paper.
+
+    Args:
+        results: of the export filter.
+        parameters: that it was given; they name the materials.
+    """
+    usual = str(parameters.get("material", "")).split(",")[0].strip()
+    other = {}
+    for entry in filter(None, str(parameters.get("piece_materials", "")).split(",")):
+        piece, material = entry.split("=", 1)
+        other[piece.strip()] = material.strip()
+    areas: dict[str, float] = {}
+    for name, area in zip(_names(results), results["piece_material_mm2"], strict=True):
+        material = other.get(name, usual) or "any"
+        areas[material] = areas.get(material, 0.0) + float(area)
+    return {**{name: results[name] for name in NEEDS}, "materials_mm2": areas}
+
+
+def _names(results: Mapping[str, Any]) -> list[str]:
+    """Of the pieces, in their order."""
+    count = int(results["pieces_number"])
+    width = max(2, len(str(count)))
+    return [f"P{piece:0{width}d}" for piece in range(1, count + 1)]
 
 
 def _whole(values: Any) -> list[int]:

@@ -48,7 +48,10 @@ class PatternWriter:
                 results = self.session.export(target, parameters)
                 if suffix:
                     self.outputs[f"{extension}{suffix}"] = target.name
-            self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
+            self.guide = {
+                "assembly": guide.assembly(results),
+                "needs": guide.needs(results, plain),
+            }
             if "material" in plain:
                 self.guide["cloth"] = cloth.strains(results, plain["material"])
         for extension in self.options.formats:

@@ -85,7 +85,8 @@ def test_what_a_ball_needs(flattened: Any, tmp_path: Path) -> None:
     def needs(**parameters: Any) -> dict[str, Any]:
         path = str(tmp_path / "ball.svg")
         options = {"mm_per_unit": SCALE, **parameters}
-        return guide.needs(flattened.apply_filter("export_pattern", output_file=path, **options))
+        results = flattened.apply_filter("export_pattern", output_file=path, **options)
+        return guide.needs(results, options)
 
     plain = needs()
     surface = 4 * np.pi * SCALE**2
@@ -99,6 +100,14 @@ def test_what_a_ball_needs(flattened: Any, tmp_path: Path) -> None:
     assert sewn["sewing_minutes"] == pytest.approx(sewn["seams_mm"] / 200)
     assert sewn["stuffing_g"] == pytest.approx(10 * sewn["stuffing_litres"])
     assert sewn["paper_sheets_number"] > 0
+    assert plain["materials_mm2"] == {"any": pytest.approx(plain["material_mm2"])}
+    kinds = needs(material="fleece", piece_materials="P02=felt, P04 = felt")["materials_mm2"]
+    assert list(kinds) == ["fleece", "felt"]
+    assert sum(kinds.values()) == pytest.approx(plain["material_mm2"], rel=1e-6)
+    assert 0.1 < kinds["felt"] / plain["material_mm2"] < 0.6
+    for wrong in ("P99=felt", "P02", "P02="):
+        with pytest.raises(Exception, match="piece_materials: expected names of pieces"):
+            needs(piece_materials=wrong)
     folded = needs(preset="Papercraft")
     assert folded["stuffing_litres"] == 0 and folded["sewing_minutes"] == 0
 
