@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "devseg/base/parallel.h"
 #include "devseg/judge/final_map.h"
+#include "devseg/methods/dcharts/coarse_trials.h"
 #include "devseg/methods/dcharts/cut_exchange.h"
 #include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
@@ -23,11 +25,13 @@ using judge::TrialMap;
 // another part costs.
 struct Verdict {
     TrialMap map;       // of the joined chart
+    TrialMap coarse;    // the same on the coarse surface, where it was tried there
     double added = 0.0; // excess
     double saved = 0.0; // length of seam, internal units
     bool whole = false; // the whole border of two charts
     bool tried = false;
     bool fresh = false; // found with the charts as they are now
+    bool is_coarse = false; // `map` is that of the coarse surface
     bool confirmed = false;
 };
 using Verdicts = std::map<std::vector<Index>, std::pair<Closing, Verdict>>; // by edges, ascending
@@ -45,6 +49,7 @@ public:
             auto trying = progress.part(0.0); // joins say how far it is
             Entry* best = nullptr;
             do {
+                prepare(trying);
                 try_promising(trying);
                 best = choose(progress);
                 if (best == nullptr && try_old_again(trying))
@@ -63,6 +68,12 @@ public:
 
 private:
     using Entry = std::pair<Closing, Verdict>;
+
+    // Trials on a coarse surface, where that is worth it.
+    void prepare(Progress& progress) {
+        if (!coarse_ && CoarseTrials::pay(mesh_, draft_))
+            coarse_.emplace(mesh_, draft_, chains_.corners(), options_.chart.l2, progress);
+    }
 
     // All closings that there are now, those known with their verdicts.
     void propose(const Progress& progress) {
@@ -88,6 +99,9 @@ private:
                 if (partly_)
                     add_parts(part, last);
             if (exchanging_ && charts.first == charts.second)
+                for (Closing& other : rerouted_cuts(mesh_, draft_, charts.first, progress))
+                    add(std::move(other), false, last);
+            if (exchanging_ && charts.first == charts.second)
                 for (Closing& part : parts) {
                     part.opened = shorter_cut(mesh_, draft_, part, progress);
                     if (!part.opened.empty())
@@ -103,6 +117,7 @@ private:
         const double excess = draft_.excess();
         for (const bool at_end : {false, true})
             for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {
+                count = up_to_kept_vertex(chain.edges, at_end, count);
                 const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
                                           : chain.edges.begin();
                 Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}, {}};
@@ -112,6 +127,20 @@ private:
                 if (entry == nullptr || price(*entry, excess) < infinite)
                     break;
             }
+    }
+
+    // Fewer edges from an end of a chain, up to a vertex that the coarse surface has.
+    std::size_t up_to_kept_vertex(const std::vector<Index>& edges, bool at_end,
+                                  std::size_t count) const {
+        const auto is_kept = [&](std::size_t n) {
+            const HalfEdge h = edges[at_end ? edges.size() - n : n - 1];
+            const HalfEdge k = edges[at_end ? edges.size() - n - 1 : n];
+            const Vertex v = mesh_.origin(h);
+            return coarse_->has(v == mesh_.origin(k) || v == mesh_.target(k) ? v : mesh_.target(h));
+        };
+        while (coarse_ && count > 0 && !is_kept(count))
+            --count;
+        return count;
     }
 
     double length_of(const std::vector<Index>& edges) const {
@@ -204,17 +233,40 @@ private:
             static_cast<int>(entries.size()),
             [&](int i) {
                 auto& [closing, verdict] = *entries[at(i)];
-                TrialEffort effort;
-                effort.wanted_l2 = bounds_of(closing.charts).l2;
-                effort.give_up = true;
-                effort.only_near = !verdict.whole && closing.opened.empty();
-                effort.only_apart = options_.keep_corners;
-                assess(closing,
-                       judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
-                                        effort, progress, joined_turns(mesh_, draft_, closing)),
-                       verdict);
+                verdict.is_coarse = coarse_ && closing.opened.empty();
+                verdict.coarse = {};
+                const TrialEffort effort = search_effort(closing, verdict);
+                if (verdict.is_coarse)
+                    try_coarse(closing, effort, {}, progress, verdict);
+                else
+                    assess(closing, try_fine(closing, effort, {}, progress), verdict);
             },
             progress);
+    }
+
+    TrialEffort search_effort(const Closing& closing, const Verdict& verdict) const {
+        TrialEffort effort;
+        effort.wanted_l2 = bounds_of(closing.charts).l2;
+        effort.give_up = true;
+        effort.only_near = !verdict.whole && closing.opened.empty();
+        effort.only_apart = options_.keep_corners;
+        return effort;
+    }
+
+    // From `turns`, or from the maps of the charts.
+    TrialMap try_fine(const Closing& closing, const TrialEffort& effort, std::vector<Vec2> turns,
+                      const Progress& progress) const {
+        if (turns.empty())
+            turns = joined_turns(mesh_, draft_, closing);
+        return judge::try_chart(mesh_, united_faces(draft_, closing.charts), seam_without(closing),
+                                effort, progress, turns);
+    }
+    void try_coarse(const Closing& closing, const TrialEffort& effort, std::vector<Vec2> turns,
+                    const Progress& progress, Verdict& verdict) const {
+        verdict.coarse = coarse_->try_closing(closing, seam_without(closing), effort,
+                                              std::move(turns), progress);
+        assess(closing, verdict.coarse, coarse_->map(closing.charts.first),
+               coarse_->map(closing.charts.second), verdict);
     }
 
     // Whole borders with old verdicts. False where there is none.
@@ -229,26 +281,18 @@ private:
     }
 
     void assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
-        const auto [first, second] = closing.charts;
-        const TrialMap& a = draft_.map[first];
-        const TrialMap& b = draft_.map[second];
-        const bool is_join = first != second;
+        assess(closing, std::move(map), draft_.map[closing.charts.first],
+               draft_.map[closing.charts.second], verdict);
+    }
+    void assess(const Closing& closing, TrialMap map, const TrialMap& a, const TrialMap& b,
+                Verdict& verdict) const {
+        const bool is_join = closing.charts.first != closing.charts.second;
         verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
         verdict.saved = length_of(closing.edges) - length_of(closing.opened) - map.cut_length +
                         a.cut_length + (is_join ? b.cut_length : 0.0);
         verdict.map = std::move(map);
         verdict.tried = verdict.fresh = true;
         verdict.confirmed = false;
-    }
-
-    std::vector<Index> united(const Pair& pair) const {
-        const std::vector<Index>& a = draft_.faces[pair.first];
-        if (pair.first == pair.second)
-            return a;
-        const std::vector<Index>& b = draft_.faces[pair.second];
-        std::vector<Index> faces(a.size() + b.size());
-        std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
-        return faces;
     }
 
     // The cuts inside the joined chart: those of both, and what is left of the border.
@@ -343,7 +387,8 @@ private:
                         stale.push_back(order[i].second);
                 auto trying = progress.part(0.0);
                 try_again(stale, trying);
-            } else if (verdict.confirmed || (!options_.confirm && !verdict.map.overlaps)) {
+            } else if (verdict.confirmed ||
+                       (!options_.confirm && !verdict.is_coarse && !verdict.map.overlaps)) {
                 return order.front().second;
             } else {
                 confirm(closing, verdict, progress);
@@ -351,22 +396,29 @@ private:
         }
     }
 
-    // Overlaps first: a final map that lies on itself is cut apart, which takes long.
+    // On the coarse surface first, where there is one. Overlaps before the final map: one that lies
+    // on itself is cut apart, which takes long.
     void confirm(const Closing& closing, Verdict& verdict, Progress& progress) {
-        const std::vector<std::uint8_t> seam = seam_without(closing);
-        if (verdict.map.overlaps) {
-            TrialEffort effort;
-            effort.wanted_l2 = bounds_of(closing.charts).l2;
-            effort.push_apart = true;
-            TrialMap map = judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
-                                            verdict.map.turns);
+        TrialEffort apart;
+        apart.wanted_l2 = bounds_of(closing.charts).l2;
+        apart.push_apart = true;
+        if (verdict.is_coarse && verdict.map.overlaps) {
+            try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
+            verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
+        }
+        if (verdict.map.flat && (verdict.is_coarse ? !options_.confirm : verdict.map.overlaps)) {
+            apart.give_up = verdict.is_coarse;
+            TrialMap map = try_fine(closing, apart,
+                                    verdict.is_coarse ? std::vector<Vec2>() : verdict.map.turns,
+                                    progress);
             map.flat = map.flat && !map.overlaps;
             assess(closing, std::move(map), verdict);
         }
         if (options_.confirm && verdict.map.flat) {
             auto judging = progress.part(0.0);
-            TrialMap map =
-                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
+            TrialMap map = judge::final_maps(mesh_, {united_faces(draft_, closing.charts)},
+                                             seam_without(closing), judging)
+                               .front();
             map.cut_length = verdict.map.cut_length;
             assess(closing, std::move(map), verdict);
         }
@@ -380,10 +432,15 @@ private:
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
         draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;
+        const bool is_anew = coarse_ && !verdict.is_coarse;
+        if (is_anew)
+            coarse_.reset();
+        else if (coarse_)
+            coarse_->close(closing.charts, verdict.coarse);
         if (!open_.empty())
             open_[at(a)] = open_[at(b)] = 1;
         if (a != b) {
-            draft_.faces[a] = united(closing.charts);
+            draft_.faces[a] = united_faces(draft_, closing.charts);
             for (const Face f : draft_.faces[b])
                 draft_.chart[f] = a;
             draft_.faces[b].clear();
@@ -391,7 +448,7 @@ private:
         }
         for (auto& [edges, entry] : verdicts_) {
             const auto [first, second] = entry.first.charts;
-            if (first == a || second == a || first == b || second == b)
+            if (first == a || second == a || first == b || second == b || is_anew)
                 entry.second.fresh = false;
         }
     }
@@ -400,6 +457,7 @@ private:
     const MergeOptions& options_;
     Draft& draft_;
     SeamChains chains_;
+    std::optional<CoarseTrials> coarse_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
     bool partly_ = false;            // parts of borders are closed as well
     bool exchanging_ = false;        // cuts are tried in other places as well
