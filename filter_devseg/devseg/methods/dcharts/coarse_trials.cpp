@@ -44,8 +44,7 @@ CoarseTrials::CoarseTrials(const Mesh& mesh, const Draft& draft,
     std::vector<std::uint8_t> seam(coarse_.mesh.twin.size(), 0);
     std::vector<Index> by_line(mesh.twin.size(), -1);
     for (const HalfEdge h : coarse_.mesh.all_half_edges()) {
-        const Index number =
-            line[at(half_edge_of(coarse_.face[face_of(h)], corner_of(h)))];
+        const Index number = line[at(half_edge_of(coarse_.face[face_of(h)], corner_of(h)))];
         if (number < 0)
             continue;
         by_line[at(number)] = std::min<Index>(h, coarse_.mesh.twin[h]);
@@ -62,8 +61,7 @@ CoarseTrials::CoarseTrials(const Mesh& mesh, const Draft& draft,
 
 judge::TrialMap CoarseTrials::try_closing(const Closing& closing,
                                           const std::vector<std::uint8_t>& seam,
-                                          const judge::TrialEffort& effort,
-                                          std::vector<Vec2> turns,
+                                          const judge::TrialEffort& effort, std::vector<Vec2> turns,
                                           const Progress& progress) const {
     Closing coarse{closing.charts, {}, {}};
     for (const Index h : closing.edges)

@@ -208,7 +208,8 @@ private:
             }
     }
 
-    void reach(Index goal, std::vector<std::uint8_t>& reached, graph::ShortestPaths<>& paths) const {
+    void reach(Index goal, std::vector<std::uint8_t>& reached,
+               graph::ShortestPaths<>& paths) const {
         reached[at(goal)] = 1;
         for (const Index v : goals_[at(goal)])
             paths.add_source(v);

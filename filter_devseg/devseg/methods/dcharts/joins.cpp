@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "devseg/base/parallel.h"
-#include "devseg/judge/final_map.h"
-#include "devseg/methods/dcharts/coarse_trials.h"
+#include "devseg/methods/dcharts/closing_trials.h"
 #include "devseg/methods/dcharts/cut_exchange.h"
-#include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
 
@@ -18,29 +15,14 @@ namespace devseg::dcharts {
 
 namespace {
 
-using judge::TrialEffort;
 using judge::TrialMap;
-// What a trial has found. It is tried again, after its charts have changed, only where the older
-// verdict makes it the best that there is, and at the end: the more of a chart is closed, the more
-// another part costs.
-struct Verdict {
-    TrialMap map;       // of the joined chart
-    TrialMap coarse;    // the same on the coarse surface, where it was tried there
-    double added = 0.0; // excess
-    double saved = 0.0; // length of seam, internal units
-    bool whole = false; // the whole border of two charts
-    bool tried = false;
-    bool fresh = false; // found with the charts as they are now
-    bool is_coarse = false; // `map` is that of the coarse surface
-    bool confirmed = false;
-};
 using Verdicts = std::map<std::vector<Index>, std::pair<Closing, Verdict>>; // by edges, ascending
 
 class Joining {
 public:
     Joining(const Mesh& mesh, const MergeOptions& options, Draft& draft)
         : mesh_(mesh), options_(options), draft_(draft), chains_(mesh, options.keep_corners),
-          open_(options.open) {}
+          trials_(mesh, options, draft), open_(options.open) {}
 
     void run(Progress& progress) {
         const auto start = static_cast<double>(draft_.charts_number());
@@ -49,7 +31,7 @@ public:
             auto trying = progress.part(0.0); // joins say how far it is
             Entry* best = nullptr;
             do {
-                prepare(trying);
+                trials_.prepare(chains_.corners(), trying);
                 try_promising(trying);
                 best = choose(progress);
                 if (best == nullptr && try_old_again(trying))
@@ -68,12 +50,6 @@ public:
 
 private:
     using Entry = std::pair<Closing, Verdict>;
-
-    // Trials on a coarse surface, where that is worth it.
-    void prepare(Progress& progress) {
-        if (!coarse_ && CoarseTrials::pay(mesh_, draft_))
-            coarse_.emplace(mesh_, draft_, chains_.corners(), options_.chart.l2, progress);
-    }
 
     // All closings that there are now, those known with their verdicts.
     void propose(const Progress& progress) {
@@ -121,7 +97,7 @@ private:
                 const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
                                           : chain.edges.begin();
                 Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}, {}};
-                if (length_of(part.edges) < least)
+                if (length_of(mesh_, part.edges) < least)
                     break;
                 const Entry* entry = add(std::move(part), false, last);
                 if (entry == nullptr || price(*entry, excess) < infinite)
@@ -136,18 +112,11 @@ private:
             const HalfEdge h = edges[at_end ? edges.size() - n : n - 1];
             const HalfEdge k = edges[at_end ? edges.size() - n - 1 : n];
             const Vertex v = mesh_.origin(h);
-            return coarse_->has(v == mesh_.origin(k) || v == mesh_.target(k) ? v : mesh_.target(h));
+            return trials_.has(v == mesh_.origin(k) || v == mesh_.target(k) ? v : mesh_.target(h));
         };
-        while (coarse_ && count > 0 && !is_kept(count))
+        while (count > 0 && !is_kept(count))
             --count;
         return count;
-    }
-
-    double length_of(const std::vector<Index>& edges) const {
-        double length = 0.0;
-        for (const HalfEdge h : edges)
-            length += mesh_.edge_length(h);
-        return length;
     }
 
     // Returns what is known of it.
@@ -233,40 +202,9 @@ private:
             static_cast<int>(entries.size()),
             [&](int i) {
                 auto& [closing, verdict] = *entries[at(i)];
-                verdict.is_coarse = coarse_ && closing.opened.empty();
-                verdict.coarse = {};
-                const TrialEffort effort = search_effort(closing, verdict);
-                if (verdict.is_coarse)
-                    try_coarse(closing, effort, {}, progress, verdict);
-                else
-                    assess(closing, try_fine(closing, effort, {}, progress), verdict);
+                trials_.attempt(closing, verdict, progress);
             },
             progress);
-    }
-
-    TrialEffort search_effort(const Closing& closing, const Verdict& verdict) const {
-        TrialEffort effort;
-        effort.wanted_l2 = bounds_of(closing.charts).l2;
-        effort.give_up = true;
-        effort.only_near = !verdict.whole && closing.opened.empty();
-        effort.only_apart = options_.keep_corners;
-        return effort;
-    }
-
-    // From `turns`, or from the maps of the charts.
-    TrialMap try_fine(const Closing& closing, const TrialEffort& effort, std::vector<Vec2> turns,
-                      const Progress& progress) const {
-        if (turns.empty())
-            turns = joined_turns(mesh_, draft_, closing);
-        return judge::try_chart(mesh_, united_faces(draft_, closing.charts), seam_without(closing),
-                                effort, progress, turns);
-    }
-    void try_coarse(const Closing& closing, const TrialEffort& effort, std::vector<Vec2> turns,
-                    const Progress& progress, Verdict& verdict) const {
-        verdict.coarse = coarse_->try_closing(closing, seam_without(closing), effort,
-                                              std::move(turns), progress);
-        assess(closing, verdict.coarse, coarse_->map(closing.charts.first),
-               coarse_->map(closing.charts.second), verdict);
     }
 
     // Whole borders with old verdicts. False where there is none.
@@ -280,59 +218,12 @@ private:
         return !old.empty();
     }
 
-    void assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
-        assess(closing, std::move(map), draft_.map[closing.charts.first],
-               draft_.map[closing.charts.second], verdict);
-    }
-    void assess(const Closing& closing, TrialMap map, const TrialMap& a, const TrialMap& b,
-                Verdict& verdict) const {
-        const bool is_join = closing.charts.first != closing.charts.second;
-        verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
-        verdict.saved = length_of(closing.edges) - length_of(closing.opened) - map.cut_length +
-                        a.cut_length + (is_join ? b.cut_length : 0.0);
-        verdict.map = std::move(map);
-        verdict.tried = verdict.fresh = true;
-        verdict.confirmed = false;
-    }
-
-    // The cuts inside the joined chart: those of both, and what is left of the border.
-    std::vector<std::uint8_t> seam_without(const Closing& closing) const {
-        std::vector<std::uint8_t> seam = draft_.seam;
-        for (const HalfEdge h : left_border(mesh_, draft_, closing))
-            seam[h] = seam[mesh_.twin[h]] = 1;
-        for (const HalfEdge h : closing.edges)
-            seam[h] = seam[mesh_.twin[h]] = 0;
-        for (const HalfEdge h : closing.opened)
-            seam[h] = seam[mesh_.twin[h]] = 1;
-        return seam;
-    }
-
-    // Stretch up to which a joined chart may be worth having.
-    StretchBounds bounds_of(const Pair& pair) const {
-        const TrialMap& a = draft_.map[pair.first];
-        const TrialMap& b = draft_.map[pair.second];
-        StretchBounds limit = options_.chart;
-        limit.linf = std::max(limit.linf, tuning.like_spot * std::max(a.linf, b.linf));
-        if (std::min(a.area, b.area) < options_.small_share * mesh_.total_area &&
-            pair.first != pair.second) {
-            limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
-            limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
-            limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
-        }
-        // Nobody cuts out a splinter: it may be as stretched as it likes, for it adds nothing.
-        if (std::min(a.area, b.area) < tuning.negligible * mesh_.total_area)
-            limit.linf = infinite;
-        limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
-        limit.linf = std::min(limit.linf, options_.chart.hard_linf);
-        return limit;
-    }
-
     // Stretch for each length of seam that the closing saves; infinite where it may not be.
     double price(const Entry& entry, double excess) const {
         const auto& [closing, verdict] = entry;
         const bool may_overlap = !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
-            !bounds_of(closing.charts).hold(verdict.map) ||
+            !trials_.bounds_of(closing.charts).hold(verdict.map) ||
             !(excess + verdict.added <= options_.max_excess) ||
             !is_worth(closing.charts, verdict.saved))
             return infinite;
@@ -346,7 +237,7 @@ private:
     // No trial finds a lower price: as if the map added no stretch, and needed no cut.
     double least_price(const Closing& closing) const {
         const auto [first, second] = closing.charts;
-        const double saved = length_of(closing.edges) + draft_.map[first].cut_length +
+        const double saved = length_of(mesh_, closing.edges) + draft_.map[first].cut_length +
                              (first != second ? draft_.map[second].cut_length : 0.0);
         return is_worth(closing.charts, saved) ? price_of(0.0, saved) : infinite;
     }
@@ -387,56 +278,22 @@ private:
                         stale.push_back(order[i].second);
                 auto trying = progress.part(0.0);
                 try_again(stale, trying);
-            } else if (verdict.confirmed ||
-                       (!options_.confirm && !verdict.is_coarse && !verdict.map.overlaps)) {
+            } else if (trials_.is_sure(verdict)) {
                 return order.front().second;
             } else {
-                confirm(closing, verdict, progress);
+                trials_.confirm(closing, verdict, progress);
             }
         }
     }
 
-    // On the coarse surface first, where there is one. Overlaps before the final map: one that lies
-    // on itself is cut apart, which takes long.
-    void confirm(const Closing& closing, Verdict& verdict, Progress& progress) {
-        TrialEffort apart;
-        apart.wanted_l2 = bounds_of(closing.charts).l2;
-        apart.push_apart = true;
-        if (verdict.is_coarse && verdict.map.overlaps) {
-            try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
-            verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
-        }
-        if (verdict.map.flat && (verdict.is_coarse ? !options_.confirm : verdict.map.overlaps)) {
-            apart.give_up = verdict.is_coarse;
-            TrialMap map = try_fine(closing, apart,
-                                    verdict.is_coarse ? std::vector<Vec2>() : verdict.map.turns,
-                                    progress);
-            map.flat = map.flat && !map.overlaps;
-            assess(closing, std::move(map), verdict);
-        }
-        if (options_.confirm && verdict.map.flat) {
-            auto judging = progress.part(0.0);
-            TrialMap map = judge::final_maps(mesh_, {united_faces(draft_, closing.charts)},
-                                             seam_without(closing), judging)
-                               .front();
-            map.cut_length = verdict.map.cut_length;
-            assess(closing, std::move(map), verdict);
-        }
-        verdict.confirmed = true;
-    }
-
     void close(const Closing& closing, const Verdict& verdict) {
         const auto [a, b] = closing.charts;
-        draft_.seam = seam_without(closing);
+        draft_.seam = trials_.seam_without(closing);
         const std::vector<HalfEdge> left = left_border(mesh_, draft_, closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
         draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;
-        const bool is_anew = coarse_ && !verdict.is_coarse;
-        if (is_anew)
-            coarse_.reset();
-        else if (coarse_)
-            coarse_->close(closing.charts, verdict.coarse);
+        const bool is_anew = trials_.close(closing, verdict);
         if (!open_.empty())
             open_[at(a)] = open_[at(b)] = 1;
         if (a != b) {
@@ -457,7 +314,7 @@ private:
     const MergeOptions& options_;
     Draft& draft_;
     SeamChains chains_;
-    std::optional<CoarseTrials> coarse_;
+    ClosingTrials trials_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
     bool partly_ = false;            // parts of borders are closed as well
     bool exchanging_ = false;        // cuts are tried in other places as well
