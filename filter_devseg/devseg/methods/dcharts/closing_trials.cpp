@@ -123,9 +123,10 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
     }
     if (options_.confirm && verdict.map.flat) {
         auto judging = progress.part(0.0);
-        TrialMap map = judge::final_maps(mesh_, {united_faces(draft_, closing.charts)},
-                                         seam_without(closing), judging)
-                           .front();
+        TrialMap map =
+            judge::whole_maps(mesh_, {united_faces(draft_, closing.charts)}, seam_without(closing),
+                              bounds_of(closing.charts).l2, judging)
+                .front();
         map.cut_length = verdict.map.cut_length;
         assess(closing, std::move(map), verdict);
     }
