@@ -27,6 +27,10 @@ void ClosingTrials::prepare(const std::vector<std::uint8_t>& fixed, Progress& pr
 
 void ClosingTrials::attempt(const Closing& closing, Verdict& verdict,
                             const Progress& progress) const {
+    if (verdict.refused) {
+        verdict.fresh = verdict.confirmed = true;
+        return;
+    }
     TrialEffort effort;
     effort.wanted_l2 = bounds_of(closing.charts).l2;
     effort.give_up = true;
@@ -56,6 +60,7 @@ void ClosingTrials::try_coarse(const Closing& closing, const TrialEffort& effort
         coarse_->try_closing(closing, seam_without(closing), effort, std::move(turns), progress);
     assess(closing, verdict.coarse, coarse_->map(closing.charts.first),
            coarse_->map(closing.charts.second), verdict);
+    verdict.added += verdict.hidden;
 }
 
 void ClosingTrials::assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
@@ -114,14 +119,15 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
         try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
         verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
     }
-    if (verdict.map.flat && (verdict.is_coarse ? !options_.confirm : verdict.map.overlaps)) {
+    const double expected = verdict.added - verdict.hidden;
+    if (verdict.map.flat && (verdict.is_coarse || verdict.map.overlaps)) {
         apart.give_up = verdict.is_coarse;
         TrialMap map = try_fine(
             closing, apart, verdict.is_coarse ? std::vector<Vec2>() : verdict.map.turns, progress);
         map.flat = map.flat && !map.overlaps;
         assess(closing, std::move(map), verdict);
     }
-    if (options_.confirm && verdict.map.flat) {
+    if (options_.confirm && verdict.map.flat && bounds_of(closing.charts).hold(verdict.map)) {
         auto judging = progress.part(0.0);
         TrialMap map =
             judge::whole_maps(mesh_, {united_faces(draft_, closing.charts)}, seam_without(closing),
@@ -129,8 +135,18 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
                 .front();
         map.cut_length = verdict.map.cut_length;
         assess(closing, std::move(map), verdict);
+        verdict.refused = !verdict.map.flat || !bounds_of(closing.charts).hold(verdict.map);
     }
+    if (verdict.is_coarse && verdict.map.flat)
+        verdict.hidden = std::max(0.0, verdict.added - expected);
     verdict.confirmed = true;
+}
+
+bool ClosingTrials::holds(const Closing& closing, const Verdict& verdict) const {
+    StretchBounds bounds = bounds_of(closing.charts);
+    if (verdict.is_coarse && !verdict.confirmed)
+        bounds.linf = infinite;
+    return bounds.hold(verdict.map);
 }
 
 bool ClosingTrials::close(const Closing& closing, const Verdict& verdict) {

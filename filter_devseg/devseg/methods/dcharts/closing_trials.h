@@ -23,6 +23,8 @@ struct Verdict {
     bool fresh = false;     // found with the charts as they are now
     bool is_coarse = false; // it was tried on the coarse surface
     bool confirmed = false; // on the surface itself
+    bool refused = false;   // by the final map, which other joins do not make better
+    double hidden = 0.0;    // excess that the coarse surface did not show
 };
 
 class ClosingTrials {
@@ -50,6 +52,10 @@ public:
         return verdict.confirmed ||
                (!options_.confirm && !verdict.is_coarse && !verdict.map.overlaps);
     }
+
+    /// Whether the joined chart's stretch is within its bounds. Worst spots are other ones on the
+    /// coarse surface: only the mean counts there.
+    bool holds(const Closing& closing, const Verdict& verdict) const;
 
     /// Takes a closing over; true where all verdicts are old by that. The draft has it not yet.
     bool close(const Closing& closing, const Verdict& verdict);

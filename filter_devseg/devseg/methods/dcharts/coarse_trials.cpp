@@ -10,8 +10,9 @@ namespace devseg::dcharts {
 
 namespace {
 
-Index coarse_faces(const Draft& draft) {
-    return std::max(tuning.trial_faces, tuning.trial_faces_per_chart * draft.charts_number());
+Index coarse_faces(const Mesh& mesh, const Draft& draft) {
+    return std::max({tuning.trial_faces, tuning.trial_faces_per_chart * draft.charts_number(),
+                     static_cast<Index>(tuning.trial_share * mesh.face_count())});
 }
 
 // Borders and cuts, 3 #F.
@@ -26,14 +27,14 @@ std::vector<std::uint8_t> lines_of(const Mesh& mesh, const Draft& draft) {
 } // namespace
 
 bool CoarseTrials::pay(const Mesh& mesh, const Draft& draft) {
-    return mesh.face_count() > tuning.worth_decimation * coarse_faces(draft);
+    return mesh.face_count() > tuning.worth_decimation * coarse_faces(mesh, draft);
 }
 
 CoarseTrials::CoarseTrials(const Mesh& mesh, const Draft& draft,
                            const std::vector<std::uint8_t>& fixed, double wanted_l2,
                            Progress& progress)
-    : coarse_(mesh::coarsen_between_lines(mesh, coarse_faces(draft), lines_of(mesh, draft), fixed,
-                                          progress)),
+    : coarse_(mesh::coarsen_between_lines(mesh, coarse_faces(mesh, draft), lines_of(mesh, draft),
+                                          fixed, progress)),
       has_(mesh.points.size(), 0), edge_(mesh.twin.size(), -1) {
     for (const Index v : coarse_.vertex)
         has_[at(v)] = 1;

@@ -223,8 +223,7 @@ private:
         const auto& [closing, verdict] = entry;
         const bool may_overlap = !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
-            !trials_.bounds_of(closing.charts).hold(verdict.map) ||
-            !(excess + verdict.added <= options_.max_excess) ||
+            !trials_.holds(closing, verdict) || !(excess + verdict.added <= options_.max_excess) ||
             !is_worth(closing.charts, verdict.saved))
             return infinite;
         return price_of(verdict.added, verdict.saved);
