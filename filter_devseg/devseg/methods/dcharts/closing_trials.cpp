@@ -13,6 +13,15 @@ namespace devseg::dcharts {
 using judge::TrialEffort;
 using judge::TrialMap;
 
+namespace {
+
+// L2 stretch on the coarse surface up to which it may be within the bound.
+double coarse_bound(double l2) {
+    return std::sqrt(1.0 + tuning.coarse_slack * (l2 * l2 - 1.0));
+}
+
+} // namespace
+
 double length_of(const Mesh& mesh, const std::vector<Index>& edges) {
     double length = 0.0;
     for (const HalfEdge h : edges)
@@ -38,6 +47,8 @@ void ClosingTrials::attempt(const Closing& closing, Verdict& verdict,
     effort.only_apart = options_.keep_corners;
     verdict.is_coarse = coarse_ && closing.opened.empty();
     verdict.coarse = {};
+    if (verdict.is_coarse)
+        effort.wanted_l2 = coarse_bound(effort.wanted_l2);
     if (verdict.is_coarse)
         try_coarse(closing, effort, {}, progress, verdict);
     else
@@ -109,16 +120,11 @@ StretchBounds ClosingTrials::bounds_of(const Pair& pair) const {
     return limit;
 }
 
-// On the coarse surface first, where there is one. Overlaps before the final map: one that lies
-// on itself is cut apart, which takes long.
+// Overlaps before the final map: it takes longer.
 void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& progress) const {
     TrialEffort apart;
     apart.wanted_l2 = bounds_of(closing.charts).l2;
     apart.push_apart = !options_.keep_corners;
-    if (verdict.is_coarse && verdict.map.overlaps) {
-        try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
-        verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
-    }
     const double expected = verdict.added - verdict.hidden;
     if (verdict.map.flat && (verdict.is_coarse || verdict.map.overlaps)) {
         apart.give_up = verdict.is_coarse;
@@ -144,8 +150,10 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
 
 bool ClosingTrials::holds(const Closing& closing, const Verdict& verdict) const {
     StretchBounds bounds = bounds_of(closing.charts);
-    if (verdict.is_coarse && !verdict.confirmed)
+    if (verdict.is_coarse && !verdict.confirmed) {
         bounds.linf = infinite;
+        bounds.l2 = coarse_bound(bounds.l2);
+    }
     return bounds.hold(verdict.map);
 }
 

@@ -50,6 +50,7 @@ struct Tuning {
     double worth_decimation = 2.0;         // faces over those of the coarse surface
     Index trial_faces = 3000;              // of the surface on which joins are tried, at least,
     Index trial_faces_per_chart = 100;     // and for each chart,
+    double coarse_slack = 2.0;             // of the bound of l2² − 1 there: creases are coarser
     double trial_share = 0.06;             // and of all faces
     double rough = 0.002;       // l2² − 1 of small neighbourhoods: less is tessellation
     double least_chart = 0.002; // of the surface: less are slivers nobody wants to cut out
