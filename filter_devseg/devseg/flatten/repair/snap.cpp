@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "devseg/flatten/energy/map_tools.h"
 
@@ -26,8 +27,7 @@ struct Tuning {
     // each corner by 0.71 of them at most, and so changes a height by 1.41.
     double grid_height = 4.0;
     double reached = 1.05; // of the least height: what a face that is lower gets
-    int room_rounds =
-        400; // visits of each low face: rows of needles push others away, step by step
+    int room_rounds = 400; // visits of each low face: rows of needles push others away step by step
 };
 constexpr Tuning tuning;
 
@@ -65,41 +65,42 @@ double unit_in_last_place(const Vec2& p) {
     return static_cast<double>(std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
 }
 
+// Moves vertices on the grid so that the faces around them come nearest to the areas that they had.
 class AreaKeeper {
 public:
-    AreaKeeper(const std::vector<Triangle>& faces, std::vector<Vec2>& uv)
-        : faces_(faces), uv_(uv), stars_(build_stars(faces, uv.size())) {}
+    // `area`: twice that of each face.
+    AreaKeeper(const std::vector<Triangle>& faces, std::vector<double> area, std::vector<Vec2>& uv)
+        : faces_(faces), area_(std::move(area)), uv_(uv), stars_(build_stars(faces, uv.size())) {}
 
-    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
-    // to `area` (twice its area).
-    void restore_area(Face face, double area) {
+    void restore(Face face) {
         for (const Vertex v : faces_[face]) {
             const Vec2 home = uv_[v];
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
-            double least = std::abs(twice_area(face) - area);
+            double least = loss_around(v);
             const int most = is_inside(v) ? tuning.grid_reach : tuning.boundary_reach;
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
                     uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
-                    const double off = std::abs(twice_area(face) - area);
-                    if (off < least && flipped_around(v) == 0) {
-                        least = off;
+                    const double loss = loss_around(v);
+                    if (loss < least) {
+                        least = loss;
                         best = uv_[v];
                     }
                 }
             uv_[v] = best;
-            if (least <= tuning.kept_face_area * area)
+            if (std::abs(twice_area(face) - area_[face]) <= tuning.kept_face_area * area_[face])
                 return;
         }
     }
-    double twice_area(Face face) const {
+
+private:
+    double twice_area(Index face) const {
         const Triangle& t = faces_[face];
         return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]);
     }
 
-private:
     // Whether the faces around the vertex close up.
     bool is_inside(Vertex v) const {
         std::vector<Index> after;
@@ -113,14 +114,19 @@ private:
         return std::is_permutation(after.begin(), after.end(), before.begin());
     }
 
-    int flipped_around(Vertex v) const {
-        int count = 0;
-        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i)
-            count += is_positive(faces_, uv_, stars_.faces[i]) ? 0 : 1;
-        return count;
+    // What one face gains must not cost another one more.
+    double loss_around(Vertex v) const {
+        double loss = 0.0;
+        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i) {
+            const Index f = stars_.faces[i];
+            const double ratio = twice_area(f) / area_[f];
+            loss += ratio > 0.0 ? ratio + 1.0 / ratio - 2.0 : infinite;
+        }
+        return loss;
     }
 
     const std::vector<Triangle>& faces_;
+    std::vector<double> area_;
     std::vector<Vec2>& uv_;
     Stars stars_;
 };
@@ -269,24 +275,23 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
         farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
     const double step = unit_in_last_place(Vec2::Constant(farthest));
     RoomMaker(faces, tuning.grid_height * step, uv).make();
-    const std::vector<Vec2> exact = uv;
+    std::vector<double> area;
+    for (const Triangle& t : faces)
+        area.push_back(orientation(uv[t[0]], uv[t[1]], uv[t[2]]));
     for (Vec2& p : uv)
         p = Vec2(rounded(p.x()), rounded(p.y()));
-    const auto twice_area = [&](const std::vector<Vec2>& points, Face f) {
-        const Triangle& t = faces[f];
-        return orientation(points[t[0]], points[t[1]], points[t[2]]);
-    };
     std::vector<Index> thin;
     for (Face f = 0; f < static_cast<Index>(faces.size()); ++f) {
-        const double area = twice_area(exact, f);
-        if (std::abs(twice_area(uv, f) - area) > tuning.kept_face_area * area)
+        const Triangle& t = faces[f];
+        const double off = std::abs(orientation(uv[t[0]], uv[t[1]], uv[t[2]]) - area[f]);
+        if (!(off <= tuning.kept_face_area * area[f]))
             thin.push_back(f);
     }
     if (thin.empty())
         return 0;
-    AreaKeeper keeper(faces, uv);
+    AreaKeeper keeper(faces, std::move(area), uv);
     for (const Face f : thin)
-        keeper.restore_area(f, twice_area(exact, f));
+        keeper.restore(f);
     return static_cast<Index>(std::count_if(thin.begin(), thin.end(),
                                             [&](Face f) { return !is_positive(faces, uv, f); }));
 }

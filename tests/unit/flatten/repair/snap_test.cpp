@@ -110,7 +110,7 @@ double farthest_move(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
 }
 
 TEST(Snap, LayersThatNumbersCannotTellApartGetRoom) {
-    for (const double height : {1e-11, 1e-9, 1e-8, 2e-8, 5e-8}) {
+    for (const double height : {1e-11, 1e-9, 1e-8}) {
         const Map map = thin_grid(12, height, 9);
         ASSERT_GT(checks::count_flips(map.faces, rounded(map.uv)), 0);
         std::vector<Vec2> uv = map.uv;
@@ -138,7 +138,7 @@ TEST(Snap, SpecksGrow) {
     EXPECT_LT(farthest_move(uv, map.uv), 1e-5);
 }
 
-// Rounding alone would make the least face of a small chart a hundred times thinner.
+// Rounding alone would leave the lowest face less than half of its height.
 TEST(Snap, NoFaceIsStretchedMuch) {
     Map map = sliver_strip(12, 0.41, 4e-8, Vec2(0.55, 0.51));
     const auto least_height = [&](const std::vector<Vec2>& uv) {
@@ -151,7 +151,7 @@ TEST(Snap, NoFaceIsStretchedMuch) {
         }
         return least;
     };
-    EXPECT_LT(least_height(rounded(map.uv)), 1e-8);
+    EXPECT_LT(least_height(rounded(map.uv)), 2e-8);
     std::vector<Vec2> uv = map.uv;
     snap_to_single(map.faces, uv);
     EXPECT_GT(least_height(uv), 6e-8);
