@@ -40,7 +40,8 @@ def objects(path: Path) -> list[Object]:
     for at, end in _inside(data, 0, len(data), _MAIN, _EDITOR, _OBJECT):
         name, at = _text(data, at, end)
         found += [
-            Object(name, _materials(data, *faces)) for faces in _inside(data, at, end, _MESH, _FACES)
+            Object(name, _materials(data, *faces))
+            for faces in _inside(data, at, end, _MESH, _FACES)
         ]
     return [one for one in found if one.materials]
 

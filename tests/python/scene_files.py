@@ -112,9 +112,7 @@ def object_3ds(name: str, mesh: meshes.Mesh, materials: dict[str, list[int]]) ->
     vertices, faces = mesh
     rows = np.c_[faces, np.zeros(len(faces))].astype("<u2")
     groups = [
-        chunk(
-            0x4130, f"{material}\0".encode(), np.array([len(own), *own], dtype="<u2").tobytes()
-        )
+        chunk(0x4130, f"{material}\0".encode(), np.array([len(own), *own], dtype="<u2").tobytes())
         for material, own in materials.items()
     ]
     points = chunk(0x4110, struct.pack("<H", len(vertices)), vertices.astype("<f4").tobytes())
