@@ -5,7 +5,7 @@
 #include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
 #include "devseg/judge/cloth.h"
-#include "devseg/judge/trial.h"
+#include "devseg/judge/final_map.h"
 
 namespace devseg::filters {
 
@@ -44,20 +44,6 @@ struct Options : curves::SmoothOptions {
     }
 };
 
-bool is_above_stretch(const Mesh& mesh, const std::vector<Index>& faces,
-                      const std::vector<std::uint8_t>& seam, double bound,
-                      const Progress& progress) {
-    judge::TrialEffort effort;
-    effort.wanted_l2 = bound;
-    effort.push_apart = true;
-    try {
-        const judge::TrialMap map = judge::try_chart(mesh, faces, seam, effort, progress);
-        return !map.flat || map.l2_squared > bound * bound;
-    } catch (const NumericalFailure&) { // no way to flatten it at all
-        return true;
-    }
-}
-
 bool is_above_strain(const Mesh& mesh, const std::vector<Index>& faces,
                      const std::vector<std::uint8_t>& seam, double bound,
                      const Progress& progress) {
@@ -68,24 +54,54 @@ bool is_above_strain(const Mesh& mesh, const std::vector<Index>& faces,
     return !trial.has_map || trial.strain.most_of_it > bound;
 }
 
-// Which of the charts are above a bound.
-std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
-                                const Options& options, Progress& progress) {
-    const Buckets<Index> faces = atlas::group_faces(charts);
-    std::vector<std::uint8_t> result(at(charts.count), 0);
+// Which of the chosen charts have a final map above the bound: trials leave out what relieves
+// peaks.
+void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
+                   const std::vector<std::uint8_t>& chosen, double bound,
+                   std::vector<std::uint8_t>& above, Progress& progress) {
+    std::vector<std::uint8_t> doubtful(chosen.size(), 0);
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
             const std::vector<Index> own(faces[c].begin(), faces[c].end());
-            const double stretch = options.max_chart_l2_stretch;
-            const double strain = options.max_strain;
-            const bool is_above =
-                own.empty() || // it has vanished between its seams
-                (stretch > 0.0 && is_above_stretch(mesh, own, charts.seam, stretch, progress)) ||
-                (strain > 0.0 && is_above_strain(mesh, own, charts.seam, strain, progress));
-            result[at(c)] = is_above ? 1 : 0;
+            if (chosen[at(c)] != 0)
+                doubtful[at(c)] =
+                    judge::is_surely_within(mesh, own, charts.seam, bound, progress) ? 0 : 1;
         },
         progress);
+    std::vector<std::vector<Index>> tried;
+    std::vector<std::size_t> number;
+    for (std::size_t c = 0; c < doubtful.size(); ++c)
+        if (doubtful[c] != 0) {
+            tried.emplace_back(faces[static_cast<Index>(c)].begin(),
+                               faces[static_cast<Index>(c)].end());
+            number.push_back(c);
+        }
+    const std::vector<judge::TrialMap> maps =
+        judge::whole_maps(mesh, tried, charts.seam, bound, progress);
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        if (!maps[i].flat || maps[i].l2_squared > bound * bound)
+            above[number[i]] = 1;
+}
+
+// Which of the chosen charts are above a bound.
+std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
+                                const std::vector<std::uint8_t>& chosen, const Options& options,
+                                Progress& progress) {
+    const Buckets<Index> faces = atlas::group_faces(charts);
+    std::vector<std::uint8_t> result(chosen.size(), 0);
+    if (options.max_strain > 0.0)
+        parallel_for(
+            static_cast<int>(charts.count),
+            [&](int c) {
+                const std::vector<Index> own(faces[c].begin(), faces[c].end());
+                if (chosen[at(c)] != 0 &&
+                    is_above_strain(mesh, own, charts.seam, options.max_strain, progress))
+                    result[at(c)] = 1;
+            },
+            progress);
+    if (options.max_chart_l2_stretch > 0.0)
+        judge_stretch(mesh, charts, faces, chosen, options.max_chart_l2_stretch, result, progress);
     return result;
 }
 
@@ -114,17 +130,19 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
-    auto judging = progress.part("judging charts", 0.2);
-    const std::vector<std::uint8_t> before = above(mesh, charts, options, judging);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
-    std::vector<std::uint8_t> kept(before.size(), 0);
+    std::vector<std::uint8_t> judged(at(charts.count), 1); // but for those above already before
+    std::vector<std::uint8_t> kept(judged.size(), 0);
     for (int round = 1;; ++round) {
         auto smoothing = progress.part(0.5 * progress.left());
         curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
-        auto again = progress.part("judging charts", 0.5 * progress.left());
-        std::vector<std::uint8_t> after = above(made.refinement.mesh, made.charts, options, again);
+        auto judging = progress.part("judging charts", 0.5 * progress.left());
+        std::vector<std::uint8_t> after =
+            above(made.refinement.mesh, made.charts, judged, options, judging);
+        const std::vector<std::uint8_t> before = above(mesh, charts, after, options, judging);
         for (std::size_t c = 0; c < after.size(); ++c) {
-            after[c] = after[c] != 0 && before[c] == 0 ? 1 : 0;
+            judged[c] = before[c] != 0 ? 0 : judged[c];
+            after[c] = before[c] != 0 ? 0 : after[c];
             kept[c] = kept[c] != 0 || after[c] != 0 ? 1 : 0;
         }
         kept_charts = static_cast<int>(std::count(kept.begin(), kept.end(), 1));
