@@ -68,6 +68,13 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--notch-kind", choices=NOTCHES, help="a slit, or a triangle to cut out; default: slit"
     )
     group.add_argument(
+        "--alike-mm",
+        type=float,
+        metavar="MM",
+        help="pieces that differ by less get one outline, mirrored or not; "
+        "default: 2 for sewing, else 0, none",
+    )
+    group.add_argument(
         "--notch-spacing-mm",
         type=millimetres(),
         metavar="D",
@@ -202,6 +209,7 @@ _PARAMETERS = (
     "simplify_mm",
     "curve_mm",
     "tab_depth_mm",
+    "alike_mm",
     "notch_spacing_mm",
     "fold_angle",
     "glue_tabs",

@@ -80,6 +80,10 @@ Declare<O> with_seams(Declare<O> filter) {
                  "sewing bears, by changing the angles of the outlines as little as possible.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
+        .real(&O::alike_mm, "Make pieces alike within (mm)",
+              "Pieces whose outlines differ by less than this, in millimetres (and 3 % of their "
+              "size), as they are or mirrored, all get the mean of their outlines; so does a piece "
+              "that is so near to its own mirror image. 0 = none.")
         .real(&O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
               "Pieces whose outlines, turned and moved onto each other, differ by less than this, "
               "in millimetres (and a hundredth of their size), have the same shape.");
