@@ -82,8 +82,10 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
             host.wedge_uv = read_layout_uv(*model);
         if (filter.needs_texture)
             read_textures(*model, host);
-        declare::HostResult result = declare::run_filter(
-            filter, std::move(host), parameter_values(filter, parameters), progress);
+        const declare::ParameterValues values = parameter_values(filter, parameters);
+        if (declare::wants_surface(filter, values))
+            read_surface(*model, host);
+        declare::HostResult result = declare::run_filter(filter, std::move(host), values, progress);
         HostRun run;
         std::optional<NewLayer> layer;
         if (result.layer)
@@ -92,6 +94,8 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
             split_faces(*model, *result.refinement);
         if (!result.wedge_uv.empty())
             keep_old_uv(*model);
+        if (!result.face_color.empty())
+            keep_old_colors(*model);
         run.changed = write_host_result(*model, result);
         if (result.texture) {
             replace_textures(*model, *result.texture);

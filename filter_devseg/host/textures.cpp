@@ -19,6 +19,8 @@ using Corners = CMeshO::CoordType; // one number for each corner of a face
 constexpr const char* old_u = "texcoord_before_u";
 constexpr const char* old_v = "texcoord_before_v";
 constexpr const char* old_page = "texture_before";
+constexpr const char* stand_in = "dummy.png"; // what hosts show for images that they cannot read
+constexpr const char* old_color = "color_before"; // 65536 red + 256 green + blue
 
 template <class Model>
 auto image_of(const Model& model, const std::string& name, int)
@@ -54,6 +56,15 @@ plane::Image as_pixels(const QImage& image) {
     return pixels;
 }
 
+std::vector<plane::Image> read_images(const MeshModel& model) {
+    std::vector<plane::Image> images;
+    for (const std::string& name : model.cm.textures)
+        images.push_back(QFileInfo(to_qstring(name)).fileName() == stand_in
+                             ? plane::Image()
+                             : as_pixels(image_of(model, name, 0)));
+    return images;
+}
+
 } // namespace
 
 void read_textures(MeshModel& model, declare::HostMesh& host) {
@@ -63,8 +74,7 @@ void read_textures(MeshModel& model, declare::HostMesh& host) {
     const std::vector<double> page = read_face_attribute(m, old_page);
     if (!Allocator::IsValidHandle(m, u) || !Allocator::IsValidHandle(m, v) || page.empty())
         return;
-    for (const std::string& name : m.textures)
-        host.textures.push_back(as_pixels(image_of(model, name, 0)));
+    host.textures = read_images(model);
     for (std::size_t f = 0; f < m.face.size(); ++f) {
         if (m.face[f].IsD())
             continue;
@@ -94,6 +104,53 @@ void keep_old_uv(MeshModel& model) {
         }
         page[f] = static_cast<Scalarm>(m.face[f].cWT(0).N());
     }
+}
+
+void keep_old_colors(MeshModel& model) {
+    CMeshO& m = model.cm;
+    // Where there are charts already, the colours may be theirs.
+    if (!model.hasDataMask(MeshModel::MM_FACECOLOR) ||
+        vcg::tri::HasPerFaceAttribute(m, old_color) || vcg::tri::HasPerFaceAttribute(m, "chart_id"))
+        return;
+    auto color = face_attribute(m, old_color);
+    for (std::size_t f = 0; f < m.face.size(); ++f)
+        if (!m.face[f].IsD()) {
+            const auto& c = m.face[f].cC();
+            color[f] = static_cast<Scalarm>((c[0] * 256 + c[1]) * 256 + c[2]);
+        }
+}
+
+void read_surface(MeshModel& model, declare::HostMesh& host) {
+    CMeshO& m = model.cm;
+    read_textures(model, host);
+    if (host.uv_before.empty() && model.hasDataMask(MeshModel::MM_WEDGTEXCOORD)) {
+        host.textures = read_images(model);
+        host.uv_before = read_wedge_uv(m);
+        for (const auto& f : m.face)
+            if (!f.IsD())
+                host.page_before.push_back(f.cWT(0).N());
+    }
+    for (const double color : read_face_attribute(m, old_color)) {
+        const auto bits = static_cast<std::uint32_t>(std::clamp(color, 0.0, 16777215.0));
+        const auto byte = [&](int shift) { return static_cast<std::uint8_t>(bits >> shift); };
+        const declare::Color c{byte(16), byte(8), byte(0)};
+        host.corner_color.push_back({c, c, c});
+    }
+    if (!host.corner_color.empty())
+        return;
+    const bool of_faces =
+        model.hasDataMask(MeshModel::MM_FACECOLOR) && !vcg::tri::HasPerFaceAttribute(m, "chart_id");
+    if (!of_faces && !model.hasDataMask(MeshModel::MM_VERTCOLOR))
+        return;
+    const auto color_of = [](const vcg::Color4b& c) { return declare::Color{c[0], c[1], c[2]}; };
+    for (const auto& f : m.face)
+        if (f.IsD())
+            continue;
+        else if (of_faces)
+            host.corner_color.push_back({color_of(f.cC()), color_of(f.cC()), color_of(f.cC())});
+        else
+            host.corner_color.push_back(
+                {color_of(f.cV(0)->cC()), color_of(f.cV(1)->cC()), color_of(f.cV(2)->cC())});
 }
 
 void replace_textures(MeshModel& model, const plane::Image& image) {

@@ -57,6 +57,11 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
               "-1 = as along seams, and none around holes.")
         .real(&O::dart_allowance_mm, {"dart_allowance_mm", -1.0, 1e4}, "Dart allowance (mm)",
               "Width of the allowance along darts in millimetres. 0 = none, -1 = as along seams.")
+        .real(&O::zip_allowance_mm, {"zip_allowance_mm", -1.0, 1e4}, "Zip allowance (mm)",
+              "Width of the allowance along seams that get a zip in millimetres. -1 = as along "
+              "seams.")
+        .text(&O::zip_seams, "zip_seams", "Seams with a zip",
+              "Numbers of the seams that get a zip, with commas between them, such as 3,7.")
         .choice(&O::corner_style, "corner_style", "Corners of the allowance",
                 {"Miter", "Bevel", "Round"},
                 "Convex corners of the cut line: Miter (pointed), Bevel (cut off), or Round. "
@@ -64,6 +69,10 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears.")
+        .real(&O::alike_mm, {"alike_mm", -1.0, 1e3}, "Make pieces alike within (mm)",
+              "Pieces whose outlines differ by less than this, in millimetres, as they are or "
+              "mirrored, all get the mean of their outlines, so that one template serves for them. "
+              "0 = none, -1 = 2 mm with the preset Sewing.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")
@@ -136,6 +145,19 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
 }
 
+declare::Declare<O> with_print(declare::Declare<O> filter) {
+    return filter
+        .choice(&O::texture, "texture", "Texture on the pieces", {"None", "Automatic"},
+                "Automatic: what the model looks like is printed on the pieces of SVG, PDF and "
+                "PNG files: its textures, else the colours of its faces, else those of its "
+                "vertices. Tabs go on with the colours beside them.")
+        .real(&O::bleed_mm, {"bleed_mm", 0.0, sheet::widest_bleed}, "Bleed (mm)",
+              "How far the texture is printed beyond the cut lines, in millimetres.")
+        .boolean(&O::registration_marks, "registration_marks", "Registration marks",
+                 "Marks in the corners of each sheet, on a layer of their own, by which a cutter "
+                 "finds what was printed.");
+}
+
 declare::Declare<O> with_files(declare::Declare<O> filter) {
     return filter
         .choice(
@@ -183,6 +205,9 @@ declare::Declare<O> with_cloth(declare::Declare<O> filter) {
                  "How many times the whole pattern lies on the cloth, a number.")
         .real(&O::piece_gap_mm, {"piece_gap_mm", 0.0, 1e3}, "Gap on the cloth (mm)",
               "Least distance of two pieces on the cloth in millimetres.")
+        .text(&O::material_names, "material_names", "Names of materials",
+              "Names of the materials in material_id, in the order of their numbers, with commas "
+              "between them: each has a cloth of its own on a marker. Empty: their numbers.")
         .text(&O::sizes, "sizes", "Sizes",
               "Heights of the finished model in millimetres, such as 200,250,300: all sizes over "
               "each other in colours of their own, with the numbers of the largest. They replace "
@@ -223,6 +248,17 @@ declare::ResultValues guide_values(const PatternFile& file) {
 // How the material is strained in each piece, and the cloth of a marker.
 declare::ResultValues cloth_values(const PatternFile& file) {
     using Strain = pattern::ClothStrain;
+    using Strip = sheet::FabricStrip;
+    double length = 0.0;
+    double covered = 0.0;
+    double cloth = 0.0;
+    int single = 0;
+    for (const Strip& strip : file.fabrics) {
+        length += strip.length;
+        covered += strip.covered;
+        cloth += strip.use > 0.0 ? strip.covered / strip.use : 0.0;
+        single += static_cast<int>(strip.single_layer_pieces);
+    }
     const auto above = std::count_if(file.cloth.begin(), file.cloth.end(),
                                      [](const Strain& strain) { return !strain.is_within; });
     return {{"piece_strain_along", declare::column(file.cloth, &Strain::along)},
@@ -239,14 +275,21 @@ declare::ResultValues cloth_values(const PatternFile& file) {
             {"seam_ease_mm",
              declare::column(file.seam_list,
                              [](const pattern::Seam& seam) { return std::abs(seam.mismatch()); })},
-            {"fabric_length_mm", file.fabric.length},
-            {"fabric_use", file.fabric.use},
-            {"single_layer_pieces_number", static_cast<int>(file.fabric.single_layer_pieces)}};
+            {"piece_fabric", declare::column(file.piece_fabric, [](Index k) { return k; })},
+            {"fabric_area_mm2", declare::column(file.needs.fabric_mm2, [](double a) { return a; })},
+            {"fabric_lengths_mm", declare::column(file.fabrics, &Strip::length)},
+            {"fabric_uses", declare::column(file.fabrics, &Strip::use)},
+            {"fabric_length_mm", length},
+            {"fabric_use", cloth > 0.0 ? covered / cloth : 0.0},
+            {"single_layer_pieces_number", single}};
 }
 
 declare::FilterOutput run_export(const declare::FilterInput& input,
                                  const sheet::ExportOptions& options, Progress& progress) {
-    PatternFile file = make_pattern_file(input.mesh, *input.uv, options, progress);
+    const surface::Look look{input.mesh, input.uv_before, input.page_before, input.textures,
+                             input.corner_color};
+    PatternFile file =
+        make_pattern_file(input.mesh, *input.uv, input.material, look, options, progress);
     declare::FilterOutput output;
     output.notes = std::move(file.notes);
     output.values = {{"pieces_number", file.pieces},
@@ -258,8 +301,12 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
                      {"pages_number", file.pages}};
     for (const auto& values : {guide_values(file), cloth_values(file)})
         output.values.insert(output.values.end(), values.begin(), values.end());
-    output.save = [path = options.output_file, bytes = std::move(file.bytes)] {
-        writers::save_file(path, bytes);
+    output.save = [path = options.output_file, bytes = std::move(file.bytes),
+                   pages = std::move(file.page_bytes)] {
+        for (std::size_t i = 0; i < pages.size(); ++i)
+            writers::save_file(page_file(path, i, pages.size()), pages[i]);
+        if (pages.empty())
+            writers::save_file(path, bytes);
     };
     return output;
 }
@@ -268,14 +315,15 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
 
 const declare::FilterDeclaration& export_filter() {
     static const declare::FilterDeclaration filter =
-        with_cloth(with_guide(with_files(with_paper(with_seams(with_scale(
+        with_cloth(with_guide(with_files(with_print(with_paper(with_seams(with_scale(
                        declare::Declare<O>("Pattern: Export", "export_pattern",
                                            declare::FilterCategory::texture, help)
                            .file(&O::output_file, "output_file", "File", "pattern.svg",
                                  "File to write; its extension says the format: .svg, .pdf, "
-                                 ".dxf or .html.")))))))
+                                 ".dxf, .html or .png, a file for each page."))))))))
             .needs_uv()
             .shows_outside()
+            .takes_surface()
             .result("pieces_number", "pieces in the file")
             .result("seams_number", "seams, darts among them")
             .result("unnumbered_seams_number", "seams without room for the number that they "
@@ -285,7 +333,9 @@ const declare::FilterDeclaration& export_filter() {
             .result("untabbed_seams_number", "seams without room for the glue tab that they should "
                                              "have")
             .result("sheets_number", "sheets that the pieces lie on")
-            .result("pages_number", "pages of a PDF, cover included; 0 for other formats")
+            .result("pages_number",
+                    "pages of a PDF, cover included, or files of a .png; 0 for other "
+                    "formats")
             .result("piece_section", "section that each piece is made in, counted from 0")
             .result("seam_first_piece", "for each seam the piece of its first side, from 0")
             .result("seam_second_piece", "the same of its second side")
@@ -315,7 +365,11 @@ const declare::FilterDeclaration& export_filter() {
             .result("piece_worst_y_mm", "the same upwards")
             .result("pieces_above_limits_number", "pieces that strain the material too much")
             .result("seam_ease_mm", "of each seam, how much longer one side is, to be gathered")
-            .result("fabric_length_mm", "length of the cloth of a marker; 0 = no marker")
+            .result("piece_fabric", "which of the model's materials each piece is cut from, from 0")
+            .result("fabric_area_mm2", "where there are several: area inside the cut lines of each")
+            .result("fabric_lengths_mm", "length of the cloth of each of them on a marker")
+            .result("fabric_uses", "share of each that pieces cover")
+            .result("fabric_length_mm", "length of all cloths of a marker; 0 = no marker")
             .result("fabric_use", "share of the cloth between selvedges that pieces cover")
             .result("single_layer_pieces_number", "pieces cut from one layer of folded cloth")
             .runs(run_export);

@@ -8,8 +8,12 @@
 #include "page/page.h"
 #include "sheet/apparel_dxf.h"
 #include "sheet/cover.h"
+#include "sheet/drawing_plan.h"
+#include "sheet/fabrics.h"
 #include "sheet/sheet_drawing.h"
 #include "sheet/sizes.h"
+#include "surface/registration.h"
+#include "writers/canvas.h"
 #include "writers/dxf_writer.h"
 #include "writers/font.h"
 #include "writers/pdf_writer.h"
@@ -19,7 +23,7 @@ namespace devseg::exporting {
 
 namespace {
 
-enum class Format { svg, pdf, dxf, html };
+enum class Format { svg, pdf, dxf, html, png };
 
 std::size_t name_start(const std::string& path) {
     const std::size_t slash = path.find_last_of("/\\");
@@ -42,8 +46,10 @@ Format format_of(const std::string& path) {
         return Format::dxf;
     if (extension == ".html")
         return Format::html;
-    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf, .dxf or .html, "
-                           "found '" +
+    if (extension == ".png")
+        return Format::png;
+    throw InvalidParameter("output_file: expected a file that ends in .svg, .pdf, .dxf, .html or "
+                           ".png, found '" +
                            path + "'");
 }
 
@@ -70,14 +76,39 @@ bool is_apparel(const sheet::ExportOptions& options) {
             options.preset == sheet::PatternPreset::sewing);
 }
 
-writers::Document make_document(const pattern::Pattern& pattern, const sheet::PatternLayout& layout,
-                                const sheet::ExportOptions& options, const Progress& progress) {
+// What a pattern is drawn from.
+struct Source {
+    const pattern::Pattern& pattern;
+    const sheet::PatternLayout& layout;
+    const sheet::ExportOptions& options;
+    const surface::Look& look;
+};
+
+// The sheets with what is printed on the pieces. `marks` as the options want them, but on pages of
+// their own.
+writers::Drawing draw(const Source& source, const sheet::ExportOptions& options, bool marks,
+                      Progress& progress, std::vector<std::string>& notes) {
+    writers::Drawing drawing = sheet::draw_sheets(source.layout, options);
+    if (options.texture != sheet::SurfacePrint::none)
+        for (std::string& note : surface::add_pictures(source.pattern, source.layout, options,
+                                                       source.look, progress, drawing))
+            notes.push_back(std::move(note));
+    if (options.registration_marks && marks)
+        drawing.layers.push_back(surface::registration_marks(
+            source.layout, drawing,
+            sheet::plan_drawing(source.layout, options.scale_check).sheets.front()));
+    return drawing;
+}
+
+writers::Document make_document(const Source& source, Progress& progress,
+                                std::vector<std::string>& notes) {
+    const auto& [pattern, layout, options, look] = source;
     writers::Document document;
     document.title = title_of(options.output_file);
     // Pages of a PDF have marks of their own.
     sheet::ExportOptions drawn = options;
     drawn.frame = drawn.scale_check = !layout.page;
-    document.drawing = sheet::draw_sheets(layout, drawn);
+    document.drawing = draw(source, drawn, !layout.page, progress, notes);
     const std::vector<sheet::PrintedPage> printed = sheet::printed_pages(layout, document.drawing);
     progress.check();
     if (options.cover)
@@ -86,8 +117,12 @@ writers::Document make_document(const pattern::Pattern& pattern, const sheet::Pa
     if (options.cover && layout.page && printed.size() > 1)
         sheet::add_overview(layout, document.drawing, printed, document.title, document.pages);
     for (writers::DocumentPage& page :
-         sheet::page_sheets(layout, document.drawing, printed, document.title))
+         sheet::page_sheets(layout, document.drawing, printed, document.title)) {
+        if (options.registration_marks && layout.page)
+            page.marks.push_back(surface::registration_marks({{Vec2::Zero(), layout.page->size}},
+                                                             layout.page->margin));
         document.pages.push_back(std::move(page));
+    }
     return document;
 }
 
@@ -109,6 +144,8 @@ sheet::ExportOptions format_options(sheet::ExportOptions options, Format format)
                                    "file for each size (height_mm)");
         options.height_mm = sizes.back();
     }
+    if (format == Format::png)
+        options.cover = false;
     if (!options.is_marker())
         return options;
     if (format == Format::html)
@@ -125,6 +162,7 @@ sheet::ExportOptions format_options(sheet::ExportOptions options, Format format)
 } // namespace
 
 PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const std::vector<Index>& face_material, const surface::Look& look,
                               const sheet::ExportOptions& given, Progress& progress) {
     const Format format = format_of(given.output_file);
     const sheet::ExportOptions options =
@@ -132,7 +170,13 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     sheet::page_format(options); // says what is wrong with it before the work begins
     const bool has_pictures = format == Format::pdf && options.cover; // which take long
     auto making = progress.part(has_pictures ? 0.2 : 0.5);
-    const pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    for (const Index seam : options.allowance().zip_seams)
+        if (seam >= static_cast<Index>(pattern.seams.size()))
+            throw InvalidParameter("zip_seams: expected numbers of seams up to " +
+                                   std::to_string(pattern.seams.size()) + ", found " +
+                                   std::to_string(seam + 1));
+    sheet::set_fabrics(face_material, options.material_names, pattern);
     auto laying = progress.part(has_pictures ? 0.15 : 0.3);
     sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
     auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
@@ -140,10 +184,17 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         sheet::add_sizes(mesh, uv, pattern, options, layout, grading);
     auto writing = progress.part("writing", progress.left());
     PatternFile file;
+    file.notes = pattern.notes;
+    const Source source{pattern, layout, options, look};
+    auto drawing = writing.part(0.5);
     if (format == Format::pdf) {
-        const writers::Document document = make_document(pattern, layout, options, writing);
+        const writers::Document document = make_document(source, drawing, file.notes);
         file.pages = static_cast<Index>(document.pages.size());
         file.bytes = writers::pdf_bytes(document);
+    } else if (format == Format::png) {
+        const writers::Document document = make_document(source, drawing, file.notes);
+        file.page_bytes = writers::png_pages(document);
+        file.pages = static_cast<Index>(file.page_bytes.size());
     } else if (format == Format::dxf && is_apparel(options)) {
         file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options,
                                               {title_of(options.output_file), today()});
@@ -151,11 +202,14 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         file.bytes =
             page::page_bytes(pattern, layout, options, title_of(options.output_file), writing);
     } else {
-        writers::Drawing drawing = sheet::draw_sheets(layout, options);
+        sheet::ExportOptions drawn = options;
+        if (format == Format::dxf) // holds no pictures
+            drawn.texture = sheet::SurfacePrint::none;
+        writers::Drawing sheets = draw(source, drawn, true, drawing, file.notes);
         if (format == Format::svg && options.text == sheet::TextKind::paths)
-            drawing = writers::with_outlined_texts(std::move(drawing));
+            sheets = writers::with_outlined_texts(std::move(sheets));
         file.bytes =
-            format == Format::svg ? writers::svg_bytes(drawing) : writers::dxf_bytes(drawing);
+            format == Format::svg ? writers::svg_bytes(sheets) : writers::dxf_bytes(sheets);
     }
     writing.update(0.5);
     file.pieces = static_cast<Index>(pattern.pieces.size());
@@ -167,12 +221,12 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     file.needs = sheet::find_needs(pattern, layout, options, printed_count(layout));
     file.assembly = layout.assembly;
     file.seam_list = pattern.seams;
-    for (const pattern::PatternPiece& piece : pattern.pieces)
+    for (const pattern::PatternPiece& piece : pattern.pieces) {
+        file.piece_fabric.push_back(piece.fabric);
         if (pattern.material)
             file.cloth.push_back(piece.cloth);
-    if (layout.fabric)
-        file.fabric = *layout.fabric;
-    file.notes = pattern.notes;
+    }
+    file.fabrics = std::move(layout.fabrics);
     const int missing = writers::missing_glyphs(title_of(options.output_file));
     if (missing > 0 && format == Format::pdf)
         file.notes.push_back(std::to_string(missing) +
@@ -181,6 +235,13 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
     for (std::string& note : sheet::layout_notes(pattern, layout))
         file.notes.push_back(std::move(note));
     return file;
+}
+
+std::string page_file(const std::string& path, std::size_t page, std::size_t pages) {
+    if (pages == 1)
+        return path;
+    const std::size_t dot = path.find_last_of('.');
+    return path.substr(0, dot) + '_' + std::to_string(page + 1) + path.substr(dot);
 }
 
 } // namespace devseg::exporting

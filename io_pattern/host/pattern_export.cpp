@@ -15,7 +15,7 @@ namespace {
 
 // Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
 // and does not scroll, and a screen has no room for all.
-constexpr std::array<const char*, 15> left_to_the_filter = {
+constexpr std::array<const char*, 18> left_to_the_filter = {
     "max_piece_mm",
     "curve_mm",
     "simplify_mm",
@@ -31,6 +31,9 @@ constexpr std::array<const char*, 15> left_to_the_filter = {
     "stuffing_g_per_litre",
     "frame",
     "scale_check",
+    "texture",
+    "bleed_mm",
+    "registration_marks",
 };
 
 // The file's name is asked for by the host itself.

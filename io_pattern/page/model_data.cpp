@@ -251,7 +251,7 @@ QByteArray model_data(const pattern::Pattern& pattern, const sheet::PatternLayou
     QJsonArray needs;
     const auto pages = static_cast<Index>(drawing.pages.size());
     for (const auto& [name, value] :
-         sheet::needs_texts(sheet::find_needs(pattern, layout, options, pages), options))
+         sheet::needs_texts(pattern, sheet::find_needs(pattern, layout, options, pages), options))
         needs.append(QJsonArray{text(name), text(value)});
     QJsonArray openings;
     for (const std::string& opening : sheet::opening_texts(pattern, layout))

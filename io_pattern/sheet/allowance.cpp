@@ -44,13 +44,12 @@ struct WidePoint {
 };
 
 std::vector<WidePoint> distinct(const pattern::PiecePath& path, const AllowanceWidths& widths,
-                                double hems) {
+                                bool is_hole) {
     std::vector<WidePoint> ring;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const pattern::OutlineSeam* edge = i < path.edges.size() ? &path.edges[i] : nullptr;
-        const bool is_hem = edge != nullptr && edge->seam < 0;
-        const bool is_dart = edge != nullptr && edge->is_dart;
-        const WidePoint next{path.points[i], is_hem ? hems : is_dart ? widths.darts : widths.seams};
+        const WidePoint next{path.points[i], i < path.edges.size()
+                                                 ? widths.of(path.edges[i], is_hole)
+                                                 : widths.seams};
         if (!ring.empty() && next.point == ring.back().point)
             ring.back() = next;
         else
@@ -116,6 +115,15 @@ Ring raw_curve(const std::vector<WidePoint>& ring, CornerStyle style) {
 
 } // namespace
 
+double AllowanceWidths::of(const pattern::OutlineSeam& edge, bool in_hole) const {
+    if (edge.seam < 0)
+        return in_hole ? hole_hems : hems;
+    if (edge.is_dart)
+        return darts;
+    const bool is_zip = std::find(zip_seams.begin(), zip_seams.end(), edge.seam) != zip_seams.end();
+    return is_zip ? zips : seams;
+}
+
 std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const AllowanceWidths& widths,
                                 CornerStyle corners) {
     const double width = widths.largest();
@@ -123,8 +131,7 @@ std::vector<Ring> add_allowance(const pattern::PatternPiece& piece, const Allowa
     const double grid = (piece.box.sizes().maxCoeff() + 2.0 * miter_limit * width) / grid_size;
     ClipperLib::Clipper clipper;
     for (Index i = 0; i < piece.path_count(); ++i) {
-        const double hems = i == 0 ? widths.hems : widths.hole_hems;
-        const std::vector<WidePoint> ring = distinct(piece.path(i), widths, hems);
+        const std::vector<WidePoint> ring = distinct(piece.path(i), widths, i > 0);
         ClipperLib::Path path;
         if (ring.size() < 3)
             continue;

@@ -19,14 +19,18 @@ struct AllowanceWidths {
     AllowanceWidths(double along_seams, double along_hems)
         : AllowanceWidths(along_seams, along_hems, along_hems) {}
     AllowanceWidths(double along_seams, double along_hems, double around_holes)
-        : seams(along_seams), darts(along_seams), hems(along_hems), hole_hems(around_holes) {}
+        : seams(along_seams), darts(along_seams), zips(along_seams), hems(along_hems),
+          hole_hems(around_holes) {}
 
-    double largest() const { return std::max({seams, darts, hems}); }
+    double largest() const { return std::max({seams, darts, zips, hems}); }
+    double of(const pattern::OutlineSeam& edge, bool in_hole) const;
 
     double seams;
     double darts; // seams that end inside of a piece
+    double zips;  // seams that get a zip
     double hems;
     double hole_hems;
+    std::vector<Index> zip_seams; // positions in Pattern::seams
 };
 
 /// The cut lines of the piece, outer one first: closed, counterclockwise around the piece and

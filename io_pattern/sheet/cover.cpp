@@ -406,7 +406,7 @@ void add_guide(const pattern::Pattern& pattern, const PatternLayout& layout,
     book.advance(0.5 * cover_pitch);
     add_paragraph("What you need", 0.0, book);
     const Needs needs = find_needs(pattern, layout, options, static_cast<Index>(pages.size()));
-    for (const auto& [name, value] : needs_texts(needs, options))
+    for (const auto& [name, value] : needs_texts(pattern, needs, options))
         add_paragraph(name + ": " + value, 2.0 * cover_text, book);
     book.advance(0.5 * cover_pitch);
     add_paragraph("Steps", 0.0, book);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devseg/base/errors.h"
+#include "devseg/base/option_checks.h"
 #include "devseg/material/material.h"
 #include "writers/text.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 // What books on sewing give where a pattern says nothing.
 constexpr double usual_allowance = 7.0; // mm
+constexpr double usual_alike = 2.0;     // mm: cloth takes more than that
 
 void check(const char* name, double value, double least, const char* expected) {
     if (value >= least && std::isfinite(value))
@@ -114,21 +116,50 @@ void check_marker(const ExportOptions& options) {
 
 } // namespace
 
+AllowanceWidths ExportOptions::allowance() const {
+    AllowanceWidths widths = hem_allowance_mm < 0.0
+                                 ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
+                                 : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
+    if (dart_allowance_mm >= 0.0)
+        widths.darts = dart_allowance_mm;
+    if (zip_allowance_mm >= 0.0 && !zip_seams.empty())
+        widths.zips = zip_allowance_mm;
+    const char* const end = zip_seams.data() + zip_seams.size();
+    for (const char* from = zip_seams.data(); from < end;) {
+        Index number = 0;
+        const auto read = std::from_chars(from, end, number);
+        if (read.ec != std::errc() || number < 1 || (read.ptr != end && *read.ptr != ','))
+            throw InvalidParameter("zip_seams: expected numbers of seams such as 3,7, found '" +
+                                   zip_seams + "'");
+        widths.zip_seams.push_back(number - 1);
+        from = read.ptr + 1;
+    }
+    return widths;
+}
+
 ExportOptions resolved(const ExportOptions& given) {
     ExportOptions options = given;
     check("seam_allowance_mm", options.seam_allowance_mm, 0.0, "a width of 0 mm or more");
     check("hem_allowance_mm", options.hem_allowance_mm, -1.0,
+          "a width of 0 mm or more, or -1 for that of seams");
+    check("zip_allowance_mm", options.zip_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
     check("dart_allowance_mm", options.dart_allowance_mm, -1.0,
           "a width of 0 mm or more, or -1 for that of seams");
     check("tab_depth_mm", options.tab_depth_mm, 0.5, "a depth of 0.5 mm or more");
     check("perforation_mm", options.perforation_mm, 0.0, "cuts of 0 mm or more");
     check("perforation_gap_mm", options.perforation_gap_mm, 0.1, "gaps of 0.1 mm or more");
+    if (!(options.bleed_mm >= 0.0 && options.bleed_mm <= widest_bleed))
+        refuse_option("bleed_mm", "a width from 0 to 3 mm, the distance of two pieces",
+                      options.bleed_mm);
     check("page_margin_mm", options.page_margin_mm, 0.0, "a margin of 0 mm or more");
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
     check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");
     check("kerf_mm", options.kerf_mm, -1.0, "a width of 0 mm or more, or -1 for the material's");
+    check("alike_mm", options.alike_mm, -1.0, "a distance of 0 mm or more, or -1");
     options.edge_numbers = options.edge_numbers || options.step_numbers;
+    if (options.alike_mm < 0.0)
+        options.alike_mm = options.preset == PatternPreset::sewing ? usual_alike : 0.0;
     take_material(options);
     switch (options.preset) {
     case PatternPreset::plain:
@@ -151,6 +182,9 @@ ExportOptions resolved(const ExportOptions& given) {
         options.glue_tabs = options.tabs != TabSides::none;
     if (options.perforation_mm > 0.0)
         options.fold_lines = true;
+    if (options.zip_allowance_mm >= 0.0 && options.zip_seams.empty())
+        throw InvalidParameter("zip_seams: expected the seams that get a zip, found none; give "
+                               "their numbers or leave zip_allowance_mm out");
     if (options.glue_tabs && options.allowance().largest() > 0.0)
         throw InvalidParameter("glue_tabs: expected either glue tabs or a seam allowance, found "
                                "both; set the allowances to 0 or choose another preset");

@@ -23,17 +23,24 @@ enum class Grouping { layer, piece };
 enum class Effort { fast, normal, best };
 /// Texts of an SVG: as text, or as outlines of its letters.
 enum class TextKind { text, paths };
+/// What is printed on the pieces: nothing, or what the model's surface looks like.
+enum class SurfacePrint { none, automatic };
 /// Folds as lines, as short strokes outside of the outlines, where nobody sees them later, or not.
 enum class FoldMarks { lines, outside, none };
 
 struct ExportOptions : pattern::PatternOptions {
-    ExportOptions() { notch_spacing_mm = 0.0; }
+    ExportOptions() {
+        notch_spacing_mm = 0.0;
+        alike_mm = -1.0;
+    }
 
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;
     double seam_allowance_mm = 0.0;
     double hem_allowance_mm = -1.0;  // along open borders; below 0: as along seams, holes none
     double dart_allowance_mm = -1.0; // along darts; below 0: as along seams
+    double zip_allowance_mm = -1.0;  // along seams with a zip; below 0: as along seams
+    std::string zip_seams;           // their numbers, with commas
     CornerStyle corner_style = CornerStyle::miter;
     bool glue_tabs = false;
     double tab_depth_mm = 5.0;
@@ -61,6 +68,10 @@ struct ExportOptions : pattern::PatternOptions {
     bool frame = true;       // SVG, cutter DXF: around the drawing or its pages
     bool scale_check = true; // the same: squares to check the scale with
 
+    SurfacePrint texture = SurfacePrint::none;
+    double bleed_mm = 2.0;           // of the print, beyond the cut lines
+    bool registration_marks = false; // that cutters find the print by
+
     double kerf_mm = -1.0; // width of the cut; below 0: of the material, with the preset Laser
 
     // A marker: all pieces on a roll of cloth, which replaces the pages.
@@ -72,7 +83,8 @@ struct ExportOptions : pattern::PatternOptions {
     double piece_gap_mm = 3.0;    // between two pieces on the cloth
     Effort effort = Effort::normal;
 
-    std::string sizes; // heights in mm, drawn over each other; empty: the one size
+    std::string material_names; // of the model's materials, with commas; empty: by their numbers
+    std::string sizes;          // heights in mm, drawn over each other; empty: the one size
 
     double sewing_mm_per_minute = 100.0; // with pins and needles, at home
     double stuffing_g_per_litre = 30.0;  // polyester fibre, as firm as toys are
@@ -85,20 +97,18 @@ struct ExportOptions : pattern::PatternOptions {
     bool marks_openings() const {
         return preset == PatternPreset::sewing || allowance().largest() > 0.0;
     }
+    /// What the print adds around each piece.
+    double bleed() const { return texture == SurfacePrint::none ? 0.0 : bleed_mm; }
     bool is_marker() const { return fabric_width_mm > 0.0; }
-    AllowanceWidths allowance() const {
-        AllowanceWidths widths = hem_allowance_mm < 0.0
-                                     ? AllowanceWidths(seam_allowance_mm, seam_allowance_mm, 0.0)
-                                     : AllowanceWidths(seam_allowance_mm, hem_allowance_mm);
-        if (dart_allowance_mm >= 0.0)
-            widths.darts = dart_allowance_mm;
-        return widths;
-    }
+    /// Throws InvalidParameter for zip_seams that are no numbers.
+    AllowanceWidths allowance() const;
 };
 
 /// The options with all that the preset stands for. Throws InvalidParameter for values outside of
 /// their range.
 ExportOptions resolved(const ExportOptions& options);
+
+constexpr double widest_bleed = 3.0; // mm: pieces on pages have this distance
 
 constexpr double tile_overlap = 10.0; // mm that two pages of one sheet share, to be glued
 

@@ -18,6 +18,10 @@ namespace devseg::sheet {
 
 namespace {
 
+// Of paper, at its widest place: fingers and tweezers hold no less.
+constexpr double least_glued_width = 3.0; // mm
+constexpr std::size_t most_names = 5;     // of a note
+
 // Turns that are tried for the least box around a piece, within a quarter. The exact box, which
 // lies on an edge of the outline, took more pages.
 constexpr int box_turns = 30;
@@ -100,7 +104,7 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
 }
 
 // One sheet that is about as high as wide.
-void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
+void nest_freely(PatternLayout& layout, bool keep_grain, double bleed, Progress& progress) {
     double area = 0.0;
     double widest = 0.0;
     std::vector<const SheetPiece*> pieces;
@@ -111,7 +115,7 @@ void nest_freely(PatternLayout& layout, bool keep_grain, Progress& progress) {
     }
     NestingOptions nesting;
     const double side = std::max(std::sqrt(area / covered_share), widest);
-    nesting.gap = std::min(piece_gap, pattern::gap_share * side);
+    nesting.gap = std::max(bleed, std::min(piece_gap, pattern::gap_share * side));
     nesting.width = side + nesting.gap;
     nesting.keep_grain = keep_grain;
     const Nesting nested = nest_pieces(pieces, nesting, progress);
@@ -125,12 +129,13 @@ void mirror_sheets(PatternLayout& layout) {
         piece.mirror(0.5 * layout.sheets[piece.sheet].size.x());
 }
 
-// For each sheet, where its pages end within it: paper is cut and glued there.
+// Lines that no text may cross: where pages end within their sheet, as paper is cut and glued
+// there, and the crosses in the strips. For each sheet.
 std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& layout) {
     std::vector<std::vector<std::array<Vec2, 2>>> borders(layout.sheets.size());
-    for (std::size_t s = 0; s < borders.size(); ++s) {
+    for (std::size_t s = 0; s < borders.size() && layout.page; ++s) {
         const PatternSheet& sheet = layout.sheets[s];
-        const double margin = layout.page ? layout.page->margin : 0.0;
+        const double margin = layout.page->margin;
         const auto add = [&](Index pages, int axis) {
             for (Index k = 1; k < pages; ++k)
                 for (const double strip : {-margin, 0.0, tile_overlap, tile_overlap + margin}) {
@@ -143,6 +148,9 @@ std::vector<std::vector<std::array<Vec2, 2>>> page_borders(const PatternLayout& 
         };
         add(sheet.columns, 0);
         add(sheet.rows, 1);
+        for (const Vec2& place : strip_crosses(sheet, *layout.page))
+            for (const Vec2& arm : {Vec2(cross_arm, 0.0), Vec2(0.0, cross_arm)})
+                borders[s].push_back({place - arm, place + arm});
     }
     return borders;
 }
@@ -160,6 +168,9 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         tabs =
             make_tabs(pattern, {options.tab_depth_mm, options.tabs, options.border_tabs}, tabbing);
     layout.seams_without_tab = tabs.seams_without;
+    for (std::size_t i = 0; i < pattern.pieces.size() && options.glue_tabs; ++i)
+        if (2.0 * pattern.pieces[i].label_radius < least_glued_width)
+            layout.narrow.push_back(static_cast<Index>(i));
     auto drawing = progress.part("drawing pieces", 0.1);
     for (std::size_t i = 0; i < pattern.pieces.size(); ++i) {
         drawing.update(static_cast<double>(i) / static_cast<double>(pattern.pieces.size()));
@@ -183,8 +194,9 @@ PatternLayout place_pieces(const pattern::Pattern& pattern, const ExportOptions&
         return layout;
     }
     const bool keep_grain = options.grain_line && options.grain != pattern::GrainDirection::free;
-    if (options.glue_tabs || options.allowance().largest() > 0.0 || pieces_touch(layout.pieces))
-        nest_freely(layout, keep_grain, laying);
+    if (options.glue_tabs || options.allowance().largest() > 0.0 || options.bleed() > 0.0 ||
+        pieces_touch(layout.pieces))
+        nest_freely(layout, keep_grain, options.bleed(), laying);
     const Eigen::AlignedBox2d box = box_of(layout.pieces);
     const pack::Placement shift{1.0, 0.0, Vec2::Constant(sheet_margin) - box.min()};
     for (SheetPiece& piece : layout.pieces)
@@ -238,6 +250,24 @@ Nesting nest_pieces(const std::vector<const SheetPiece*>& pieces, const NestingO
     return nesting;
 }
 
+std::vector<Vec2> strip_crosses(const PatternSheet& sheet, const PageFormat& page) {
+    std::vector<Vec2> places;
+    const auto add = [&](Index strips, Index pages, int axis) {
+        for (Index k = 1; k < strips; ++k)
+            for (Index j = 0; j < pages; ++j)
+                for (const double share : {0.25, 0.75}) {
+                    Vec2 place;
+                    place[axis] = page.margin + k * page.step()[axis] + 0.5 * tile_overlap;
+                    place[1 - axis] = page.margin + j * page.step()[1 - axis] +
+                                      share * page.printable()[1 - axis];
+                    places.push_back(place);
+                }
+    };
+    add(sheet.columns, sheet.rows, 0);
+    add(sheet.rows, sheet.columns, 1);
+    return places;
+}
+
 PatternLayout lay_out_pattern(const pattern::Pattern& pattern, const ExportOptions& options,
                               Progress& progress) {
     PatternLayout layout = place_pieces(pattern, options, progress);
@@ -263,8 +293,19 @@ std::vector<std::string> layout_notes(const pattern::Pattern& pattern,
          "no room for a number that can be read: the cover of a PDF names them");
     note(layout.left_out.pieces.size(), pattern.pieces.size(), " piece", " pieces",
          "no room for a name that can be read: the cover of a PDF names them");
-    if (layout.fabric && layout.fabric->single_layer_pieces > 0)
-        notes.push_back(std::to_string(layout.fabric->single_layer_pieces) +
+    std::string names;
+    for (std::size_t i = 0; i < layout.narrow.size() && i < most_names; ++i)
+        names += (i > 0 ? ", " : " (") + pattern.pieces[layout.narrow[i]].name;
+    note(layout.narrow.size(), pattern.pieces.size(), " piece", " pieces",
+         ("less than 3 mm at the widest place" + names +
+          (layout.narrow.size() > most_names ? ", ...)" : ")") +
+          ": make the model larger, or give fewer charts or faces")
+             .c_str());
+    Index single = 0;
+    for (const FabricStrip& fabric : layout.fabrics)
+        single += fabric.single_layer_pieces;
+    if (single > 0)
+        notes.push_back(std::to_string(single) +
                         " of the pieces on folded cloth have neither a mirror image nor an axis "
                         "along the grain: cut them from the upper layer alone");
     return notes;

@@ -19,6 +19,7 @@ constexpr double sheet_gap = 2.0 * sheet_margin;
 
 // Distance of two pieces: a blade's width and some more, but not more than small patterns bear.
 constexpr double piece_gap = 3.0; // mm
+static_assert(widest_bleed <= piece_gap, "the print of a piece reaches no other one");
 
 struct NestingOptions {
     double width = 0.0;      // mm
@@ -46,13 +47,19 @@ struct PatternSheet {
     Index rows = 1;
 };
 
-/// A roll of cloth that all pieces lie on.
+/// Where crosses are printed in the strips that pages share, on every page that shows them; from
+/// the sheet's lower left corner. `page` is the format of the sheet's pages.
+std::vector<Vec2> strip_crosses(const PatternSheet& sheet, const PageFormat& page);
+constexpr double cross_arm = 2.5; // mm
+
+/// A roll of cloth that all pieces lie on, or those of one of the model's materials.
 struct FabricStrip {
     std::string material;
     double width = 0.0;    // mm, with both selvedges
     double selvedge = 0.0; // mm
     double length = 0.0;   // mm
-    double use = 0.0;      // share of the cloth between the selvedges that pieces cover
+    double covered = 0.0;  // mm², by pieces
+    double use = 0.0;      // the same as a share of the cloth between the selvedges
     bool is_folded = false;
     Index single_layer_pieces = 0; // cut from the upper layer of folded cloth alone
 };
@@ -71,9 +78,10 @@ struct PatternLayout {
     assembly::Assembly assembly; // the order in which the pieces are put together
     LeftOut left_out;            // texts for which there was no room
     std::optional<PageFormat> page;
-    std::optional<FabricStrip> fabric;
-    std::vector<SizedPieces> sizes; // but the one of the layout
-    Index seams_without_tab = 0;    // for lack of room, where tabs were asked for
+    std::vector<FabricStrip> fabrics; // of a marker: one for each sheet
+    std::vector<SizedPieces> sizes;   // but the one of the layout
+    Index seams_without_tab = 0;      // for lack of room, where tabs were asked for
+    std::vector<Index> narrow;        // pieces too narrow to be glued, where tabs were asked for
 };
 
 /// Draws the pieces and lays them out. Without a page, the layout of the texture coordinates is

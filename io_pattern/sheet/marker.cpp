@@ -56,13 +56,13 @@ std::vector<double> grain_angles(const Vec2& grain, const ExportOptions& options
 class Folding {
 public:
     Folding(const pattern::Pattern& pattern, const ExportOptions& options,
-            const std::vector<SheetPiece>& pieces)
-        : pattern_(pattern), options_(options), pieces_(pieces) {}
+            const std::vector<SheetPiece>& pieces, Index fabric)
+        : pattern_(pattern), options_(options), pieces_(pieces), fabric_(fabric) {}
 
     std::vector<Laid> all() {
         std::vector<Laid> laid;
         for (std::size_t i = 0; i < pieces_.size(); ++i)
-            if (at(pattern_.pieces[i].model) == i)
+            if (at(pattern_.pieces[i].model) == i && pattern_.pieces[i].fabric == fabric_)
                 add_shape(i, laid);
         return laid;
     }
@@ -115,26 +115,29 @@ private:
     const pattern::Pattern& pattern_;
     const ExportOptions& options_;
     const std::vector<SheetPiece>& pieces_;
+    const Index fabric_;
     Index single_count_ = 0;
 };
 
 std::vector<Laid> pieces_to_lay(const pattern::Pattern& pattern, const ExportOptions& options,
-                                PatternLayout& layout) {
-    const double count = static_cast<double>(layout.pieces.size()) * options.copies;
+                                const std::vector<SheetPiece>& pieces, Index number,
+                                FabricStrip& fabric) {
+    const double count = static_cast<double>(pieces.size()) * options.copies;
     if (count > tuning.most_copies)
         throw InvalidParameter("copies: expected at most " +
                                writers::number_text(tuning.most_copies, 0) +
                                " pieces on a marker, found " + writers::number_text(count, 0));
     if (options.fold) {
-        Folding folding(pattern, options, layout.pieces);
+        Folding folding(pattern, options, pieces, number);
         std::vector<Laid> laid = folding.all();
-        layout.fabric->single_layer_pieces = folding.single_count();
+        fabric.single_layer_pieces = folding.single_count();
         return laid;
     }
     std::vector<Laid> laid;
     for (int copy = 0; copy < options.copies; ++copy)
-        for (const SheetPiece& piece : layout.pieces)
-            laid.push_back({piece, false, 1});
+        for (const SheetPiece& piece : pieces)
+            if (pattern.pieces[at(piece.piece)].fabric == number)
+                laid.push_back({piece, false, 1});
     return laid;
 }
 
@@ -170,51 +173,77 @@ void check_widths(const std::vector<Laid>& laid, const std::vector<pack::StripIt
     }
 }
 
-} // namespace
-
-void lay_out_marker(const pattern::Pattern& pattern, const ExportOptions& options,
-                    PatternLayout& layout, Progress& progress) {
-    layout.fabric.emplace();
-    FabricStrip& fabric = *layout.fabric;
+FabricStrip empty_strip(const pattern::Pattern& pattern, const ExportOptions& options,
+                        std::size_t number) {
+    FabricStrip fabric;
     fabric.width = options.fabric_width_mm;
     fabric.selvedge = options.selvedge_mm;
     fabric.is_folded = options.fold;
     fabric.material = pattern.material ? pattern.material->name : "cloth";
+    if (!pattern.fabrics.empty())
+        fabric.material = pattern.fabrics[number];
+    return fabric;
+}
+
+// The pieces of one material.
+void lay_out_strip(const pattern::Pattern& pattern, const ExportOptions& options,
+                   const std::vector<SheetPiece>& pieces, FabricStrip& fabric,
+                   PatternLayout& layout, Progress& progress) {
     const double seen = options.fold ? 0.5 * fabric.width : fabric.width;
     const double left = options.fold ? 0.0 : fabric.selvedge;
     const double room = seen - left - fabric.selvedge;
-    std::vector<Laid> laid = pieces_to_lay(pattern, options, layout);
+    const auto number = static_cast<Index>(layout.sheets.size());
+    std::vector<Laid> laid = pieces_to_lay(pattern, options, pieces, number, fabric);
+    if (laid.empty()) // no piece is mostly of it
+        return;
     number_copies(laid);
     std::vector<pack::StripItem> items;
-    double area = 0.0;
     for (const Laid& piece : laid) {
         items.push_back(item_of(piece, pattern, options));
-        area += static_cast<double>(piece.layers) * items.back().outline.area *
-                (piece.at_fold ? 2.0 : 1.0);
+        fabric.covered += static_cast<double>(piece.layers) * items.back().outline.area *
+                          (piece.at_fold ? 2.0 : 1.0);
     }
     check_widths(laid, items, room);
-    const pack::StripResult strip =
-        pack::pack_strip(items, {room, options.piece_gap_mm, effort_of(options.effort)}, progress);
+    const pack::StripResult strip = pack::pack_strip(
+        items, {room, std::max(options.piece_gap_mm, options.bleed()), effort_of(options.effort)},
+        progress);
     fabric.length = strip.length;
-    fabric.use = area / (strip.length * room * (options.fold ? 2.0 : 1.0));
-    layout.pieces.clear();
+    fabric.use = fabric.covered / (strip.length * room * (options.fold ? 2.0 : 1.0));
     for (std::size_t i = 0; i < laid.size(); ++i) {
         pack::Placement place = strip.placements[i];
         place.offset.x() += left;
         laid[i].piece.move(place);
+        laid[i].piece.sheet = number;
         layout.pieces.push_back(std::move(laid[i].piece));
     }
-    layout.sheets.push_back({Vec2(seen, std::ceil(strip.length) + tuning.caption), 1, 1});
 }
 
-writers::DrawingLayer fabric_layer(const PatternLayout& layout, const Vec2& low) {
-    writers::DrawingLayer layer{"fabric", "Fabric", "#666666", {}, {}, {}};
-    const FabricStrip& fabric = *layout.fabric;
+} // namespace
+
+void lay_out_marker(const pattern::Pattern& pattern, const ExportOptions& options,
+                    PatternLayout& layout, Progress& progress) {
+    const std::vector<SheetPiece> pieces = std::move(layout.pieces);
+    layout.pieces.clear();
+    const std::size_t count = std::max<std::size_t>(1, pattern.fabrics.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        auto laying = progress.part(1.0 / static_cast<double>(count));
+        FabricStrip fabric = empty_strip(pattern, options, k);
+        lay_out_strip(pattern, options, pieces, fabric, layout, laying);
+        const double seen = options.fold ? 0.5 * fabric.width : fabric.width;
+        layout.sheets.push_back({Vec2(seen, std::ceil(fabric.length) + tuning.caption), 1, 1});
+        layout.fabrics.push_back(std::move(fabric));
+    }
+}
+
+namespace {
+
+void draw_strip(const FabricStrip& fabric, const Vec2& low, const std::string& suffix,
+                writers::DrawingLayer& layer) {
     const Vec2 seen(fabric.is_folded ? 0.5 * fabric.width : fabric.width, fabric.length);
-    layer.paths.push_back({"fabric-outline", {rectangle(low, seen)}});
+    layer.paths.push_back({"fabric-outline" + suffix, {rectangle(low, seen)}});
     if (fabric.selvedge > 0.0) {
         const double right = low.x() + seen.x() - fabric.selvedge;
-        writers::DrawingPath lines{"selvedge", {}};
+        writers::DrawingPath lines{"selvedge" + suffix, {}};
         lines.parts.push_back(
             {{Vec2(right, low.y()), Vec2(right, low.y() + fabric.length)}, false});
         if (!fabric.is_folded) {
@@ -233,6 +262,14 @@ writers::DrawingLayer fabric_layer(const PatternLayout& layout, const Vec2& low)
     size *= std::min(1.0, 0.95 * seen.x() / wide);
     layer.texts.push_back({low + Vec2(0.5 * size, fabric.length + 0.5 * tuning.caption), size, text,
                            0.0, writers::TextAnchor::left});
+}
+
+} // namespace
+
+writers::DrawingLayer fabric_layer(const PatternLayout& layout, const std::vector<Vec2>& sheets) {
+    writers::DrawingLayer layer{"fabric", "Fabric", "#666666", {}, {}, {}};
+    for (std::size_t k = 0; k < layout.fabrics.size(); ++k)
+        draw_strip(layout.fabrics[k], sheets[k], k > 0 ? "-" + std::to_string(k + 1) : "", layer);
     return layer;
 }
 

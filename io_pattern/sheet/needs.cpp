@@ -37,9 +37,15 @@ std::string verb(const ExportOptions& options) {
 Needs find_needs(const pattern::Pattern& pattern, const PatternLayout& layout,
                  const ExportOptions& options, Index pages) {
     Needs needs;
-    for (const SheetPiece& piece : layout.pieces)
+    needs.fabric_mm2.assign(pattern.fabrics.size(), 0.0);
+    for (const SheetPiece& piece : layout.pieces) {
+        double area = 0.0;
         for (const std::vector<Vec2>& ring : piece.cut)
-            needs.material_mm2 += plane::signed_area(ring);
+            area += plane::signed_area(ring);
+        needs.material_mm2 += area;
+        if (!pattern.fabrics.empty())
+            needs.fabric_mm2[at(pattern.pieces[at(piece.piece)].fabric)] += area;
+    }
     for (const pattern::Seam& seam : pattern.seams)
         needs.seam_mm += 0.5 * (seam.sides[0].length + seam.sides[1].length);
     needs.hem_mm = pattern.hem_length;
@@ -53,15 +59,21 @@ Needs find_needs(const pattern::Pattern& pattern, const PatternLayout& layout,
     return needs;
 }
 
-std::vector<std::pair<std::string, std::string>> needs_texts(const Needs& needs,
-                                                             const ExportOptions& options) {
+std::vector<std::pair<std::string, std::string>>
+needs_texts(const pattern::Pattern& pattern, const Needs& needs, const ExportOptions& options) {
     const auto number = [](double value, int decimals) {
         return writers::number_text(value, decimals);
     };
     const bool is_sewn = options.craft() == assembly::Craft::sewing;
     std::vector<std::pair<std::string, std::string>> texts;
-    texts.emplace_back(is_sewn ? "Fabric" : "Paper or board",
-                       number(1e-2 * needs.material_mm2, 0) + " cm\xc2\xb2 inside the cut lines");
+    const std::string kind = is_sewn ? "Fabric" : "Paper or board";
+    const auto area = [&](const std::string& name, double mm2) {
+        texts.emplace_back(name, number(1e-2 * mm2, 0) + " cm\xc2\xb2 inside the cut lines");
+    };
+    if (pattern.fabrics.empty())
+        area(kind, needs.material_mm2);
+    for (std::size_t k = 0; k < pattern.fabrics.size(); ++k)
+        area(kind + ", " + pattern.fabrics[k], needs.fabric_mm2[k]);
     texts.emplace_back("Seams", number(1e-3 * needs.seam_mm, 2) + " m");
     if (needs.hem_mm > 0.0)
         texts.emplace_back("Hems", number(1e-3 * needs.hem_mm, 2) + " m");

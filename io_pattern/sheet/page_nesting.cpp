@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numeric>
-#include <optional>
-#include <random>
 #include <utility>
 
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
 #include "devseg/plane/plane.h"
-#include "sheet/page_sheet.h"
+#include "sheet/page_search.h"
 #include "writers/text.h"
 
 namespace devseg::sheet {
@@ -18,19 +18,13 @@ namespace devseg::sheet {
 namespace {
 
 struct Tuning {
-    double cells = 200.0;             // along the shorter side of a page: about 1 mm of an A4 page
+    // Along the shorter side of a page: 1.5 mm of an A4 page, and more where a piece fits narrowly.
+    double cells = 130.0;
+    double most_cells = 1000.0;
     int turns = 16;                   // of a piece on one page, all around
-    int large_turns = 36;             // of a piece on several pages, of which
-    std::size_t tries = 4;            // so many are tried at a time
+    int all_turns = 180;              // of one that fits in none of these
+    int large_turns = 36;             // of a piece on several pages
     double most_pages_across = 200.0; // of one piece: more is a wrong scale
-    // Rows of images that are compared with rows of sheets: about two seconds, and where one
-    // attempt takes longer than that, one attempt.
-    std::int64_t work = 1'200'000'000;
-    int attempts = 800;    // at most
-    unsigned restart = 12; // one of so many attempts lays all pieces anew
-    double full = 0.9;     // share of the paper that no nesting covers
-    // Share of a page below which it is hardly worth the paper.
-    double almost_empty = 0.05;
 };
 constexpr Tuning tuning;
 
@@ -43,7 +37,7 @@ Vec2 turned_size(const std::vector<Vec2>& points, double angle) {
         .sizes();
 }
 
-// Angles at which the piece is tried, around that of its least box.
+// Turns of the piece, evenly all around from that of its least box.
 std::vector<double> angles_of(const pack::Outline& outline, int turns) {
     const double base = pack::best_box_angle(outline);
     std::vector<double> angles;
@@ -52,27 +46,50 @@ std::vector<double> angles_of(const pack::Outline& outline, int turns) {
     return angles;
 }
 
-// The images of a piece on one page; of one that fits on none, all images.
-void draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
+// How much of a page is left beside the piece, in the direction that has less; below 0: it does not
+// fit.
+double room_beside(const pack::Outline& outline, const PageFormat& page, double angle) {
+    const Vec2 room = page.printable() - Vec2::Constant(2.0 * border_clearance);
+    return (room - turned_size(outline.hull, angle)).minCoeff();
+}
+
+// Those turns of the piece that fit on a page; where none of the usual ones does, the best of all.
+std::vector<double> fitting_angles(const pack::Outline& outline, const PageFormat& page) {
+    std::vector<double> angles = angles_of(outline, tuning.turns);
+    const auto fits = [&](double angle) { return room_beside(outline, page, angle) >= 0.0; };
+    angles.erase(std::remove_if(angles.begin(), angles.end(), std::not_fn(fits)), angles.end());
+    if (!angles.empty())
+        return angles;
+    double best = 0.0;
+    for (const double angle : angles_of(outline, tuning.all_turns))
+        if (angles.empty() || room_beside(outline, page, angle) > best) {
+            angles = {angle};
+            best = room_beside(outline, page, angle);
+        }
+    return best >= 0.0 ? angles : std::vector<double>();
+}
+
+// The images of a piece: on one page, or on several where it fits on none. False where the grid is
+// too coarse for a piece that fits: images are larger than their pieces.
+bool draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
     const pack::Outline outline = pack::outline_of(piece.cut);
-    const Vec2 room = problem.page.printable() + Vec2::Constant(problem.cell);
-    for (const bool large : {false, true}) {
-        for (const double angle : angles_of(outline, large ? tuning.large_turns : tuning.turns)) {
-            const bool fits = (room - turned_size(outline.hull, angle)).minCoeff() >= 0.0;
-            if (!large && !fits)
-                continue;
-            pack::FitImage image(pack::rasterize(outline, angle, problem.cell, 0.5 * piece_gap));
-            if (large ||
-                (image.cells.width <= problem.columns && image.cells.height <= problem.rows))
-                problem.poses[i].push_back(std::move(image));
-        }
-        if (!problem.poses[i].empty()) {
-            problem.is_large[i] = large ? 1 : 0;
-            if (large)
-                problem.footprints[i] = find_footprints(problem, problem.poses[i]);
-            return;
-        }
+    const std::vector<double> fitting = fitting_angles(outline, problem.page);
+    std::vector<pack::FitImage>& poses = problem.poses[i];
+    const auto draw = [&](double angle) {
+        return pack::FitImage(pack::rasterize(outline, angle, problem.cell, 0.5 * piece_gap));
+    };
+    for (const double angle : fitting) {
+        pack::FitImage image = draw(angle);
+        if (image.cells.width <= problem.columns && image.cells.height <= problem.rows)
+            poses.push_back(std::move(image));
     }
+    problem.is_large[i] = poses.empty() ? 1 : 0;
+    if (!poses.empty())
+        return true;
+    for (const double angle : angles_of(outline, tuning.large_turns))
+        poses.push_back(draw(angle));
+    problem.footprints[i] = find_footprints(problem, poses);
+    return fitting.empty();
 }
 
 [[noreturn]] void refuse_size(const SheetPiece& piece, const PageFormat& page) {
@@ -97,10 +114,10 @@ void check_scale(const std::vector<SheetPiece>& pieces, const PageFormat& page) 
 }
 
 PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat& page,
-                         Progress& progress) {
+                         double cells, Progress& progress) {
     PageProblem problem;
     problem.page = page;
-    problem.cell = page.printable().minCoeff() / tuning.cells;
+    problem.cell = page.printable().minCoeff() / cells;
     const Vec2 room = page.printable() + Vec2::Constant(piece_gap - 2.0 * border_clearance);
     problem.columns = problem.cells_down(room.x());
     problem.rows = problem.cells_down(room.y());
@@ -109,231 +126,21 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     problem.is_large.assign(pieces.size(), 0);
     for (const SheetPiece& piece : pieces)
         problem.area.push_back(outline_area(piece));
-    parallel_for(
-        static_cast<int>(pieces.size()), [&](int i) { draw_poses(pieces[at(i)], problem, at(i)); },
-        progress);
+    std::vector<std::uint8_t> is_fine(pieces.size(), 0);
+    {
+        auto drawing = progress.part(cells < tuning.most_cells ? 0.5 : 1.0);
+        parallel_for(
+            static_cast<int>(pieces.size()),
+            [&](int i) { is_fine[at(i)] = draw_poses(pieces[at(i)], problem, at(i)) ? 1 : 0; },
+            drawing);
+    }
+    if (cells < tuning.most_cells && std::count(is_fine.begin(), is_fine.end(), 0) > 0)
+        return make_problem(pieces, page, 2.0 * cells, progress);
     for (const auto& poses : problem.poses)
         for (const pack::FitImage& image : poses)
             for (const pack::CellRun& run : image.runs)
                 problem.longest_run = std::max(problem.longest_run, run.last - run.first);
     return problem;
-}
-
-// Where each piece lies.
-struct Filling {
-    std::vector<PageSheet> sheets;
-    std::vector<Index> sheet; // of each piece
-    std::vector<pack::Spot> spot;
-
-    Index page_count() const {
-        Index count = 0;
-        for (const PageSheet& s : sheets)
-            count += s.page_count();
-        return count;
-    }
-    // The sheet with the page that has the least on it.
-    Index emptiest() const {
-        const auto least = std::min_element(sheets.begin(), sheets.end(),
-                                            [](const PageSheet& a, const PageSheet& b) {
-                                                return a.fewest_cells() < b.fewest_cells();
-                                            });
-        return static_cast<Index>(least - sheets.begin());
-    }
-    // Fewer pages, and less on the emptiest one: so that it may vanish.
-    std::pair<Index, Index> score() const {
-        return {page_count(), sheets[at(emptiest())].fewest_cells()};
-    }
-    // Fewer pages, and fewer that are almost empty: what is kept in the end.
-    std::pair<Index, Index> cost(const PageProblem& problem) const {
-        const auto least = static_cast<Index>(tuning.almost_empty * problem.page_area() /
-                                              (problem.cell * problem.cell));
-        Index poor = 0;
-        for (const PageSheet& s : sheets)
-            poor += s.pages_below(least);
-        return {page_count(), poor};
-    }
-    void put(const PageProblem& problem, std::size_t i, std::size_t chosen,
-             const pack::Spot& place) {
-        sheets[chosen].take(problem.poses[i][place.pose], place, problem.area[i]);
-        sheet[i] = static_cast<Index>(chosen);
-        spot[i] = place;
-    }
-};
-
-// Some of the poses, evenly all around or any.
-std::vector<std::size_t> chosen_poses(std::size_t count, std::size_t most,
-                                      std::minstd_rand* random) {
-    std::vector<std::size_t> some;
-    const std::size_t tries = std::min(count, most);
-    for (std::size_t k = 0; k < tries; ++k)
-        some.push_back(random == nullptr ? k * count / tries : (*random)() % count);
-    return some;
-}
-
-// `random`: what else is as good, and where it lies; none: what looks best at first.
-void put_large(const PageProblem& problem, std::size_t i, std::minstd_rand* random,
-               std::int64_t& work, Filling& filling) {
-    const std::vector<pack::FitImage>& poses = problem.poses[i];
-    const std::vector<std::size_t> tried = chosen_poses(poses.size(), tuning.tries, random);
-    PageSheet::LargePlace best;
-    std::size_t chosen = filling.sheets.size();
-    for (std::size_t s = 0; s < filling.sheets.size(); ++s) {
-        const PageSheet::LargePlace place =
-            filling.sheets[s].place_of(poses, tried, problem.footprints[i], random);
-        if (place.is_better_than(best)) {
-            best = place;
-            chosen = s;
-        }
-    }
-    Index most = 1;
-    for (const std::size_t pose : tried)
-        most = std::max(most, PageSheet::pages_for(poses[pose].cells.width, problem.columns,
-                                                   problem.page.step().x() / problem.cell));
-    for (const Footprint& f : problem.footprints[i])
-        most = std::max(most, f.across);
-    // Others may find room beside it on a wider sheet.
-    most += random != nullptr && (*random)() % 2 == 0 ? 1 : 0;
-    std::optional<PageSheet> added;
-    for (Index columns = 1; columns <= most; ++columns) {
-        PageSheet fresh(problem, columns, work);
-        const PageSheet::LargePlace place =
-            fresh.place_of(poses, tried, problem.footprints[i], random);
-        const bool instead = random != nullptr && (*random)() % 2 == 0;
-        if (place.found && (!best.found || place.new_pages < best.new_pages ||
-                            (instead && place.new_pages == best.new_pages))) {
-            best = place;
-            added = std::move(fresh);
-        }
-    }
-    if (added) {
-        chosen = filling.sheets.size();
-        filling.sheets.push_back(std::move(*added));
-    }
-    filling.put(problem, i, chosen, best.spot);
-}
-
-void put_small(const PageProblem& problem, std::size_t i, std::minstd_rand* random,
-               std::int64_t& work, Filling& filling) {
-    const std::vector<pack::FitImage>& poses = problem.poses[i];
-    const std::vector<std::size_t> tried =
-        chosen_poses(poses.size(), random != nullptr ? tuning.tries : poses.size(), random);
-    pack::Spot spot;
-    for (std::size_t s = 0; s < filling.sheets.size(); ++s)
-        if (filling.sheets[s].put_on_page(poses, tried, spot)) {
-            filling.put(problem, i, s, spot);
-            return;
-        }
-    filling.sheets.emplace_back(problem, 1, work);
-    const PageSheet::LargePlace place = filling.sheets.back().place_of(poses, tried, {}, nullptr);
-    filling.put(problem, i, filling.sheets.size() - 1, place.spot);
-}
-
-// Large pieces first, then what fits on the pages that these leave.
-void put_all(const PageProblem& problem, const std::vector<std::size_t>& order,
-             std::minstd_rand* random, std::int64_t& work, const Progress& progress,
-             Filling& filling) {
-    for (const bool large : {true, false})
-        for (const std::size_t i : order) {
-            progress.check();
-            if ((problem.is_large[i] != 0) != large)
-                continue;
-            if (large)
-                put_large(problem, i, random, work, filling);
-            else
-                put_small(problem, i, random, work, filling);
-        }
-}
-
-// Which pieces are laid anew: those of the emptiest page, or any, and some more.
-std::vector<std::uint8_t> pieces_to_move(const PageProblem& problem, const Filling& filling,
-                                         std::minstd_rand& random) {
-    const std::size_t count = problem.area.size();
-    std::vector<std::uint8_t> moves(count, 0);
-    if (random() % tuning.restart == 0)
-        return std::vector<std::uint8_t>(count, 1);
-    const Index emptiest = filling.emptiest();
-    const PageSheet& sheet = filling.sheets[at(emptiest)];
-    if (random() % 4 != 0)
-        for (std::size_t i = 0; i < count; ++i)
-            if (filling.sheet[i] == emptiest)
-                moves[i] =
-                    sheet.needs_emptiest(problem.poses[i][filling.spot[i].pose], filling.spot[i])
-                        ? 1
-                        : 0;
-    for (auto more = static_cast<int>(random() % 3); more >= 0; --more)
-        moves[random() % count] = 1;
-    if (random() % 2 == 0) // small ones are in the way of large ones, and easily laid again
-        for (std::size_t i = 0; i < count; ++i)
-            moves[i] = moves[i] != 0 || problem.is_large[i] == 0 ? 1 : 0;
-    return moves;
-}
-
-// What stays where it is.
-Filling without(const PageProblem& problem, const Filling& filling,
-                const std::vector<std::uint8_t>& moves, std::int64_t& work) {
-    const std::size_t count = moves.size();
-    Filling result;
-    result.sheet.assign(count, -1);
-    result.spot = filling.spot;
-    std::vector<Index> number(filling.sheets.size(), -1);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (moves[i] != 0)
-            continue;
-        Index& chosen = number[at(filling.sheet[i])];
-        if (chosen < 0) {
-            chosen = static_cast<Index>(result.sheets.size());
-            result.sheets.emplace_back(problem, filling.sheets[at(filling.sheet[i])].columns(),
-                                       work);
-        }
-        result.put(problem, i, at(chosen), filling.spot[i]);
-    }
-    return result;
-}
-
-// The largest boxes first.
-std::vector<std::size_t> first_order(const PageProblem& problem) {
-    std::vector<std::size_t> order(problem.area.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto box = [&](std::size_t i) {
-        const pack::ChartCells& cells = problem.poses[i].front().cells;
-        return std::int64_t{cells.width} * cells.height;
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return box(a) > box(b); });
-    return order;
-}
-
-// Some pieces are taken out and laid anew, again and again.
-Filling best_filling(const PageProblem& problem, Progress& progress) {
-    const std::vector<std::size_t> order = first_order(problem);
-    const double total = std::accumulate(problem.area.begin(), problem.area.end(), 0.0);
-    const auto least = static_cast<Index>(std::ceil(total / (tuning.full * problem.page_area())));
-    std::int64_t work = 0;
-    Filling current;
-    current.sheet.assign(order.size(), -1);
-    current.spot.resize(order.size());
-    put_all(problem, order, nullptr, work, progress, current);
-    Filling kept = current;
-    std::minstd_rand random; // the same numbers in every run
-    for (int k = 0; k < tuning.attempts && work < tuning.work &&
-                    kept.cost(problem) > std::pair(least, Index{0});
-         ++k) {
-        progress.update(static_cast<double>(work) / static_cast<double>(tuning.work));
-        const std::vector<std::uint8_t> moves = pieces_to_move(problem, current, random);
-        Filling filling = without(problem, current, moves, work);
-        std::vector<std::size_t> moved;
-        for (const std::size_t i : order)
-            if (moves[i] != 0)
-                moved.push_back(i);
-        for (std::size_t swaps = random() % 2 == 0 ? moved.size() : 0; swaps > 0; --swaps)
-            std::swap(moved[random() % moved.size()], moved[random() % moved.size()]);
-        put_all(problem, moved, &random, work, progress, filling);
-        if (filling.cost(problem) < kept.cost(problem))
-            kept = filling;
-        if (filling.score() <= current.score())
-            current = std::move(filling);
-    }
-    return kept;
 }
 
 // Sheets of several pages first, then single pages, the fullest first.
@@ -359,12 +166,12 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
                           bool tiling, Progress& progress) {
     check_scale(pieces, page);
     auto drawing = progress.part(0.1);
-    const PageProblem problem = make_problem(pieces, page, drawing);
+    const PageProblem problem = make_problem(pieces, page, tuning.cells, drawing);
     for (std::size_t i = 0; i < pieces.size(); ++i)
         if (problem.is_large[i] != 0 && !tiling)
             refuse_size(pieces[i], page);
     auto filling = progress.part(progress.left());
-    const Filling best = best_filling(problem, filling);
+    const Filling best = search_pages(problem, filling);
     const std::vector<Index> ranks = ranks_of(best);
     PageNesting result;
     result.sheets.resize(best.sheets.size());
@@ -375,7 +182,9 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
         const pack::Spot& spot = best.spot[i];
         result.placements.push_back(
             pack::placement_of(problem.poses[i][spot.pose].cells, spot, problem.cell));
-        result.placements.back().offset += Vec2::Constant(origin);
+        const PageSpot margin = best.sheets[at(best.sheet[i])].empty_margin();
+        result.placements.back().offset +=
+            Vec2::Constant(origin) - Vec2(margin[0], margin[1]).cwiseProduct(page.step());
         result.sheet.push_back(ranks[at(best.sheet[i])]);
     }
     return result;

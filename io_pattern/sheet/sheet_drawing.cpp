@@ -28,7 +28,6 @@ constexpr double negligible_piece = 1e-6;
 constexpr double caption_share = 0.32;  // of the margin: font size
 constexpr double largest_caption = 3.2; // mm
 constexpr double least_caption = 1.2;
-constexpr double cross = 2.5; // mm, half the size of a registration cross
 constexpr double page_title = 6.0;
 constexpr double page_text = 3.5;
 constexpr double overview_share = 0.55; // of a page: less than that is too small for the overview
@@ -158,27 +157,6 @@ void add_underlines(const SheetPiece& piece, writers::DrawingLayer& layer) {
     add_lines(lines, false, piece, "-underline", layer);
 }
 
-// Crosses in the middle of the strips that a page shares with its neighbours, in the drawing.
-std::vector<Vec2> cross_places(const PatternSheet& sheet, const PageFormat& page,
-                               const PrintedPage& printed) {
-    const Vec2 half = Vec2::Constant(0.5 * tile_overlap);
-    const Vec2 low = printed.window.low;
-    const Vec2 high = low + printed.window.size;
-    std::vector<Vec2> places;
-    for (const double share : {0.25, 0.75}) {
-        const Vec2 inner = low + share * page.printable();
-        if (printed.column > 0)
-            places.emplace_back(low.x() + half.x(), inner.y());
-        if (printed.column + 1 < sheet.columns)
-            places.emplace_back(high.x() - half.x(), inner.y());
-        if (printed.row + 1 < sheet.rows)
-            places.emplace_back(inner.x(), low.y() + half.y());
-        if (printed.row > 0)
-            places.emplace_back(inner.x(), high.y() - half.y());
-    }
-    return places;
-}
-
 // Where the lowest line of text or picture of a page is.
 double lowest_mark(const writers::DocumentPage& page) {
     double low = page.height;
@@ -279,8 +257,8 @@ writers::Drawing draw_sheets(const PatternLayout& layout, const ExportOptions& o
         numbers, text};
     for (writers::DrawingLayer& layer : size_layers(layout, plan.sheets, options.notch_kind))
         drawing.layers.push_back(std::move(layer));
-    if (layout.fabric)
-        drawing.layers.push_back(fabric_layer(layout, plan.sheets.front()));
+    if (!layout.fabrics.empty())
+        drawing.layers.push_back(fabric_layer(layout, plan.sheets));
     return drawing;
 }
 
@@ -303,12 +281,15 @@ std::vector<writers::DocumentPage> page_sheets(const PatternLayout& layout,
         writers::DrawingLayer marks{"page", "Page marks", "#666666", {}, {}, {}};
         marks.paths.push_back(
             {"", {rectangle(pages[i].window.position, layout.page->printable())}});
-        for (const Vec2& place :
-             cross_places(layout.sheets[pages[i].sheet], *layout.page, pages[i])) {
-            const Vec2 p = place - pages[i].window.low + pages[i].window.position;
-            marks.paths.push_back({"",
-                                   {segment(p - Vec2(cross, 0.0), p + Vec2(cross, 0.0)),
-                                    segment(p - Vec2(0.0, cross), p + Vec2(0.0, cross))}});
+        const Eigen::AlignedBox2d shown(pages[i].window.low,
+                                        pages[i].window.low + pages[i].window.size);
+        for (const Vec2& place : strip_crosses(layout.sheets[pages[i].sheet], *layout.page)) {
+            const Vec2 in_drawing = drawing.sheets[at(pages[i].sheet)].low + place;
+            if (!shown.contains(in_drawing))
+                continue;
+            const Vec2 p = in_drawing - pages[i].window.low + pages[i].window.position;
+            const Vec2 x(cross_arm, 0.0), y(0.0, cross_arm);
+            marks.paths.push_back({"", {segment(p - x, p + x), segment(p - y, p + y)}});
         }
         add_caption(layout, pages[i], i + 1, pages.size(), title, marks);
         page.marks = {std::move(marks)};

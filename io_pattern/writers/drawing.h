@@ -53,17 +53,33 @@ struct DrawingLayer {
     std::vector<DrawingText> texts;
 };
 
+/// Pixels from the upper left corner, row by row, red, green and blue each.
+struct DrawingImage {
+    Vec2 low = Vec2::Zero(); // lower left corner, mm
+    Vec2 size = Vec2::Zero();
+    int columns = 0;
+    int rows = 0;
+    std::vector<std::uint8_t> rgb; // 3 columns rows
+    // In drawings: shown inside of these rings alone, by the even-odd rule.
+    std::vector<DrawingPolyline> clip = {};
+    std::string owner = {}; // the piece that it belongs to, or empty
+};
+
 /// A rectangle of the drawing that is one piece of paper, fabric or board.
 struct DrawingSheet {
     Vec2 low = Vec2::Zero();
     Vec2 size = Vec2::Zero();
 };
 
+constexpr const char* image_layer = "texture"; // id
+constexpr const char* image_label = "Texture"; // for people
+
 struct Drawing {
     double width = 0.0;               // mm
     double height = 0.0;              // mm
     int decimals = 3;                 // of all numbers in the file, enough for the smallest path
     std::vector<DrawingLayer> layers; // those without paths and texts are not written
+    std::vector<DrawingImage> images; // below all layers, a layer of their own ("texture")
     std::vector<DrawingSheet> sheets; // none: the whole drawing is one
     std::vector<DrawingSheet> pages;  // of the sheets; those of one sheet share strips
     /// 0 where the whole drawing is one sheet.
@@ -72,15 +88,6 @@ struct Drawing {
     }
     bool by_piece = false; // what belongs to one piece makes one group, if a format
                            // knows groups
-};
-
-/// Pixels from the upper left corner, row by row, red, green and blue each.
-struct DrawingImage {
-    Vec2 low = Vec2::Zero(); // lower left corner, mm
-    Vec2 size = Vec2::Zero();
-    int columns = 0;
-    int rows = 0;
-    std::vector<std::uint8_t> rgb; // 3 columns rows
 };
 
 /// A rectangle of a drawing, shown on a page at a scale and cut off at its borders.

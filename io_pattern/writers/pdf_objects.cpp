@@ -38,8 +38,12 @@ int PdfObjects::add_stream(const std::string& entries, const std::string& data) 
     const QByteArray packed =
         qCompress(reinterpret_cast<const uchar*>(data.data()), static_cast<int>(data.size()))
             .mid(4);
-    return add("<< " + entries + " /Filter /FlateDecode /Length " + std::to_string(packed.size()) +
-               " >>\nstream\n" + packed.toStdString() + "\nendstream");
+    return add_packed(entries + " /Filter /FlateDecode", packed.toStdString());
+}
+
+int PdfObjects::add_packed(const std::string& entries, const std::string& data) {
+    return add("<< " + entries + " /Length " + std::to_string(data.size()) + " >>\nstream\n" +
+               data + "\nendstream");
 }
 
 std::string PdfObjects::file(int catalogue, int information) const {

@@ -16,6 +16,9 @@ public:
     /// A compressed stream; `entries` of its dictionary beside length and filter.
     int add_stream(const std::string& entries, const std::string& data);
 
+    /// The same for data that is compressed already: `entries` name the filter.
+    int add_packed(const std::string& entries, const std::string& data);
+
     /// The whole file. Every reserved number must have been defined.
     std::string file(int catalogue, int information) const;
 

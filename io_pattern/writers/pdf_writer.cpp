@@ -9,6 +9,7 @@
 #include <set>
 
 #include "writers/font.h"
+#include "writers/jpeg.h"
 #include "writers/pdf_objects.h"
 #include "writers/text.h"
 
@@ -33,10 +34,11 @@ public:
         if (has_wide_text())
             wide_font_ = objects_.reserve();
         declare_layers();
-        const std::string pattern = content(document_.drawing.layers);
+        std::string objects;
+        const std::string pattern = pictures(objects) + content(document_.drawing.layers);
         form_ = objects_.add_stream(
             "/Type /XObject /Subtype /Form /BBox [0 0 " + millimetres(document_.drawing.width) +
-                ' ' + millimetres(document_.drawing.height) + "] /Resources " + resources(""),
+                ' ' + millimetres(document_.drawing.height) + "] /Resources " + resources(objects),
             pattern);
         std::string kids;
         for (const DocumentPage& page : document_.pages)
@@ -142,6 +144,8 @@ private:
             properties_ += "/L" + std::to_string(layer_numbers_.size() - 1) + ' ' + group + ' ';
             groups_ += group + ' ';
         };
+        if (!document_.drawing.images.empty())
+            declare({image_layer, image_label, "", {}, {DrawingPath()}, {}});
         for (const DrawingLayer& layer : document_.drawing.layers)
             declare(layer);
         for (const DocumentPage& page : document_.pages)
@@ -185,6 +189,35 @@ private:
                             PdfObjects::reference(stream) + " >>");
     }
 
+    // The images of the drawing, each inside of its rings.
+    std::string pictures(std::string& objects) {
+        std::string data;
+        for (std::size_t i = 0; i < document_.drawing.images.size(); ++i) {
+            const DrawingImage& image = document_.drawing.images[i];
+            const std::string name = "/Picture" + std::to_string(i);
+            objects += name + ' ' + PdfObjects::reference(add_photograph(image)) + ' ';
+            data += "q ";
+            for (const DrawingPolyline& ring : image.clip)
+                data += outline(ring);
+            if (!image.clip.empty())
+                data += "W* n ";
+            data += millimetres(image.size.x()) + " 0 0 " + millimetres(image.size.y()) + ' ' +
+                    point(image.low) + " cm " + name + " Do Q\n";
+        }
+        if (data.empty())
+            return data;
+        return "/OC /L" + std::to_string(layer_numbers_.at(image_layer)) + " BDC\n" + data +
+               "EMC\n";
+    }
+
+    int add_photograph(const DrawingImage& image) {
+        return objects_.add_packed("/Type /XObject /Subtype /Image /ColorSpace /DeviceRGB "
+                                   "/BitsPerComponent 8 /Filter /DCTDecode /Width " +
+                                       std::to_string(image.columns) + " /Height " +
+                                       std::to_string(image.rows),
+                                   jpeg_bytes(image));
+    }
+
     int add_image(const DrawingImage& image) {
         return objects_.add_stream("/Type /XObject /Subtype /Image /ColorSpace /DeviceRGB "
                                    "/BitsPerComponent 8 /Width " +
@@ -225,16 +258,19 @@ private:
                 data += line.closed ? "h " : "";
                 continue;
             }
-            const char* step = " m ";
-            for (const std::string& text :
-                 point_texts(line, [&](const Vec2& p) { return point(p); })) {
-                data += text + step;
-                step = " l ";
-            }
-            if (line.closed)
-                data += "h ";
+            data += outline(line);
         }
         data += "S\n";
+    }
+
+    std::string outline(const DrawingPolyline& line) const {
+        std::string data;
+        const char* step = " m ";
+        for (const std::string& text : point_texts(line, [&](const Vec2& p) { return point(p); })) {
+            data += text + step;
+            step = " l ";
+        }
+        return line.closed ? data + "h " : data;
     }
 
     void append(const DrawingText& text, std::string& data) {

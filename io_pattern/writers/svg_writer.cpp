@@ -9,6 +9,7 @@
 #include <QString>
 #include <QXmlStreamWriter>
 
+#include "writers/jpeg.h"
 #include "writers/text.h"
 
 namespace devseg::writers {
@@ -18,6 +19,8 @@ namespace {
 const char* const svg_namespace = "http://www.w3.org/2000/svg";
 const char* const inkscape_namespace = "http://www.inkscape.org/namespaces/inkscape";
 const char* const sodipodi_namespace = "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd";
+
+const char* const xlink_namespace = "http://www.w3.org/1999/xlink";
 
 const char* const all = "*"; // no piece has this name
 
@@ -35,6 +38,8 @@ public:
         xml_.writeDefaultNamespace(svg_namespace);
         xml_.writeNamespace(inkscape_namespace, "inkscape");
         xml_.writeNamespace(sodipodi_namespace, "sodipodi");
+        if (!drawing_.images.empty())
+            xml_.writeNamespace(xlink_namespace, "xlink");
         xml_.writeStartElement(svg_namespace, "svg");
         const QString width = number(drawing_.width);
         const QString height = number(drawing_.height);
@@ -46,6 +51,7 @@ public:
         if (drawing_.by_piece)
             for (const std::string& piece : owners())
                 write_piece(piece);
+        write_images("", drawing_.by_piece ? "" : all);
         for (const DrawingLayer& layer : drawing_.layers)
             write_layer(layer, "", drawing_.by_piece ? "" : all);
         xml_.writeEndDocument();
@@ -81,6 +87,7 @@ private:
     // Everything of one piece, by operation: it moves as one.
     void write_piece(const std::string& piece) {
         begin_layer(piece, piece);
+        write_images(piece + '-', piece);
         for (const DrawingLayer& layer : drawing_.layers)
             write_layer(layer, piece + '-', piece);
         xml_.writeEndElement();
@@ -91,6 +98,42 @@ private:
         xml_.writeAttribute("id", text(id));
         xml_.writeAttribute(inkscape_namespace, "groupmode", "layer");
         xml_.writeAttribute(inkscape_namespace, "label", text(label));
+    }
+
+    // The images of one piece, of none (""), or all of them, each inside of its rings.
+    void write_images(const std::string& prefix, const std::string& piece) {
+        bool any = false;
+        for (const DrawingImage& image : drawing_.images) {
+            if (piece != all && image.owner != piece)
+                continue;
+            if (!any)
+                begin_layer(prefix + image_layer + (prefix.empty() ? "" : "-layer"), image_label);
+            any = true;
+            const QString clip = text(image.owner + "-clip-" + std::to_string(++clips_));
+            xml_.writeStartElement(svg_namespace, "clipPath");
+            xml_.writeAttribute("id", clip);
+            xml_.writeEmptyElement(svg_namespace, "path");
+            QString d;
+            for (const DrawingPolyline& ring : image.clip)
+                append(ring, d);
+            xml_.writeAttribute("d", d);
+            xml_.writeAttribute("clip-rule", "evenodd");
+            xml_.writeEndElement();
+            xml_.writeEmptyElement(svg_namespace, "image");
+            xml_.writeAttribute("x", number(image.low.x()));
+            xml_.writeAttribute("y", number(drawing_.height - image.low.y() - image.size.y()));
+            xml_.writeAttribute("width", number(image.size.x()));
+            xml_.writeAttribute("height", number(image.size.y()));
+            xml_.writeAttribute("preserveAspectRatio", "none");
+            xml_.writeAttribute("clip-path", "url(#" + clip + ')');
+            const std::string bytes = jpeg_bytes(image);
+            xml_.writeAttribute(
+                xlink_namespace, "href",
+                "data:image/jpeg;base64," +
+                    QString::fromLatin1(QByteArray::fromStdString(bytes).toBase64()));
+        }
+        if (any)
+            xml_.writeEndElement();
     }
 
     // What belongs to one piece, to none (""), or all of it.
@@ -199,6 +242,7 @@ private:
     const Drawing& drawing_;
     QByteArray bytes_;
     QXmlStreamWriter xml_;
+    int clips_ = 0;
 };
 
 } // namespace

@@ -227,9 +227,35 @@ def strains(results: Mapping[str, Any], material_text: str) -> dict[str, Any]:
     }
 
 
-def marker(results: Mapping[str, Any]) -> dict[str, Any]:
-    """What NAME.json tells of the marker."""
+def fabrics(pattern: Mapping[str, Any]) -> list[str]:
+    """The names of the materials of a model that is of several."""
+    names = pattern.get("material_names")
+    return str(names).split(", ") if names else []
+
+
+def materials(results: Mapping[str, Any], names: list[str]) -> dict[str, Any]:
+    """For each material the area inside its cut lines and its pieces."""
+    count = int(results["pieces_number"])
+    width = max(2, len(str(count)))
+    told: dict[str, Any] = {
+        name: {"area_mm2": float(area), "pieces": []}
+        for name, area in zip(names, results["fabric_area_mm2"], strict=True)
+    }
+    for i, fabric in enumerate(results["piece_fabric"]):
+        told[names[int(fabric)]]["pieces"].append(f"P{i + 1:0{width}d}")
+    return told
+
+
+def marker(results: Mapping[str, Any], names: list[str]) -> dict[str, Any]:
+    """What NAME.json tells of the marker; of each strip where there are several materials."""
+    strips = {
+        name: {"length_mm": float(length), "use": float(use)}
+        for name, length, use in zip(
+            names, results["fabric_lengths_mm"], results["fabric_uses"], strict=bool(names)
+        )
+    }
     return {
+        **({"strips": strips} if names else {}),
         "length_mm": float(results["fabric_length_mm"]),
         "use": float(results["fabric_use"]),
         "single_layer_pieces": int(results["single_layer_pieces_number"]),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from devseg import ply, scene
+from devseg import host, ply, scene
 from devseg.errors import DevsegError
 from devseg.obj_parts import Part
 
@@ -24,6 +25,7 @@ MATERIALS_FILTER = "compute_charts_from_materials_per_face"
 DISKS_FILTER = "compute_seams_charts_to_disks_per_edge"
 COLOR_FILTER = "compute_color_by_chart_per_face"
 SOURCES = ("uv", "materials", "components", "attribute")
+MATERIAL_SOURCES = ("colors", "materials", "attribute")
 
 
 @dataclass(frozen=True)
@@ -34,11 +36,18 @@ class Given:
         charts_from: one of SOURCES, or a file with a number for each face; None: a method.
         keep_seams: whether a method goes on within the seams that there are.
         component: the number of the component to take, the largest is 1; None: all.
+        material_borders: one of MATERIAL_SOURCES: a method goes on within their borders; None.
     """
 
     charts_from: str | None = None
     keep_seams: bool = False
     component: int | None = None
+    material_borders: str | None = None
+
+    @property
+    def has_seams(self) -> bool:
+        """Whether there are seams that somebody has chosen."""
+        return bool(self.charts_from or self.keep_seams or self.material_borders)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -55,17 +64,32 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the method cuts further, and takes no seam of the file or of --charts-from away",
     )
+    group.add_argument(
+        "--material-borders",
+        choices=MATERIAL_SOURCES,
+        help="borders of materials are seams, each piece is of one material, and each material "
+        "has a marker of its own: face colors, materials of the file, or attribute: material_id "
+        "of a PLY file",
+    )
 
 
 def check(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Given:
     """The options as they were given; parser reports wrong usage."""
     if (args.charts_from or args.keep_seams) and args.target_faces:
         parser.error("--charts-from and --keep-seams need the faces of the file: no --target-faces")
-    return Given(args.charts_from, args.keep_seams, args.component)
+    if args.material_borders and (args.charts_from or args.keep_seams or args.target_faces):
+        parser.error(
+            "--material-borders needs the faces of the file and charts that the method makes: no "
+            "--charts-from, --keep-seams or --target-faces"
+        )
+    return Given(args.charts_from, args.keep_seams, args.component, args.material_borders)
 
 
-def prepare(path: Path, meshes: Any, parts: Sequence[Part], given: Given) -> None:
+def prepare(path: Path, meshes: Any, parts: Sequence[Part], given: Given) -> list[str]:
     """Gives the faces of a mesh that was just loaded what the charts are made from.
+
+    Returns:
+        The names of the materials, where the faces have numbers of several ones now.
 
     Raises:
         DevsegError: where the file has no such thing.
@@ -83,25 +107,67 @@ def prepare(path: Path, meshes: Any, parts: Sequence[Part], given: Given) -> Non
             f"{path}: expected seams to keep, found neither chart_id nor texture coordinates; "
             "give --charts-from"
         )
+    names: list[str] = []
     if source == "materials":
-        _number_materials(mesh, parts)
+        names = _number_materials(mesh, parts)
     elif source is not None and source not in SOURCES:
         mesh.add_face_custom_scalar_attribute(
             _read_numbers(Path(source), mesh.face_number()), CHARTS_ATTRIBUTE
         )
     if given.component is not None:
         choose_component(path, meshes, given.component)
+        mesh = meshes.current_mesh()
+    if given.material_borders:
+        names = _part_materials(path, mesh, parts, given.material_borders)
+    return names
 
 
-def _number_materials(mesh: Any, parts: Sequence[Part]) -> None:
+def _number_materials(mesh: Any, parts: Sequence[Part]) -> list[str]:
     import numpy as np
 
     names = sorted({part.material for part in parts})
-    if len(names) > 1:
-        number = np.array([float(names.index(part.material)) for part in parts])
-        mesh.add_face_custom_scalar_attribute(
-            number[scene.part_ids(mesh, parts)], MATERIAL_ATTRIBUTE
+    if len(names) < 2:
+        return []
+    number = np.array([float(names.index(part.material)) for part in parts])
+    mesh.add_face_custom_scalar_attribute(number[scene.part_ids(mesh, parts)], MATERIAL_ATTRIBUTE)
+    return names
+
+
+def _number_colors(mesh: Any) -> list[str]:
+    import numpy as np
+
+    if not mesh.has_face_color():
+        return []
+    levels = np.rint(255 * mesh.face_color_matrix()[:, :3]).astype(int)
+    colors, number = np.unique(levels, axis=0, return_inverse=True)
+    mesh.add_face_custom_scalar_attribute(number.reshape(-1).astype(float), MATERIAL_ATTRIBUTE)
+    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in colors]
+
+
+def _part_materials(path: Path, mesh: Any, parts: Sequence[Part], source: str) -> list[str]:
+    """Makes charts of what is of one material, as numbers; the names of the materials."""
+    import numpy as np
+
+    if source == "attribute":
+        ply.restore_attributes(mesh, path, (MATERIAL_ATTRIBUTE,))
+        names = []
+    else:
+        names = _number_colors(mesh) if source == "colors" else _number_materials(mesh, parts)
+    numbers = np.zeros(0)
+    with contextlib.suppress(host.pymeshlab().PyMeshLabException):
+        numbers = mesh.face_custom_scalar_attribute_array(MATERIAL_ATTRIBUTE)
+    found = np.unique(numbers)
+    if len(found) < 2:
+        raise DevsegError(
+            f"{path}: expected faces of several materials ({source}), found "
+            f"{'one' if len(found) else 'none'}; leave --material-borders out"
         )
+    for name, values in (
+        (CHARTS_ATTRIBUTE, np.searchsorted(found, numbers)),
+        (EDGES_ATTRIBUTE, np.zeros(len(numbers))),
+    ):
+        mesh.add_face_custom_scalar_attribute(values.astype(float), name)
+    return names or [f"material {number:g}" for number in found]
 
 
 def _read_numbers(path: Path, faces: int) -> Any:
@@ -171,7 +237,7 @@ def keep(session: Session, given: Given) -> str | None:
 
     Faces of --charts-from without a chart are left to the method.
     """
-    if given.keep_seams:
+    if given.keep_seams or given.material_borders:
         return "Seams"
     if given.charts_from in (None, "uv", "materials", "components"):
         return None

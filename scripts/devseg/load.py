@@ -94,11 +94,13 @@ def _read(path: Path) -> tuple[Any, str, list[str]]:
         raise DevsegError(f"{path}: expected a mesh file, found {found}; check the name")
     try:
         with path.open("rb") as file:
-            file.read(1)
+            is_empty = not file.read(1)
     except OSError as error:
         raise DevsegError(
             f"{path}: cannot be opened ({error.strerror}); check permissions"
         ) from error
+    if is_empty:
+        raise DevsegError(f"{path}: expected a mesh file, found an empty one; export it again")
     check = _CHECKS.get(path.suffix.lower())
     if check is not None:
         check(path)
@@ -154,9 +156,16 @@ def _load_message(path: Path, error: BaseException) -> str:
         return f"expected a mesh format such as .ply, .obj, .stl or .off, found {found}"
     message = re.sub(r"^Unable to open file: \S.*?(Error|$)", r"\1", message)
     return (
-        f"cannot be read as {path.suffix[1:].upper()} ({message or 'no reason given'}); "
+        f"cannot be read as {path.suffix[1:].upper()} ({message or _unsaid(path)}); "
         "export it again, or as another format"
     )
+
+
+def _unsaid(path: Path) -> str:
+    """What is known of a fault of which the host tells nothing."""
+    if path.suffix.lower() in gltf.EXTENSIONS:  # its triangles have been looked at
+        return "its triangles are in order, but not what is beside them, such as its materials"
+    return "no reason given"
 
 
 def _check(path: Path, meshes: Any, log: str) -> list[str]:

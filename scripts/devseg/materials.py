@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from devseg import collada, gltf, threemf
+from devseg import collada, gltf, three_ds, threemf
 
 # Statements of a material that name an image.
 _IMAGES = re.compile(r"\s*(map_\w+|bump|disp|decal|refl|norm)\s", re.IGNORECASE)
@@ -16,6 +16,7 @@ _COLORS = {
     **dict.fromkeys(gltf.EXTENSIONS, gltf.material_colors),
     ".dae": collada.material_colors,
     ".3mf": threemf.material_colors,
+    ".3ds": three_ds.material_colors,
 }
 # A material that nothing describes.
 _PLAIN = ["Kd 0.8 0.8 0.8", "illum 1"]

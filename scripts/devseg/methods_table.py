@@ -16,6 +16,8 @@ TABLE = {
             "max_l2_stretch",
             "max_linf_stretch",
             "max_chart_l2_stretch",
+            "max_strain",
+            "material",
             "max_iterations",
             "random_seed",
             "selected_only",

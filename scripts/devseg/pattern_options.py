@@ -10,7 +10,7 @@ from devseg.lengths import length, millimetres, page
 
 EXPORT_FILTER = "export_pattern"
 # Formats that the export filter writes.
-PATTERN_FORMATS = ("svg", "pdf", "dxf", "html")
+PATTERN_FORMATS = ("svg", "pdf", "dxf", "html", "png")
 PRESETS = {"plain": "Plain", "sewing": "Sewing", "papercraft": "Papercraft", "laser": "Laser"}
 DXF_KINDS = {"auto": "Automatic", "cutter": "Cutter", "apparel": "Apparel"}
 
@@ -18,13 +18,22 @@ TEXTS = {"text": "Text", "paths": "Paths"}
 GROUPS = {"layer": "Layer", "piece": "Piece"}
 TABS = {"one": "One", "both": "Both", "alternating": "Alternating", "none": "None"}
 FOLD_MARKS = {"lines": "Lines", "outside": "Outside", "none": "None"}
+TEXTURES = {"none": "None", "auto": "Automatic"}
 NOTCHES = {"slit": "Slit", "triangle": "Triangle"}
 CORNERS = {"miter": "Miter", "bevel": "Bevel", "round": "Round"}
 
 
+def _numbers(text: str) -> str:
+    """Numbers of seams, from 1 on, with commas."""
+    words = [word.strip() for word in text.split(",")]
+    if not all(word.isdecimal() and int(word) > 0 for word in words):
+        raise argparse.ArgumentTypeError(f"expected numbers of seams such as 3,7, found '{text}'")
+    return ",".join(words)
+
+
 def add_pattern_options(parser: argparse.ArgumentParser) -> None:
-    """The options that shape svg, pdf and dxf files, beside the scale."""
-    group = parser.add_argument_group("pattern files (svg, pdf, dxf)")
+    """The options that shape pattern files, beside the scale."""
+    group = parser.add_argument_group("pattern files (svg, pdf, dxf, png)")
     group.add_argument("--preset", choices=PRESETS, help="what to make; default: plain")
     group.add_argument(
         "--page",
@@ -50,7 +59,20 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         help="along darts; default: as seams",
     )
     group.add_argument(
+        "--zip-seams", type=_numbers, metavar="N,M", help="numbers of the seams that get a zip"
+    )
+    group.add_argument(
+        "--zip-allowance-mm", type=millimetres(), metavar="A", help="along them; default: as seams"
+    )
+    group.add_argument(
         "--notch-kind", choices=NOTCHES, help="a slit, or a triangle to cut out; default: slit"
+    )
+    group.add_argument(
+        "--alike-mm",
+        type=float,
+        metavar="MM",
+        help="pieces that differ by less get one outline, mirrored or not; "
+        "default: 2 for sewing, else 0, none",
     )
     group.add_argument(
         "--notch-spacing-mm",
@@ -99,6 +121,19 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         help="sides of seams with glue tabs; default: one to fold, else none",
     )
     group.add_argument(
+        "--texture",
+        choices=TEXTURES,
+        help="auto: print the textures of the model on the pieces (svg, pdf, png), else the "
+        "colours of its faces, else those of its vertices; default: none",
+    )
+    group.add_argument(
+        "--bleed",
+        type=millimetres(),
+        dest="bleed_mm",
+        metavar="B",
+        help="of the texture beyond the cut lines, at most 3; default: 2",
+    )
+    group.add_argument(
         "--group", choices=GROUPS, help="groups of an SVG: by operation or by piece; default: layer"
     )
     group.add_argument(
@@ -137,6 +172,7 @@ def _add_switches(group: argparse._ArgumentGroup) -> None:
         ("drill-marks", "a cross where each dart ends"),
         ("grain-line", "an arrow along the threads of the cloth"),
         ("mirror", "as seen from inside the model"),
+        ("registration-marks", "marks by which a cutter finds what was printed"),
     ):
         group.add_argument(f"--{name}", action="store_true", help=text, default=None)
     group.add_argument(
@@ -166,11 +202,14 @@ _PARAMETERS = (
     "seam_allowance_mm",
     "hem_allowance_mm",
     "dart_allowance_mm",
+    "zip_allowance_mm",
+    "zip_seams",
     "drill_marks",
     "max_piece_mm",
     "simplify_mm",
     "curve_mm",
     "tab_depth_mm",
+    "alike_mm",
     "notch_spacing_mm",
     "fold_angle",
     "glue_tabs",
@@ -189,6 +228,8 @@ _PARAMETERS = (
     "sewing_mm_per_minute",
     "stuffing_g_per_litre",
     "scale_check",
+    "bleed_mm",
+    "registration_marks",
 )
 
 # The option that sets a parameter of the export filter.
@@ -204,6 +245,7 @@ OPTION_OF = {
             "text",
             "tabs",
             "fold_marks",
+            "texture",
         )
     },
     **{
@@ -221,6 +263,7 @@ OPTION_OF = {
     "dxf_kind": "--dxf",
     "perforation_mm": "--perforation",
     "perforation_gap_mm": "--perforation",
+    "bleed_mm": "--bleed",
 }
 
 _CHOICES = {
@@ -232,6 +275,7 @@ _CHOICES = {
     "text": TEXTS,
     "tabs": TABS,
     "fold_marks": FOLD_MARKS,
+    "texture": TEXTURES,
 }
 
 

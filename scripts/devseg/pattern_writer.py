@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from devseg import cloth, guide, host, ply, scene
+from devseg.given import MATERIAL_ATTRIBUTE
 from devseg.obj_parts import Part
 from devseg.obj_writer import write_obj
 from devseg.pattern_options import PATTERN_FORMATS
@@ -19,6 +20,17 @@ MESH_FORMATS = ("ply", "obj")
 
 # Higher levels take several times as long for a tenth of the size.
 PNG_COMPRESSION = 1
+
+# What follows NAME in pattern files of pixels.
+PAGE = "_page"
+
+
+def pages(target: Path, results: Mapping[str, Any]) -> list[Path]:
+    """The files of a pattern of pixels: one for each page."""
+    count = int(results["pages_number"])
+    if count == 1:
+        return [target]
+    return [target.with_name(f"{target.stem}_{i + 1}{target.suffix}") for i in range(count)]
 
 
 class PatternWriter:
@@ -44,11 +56,18 @@ class PatternWriter:
         files = list(cloth.written(plain))
         for extension in self._formats(PATTERN_FORMATS):
             for suffix, parameters in files:
-                target = self._target(extension, suffix)
+                # NAME.png is the picture of the mesh.
+                own = PAGE + suffix if extension == "png" else suffix
+                target = self._target(extension, own)
                 results = self.session.export(target, parameters)
-                if suffix:
-                    self.outputs[f"{extension}{suffix}"] = target.name
+                for page in pages(target, results) if extension == "png" else [target]:
+                    if page.stem != self.stem.name:
+                        kind = page.stem.removeprefix(self.stem.name)
+                        self.outputs[f"{extension}{kind}"] = page.name
+            names = cloth.fabrics(plain)
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
+            if names:
+                self.guide["materials"] = cloth.materials(results, names)
             if "material" in plain:
                 self.guide["cloth"] = cloth.strains(results, plain["material"])
         for extension in self.options.formats:
@@ -56,7 +75,7 @@ class PatternWriter:
                 with self.progress.stage(f"marker {extension}"):
                     target = self._target(extension, "_marker")
                     results = self.session.export(target, marker)
-                self.guide["marker"] = cloth.marker(results)
+                self.guide["marker"] = cloth.marker(results, cloth.fabrics(marker))
                 self.outputs[f"marker_{extension}"] = target.name
         if self.options.picture:
             with self.progress.stage("picture"):
@@ -77,6 +96,7 @@ class PatternWriter:
                 continue
             attributes = ["chart_id", "seam_edges"]
             attributes += [scene.PART_ATTRIBUTE] if len(parts) > 1 else []
+            attributes += [MATERIAL_ATTRIBUTE] if self.options.given.material_borders else []
             self.session.save(
                 target,
                 binary=True,
@@ -91,5 +111,7 @@ class PatternWriter:
             if extension in known:
                 with self.progress.stage(extension):
                     yield extension
-                if self._target(extension).exists():  # else one for each size
+                if (
+                    extension != "png" and self._target(extension).exists()
+                ):  # else one for each size
                     self.outputs[extension] = self._target(extension).name

@@ -22,7 +22,7 @@ from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
 from devseg.observer import heard
 from devseg.outputs import plain, staged, to_json
-from devseg.pattern_options import EXPORT_FILTER
+from devseg.pattern_options import EXPORT_FILTER, TEXTURES
 from devseg.pattern_writer import MESH_FORMATS, PatternWriter
 from devseg.plugins import load_plugins
 from devseg.progress import Progress
@@ -56,7 +56,7 @@ class RunOptions:
         method: segmentation method.
         segmentation: parameters of its filter that differ from the defaults.
         flatten: key of FLATTENINGS.
-        formats: svg, pdf, dxf, ply, obj.
+        formats: svg, pdf, dxf, html, png, ply, obj.
         pattern: parameters of the export filter that differ from the defaults.
         target_faces: simplify the mesh to so many faces first; None: leave it.
         deforms: whether charts are deformed until they unfold exactly; None: as the method does.
@@ -179,7 +179,7 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
         loaded = load_mesh(path, options.objects)
         up = options.up or loaded.frame.up or "y"
         with host.captured():
-            prepare(path, loaded.meshes, loaded.parts, options.given)
+            materials = prepare(path, loaded.meshes, loaded.parts, options.given)
         scene.turn(loaded.meshes, up)
     mesh = loaded.meshes.current_mesh()
     size = {"vertices": mesh.vertex_number(), "faces": mesh.face_number()}
@@ -187,6 +187,8 @@ def process(path: Path, options: RunOptions, folder: Path, tell: Tell) -> dict[s
     texcoords = old_texcoords(session, options)
     measures = flatten_mesh(session, options, progress)
     pattern, extents = scaled(session, options, loaded.frame, up)
+    if materials:
+        pattern["material_names"] = ", ".join(name.replace(",", ";") for name in materials)
     writer = PatternWriter(session, options, folder / name, progress)
     writer.write_patterns(pattern)
     scene.turn(loaded.meshes, up, back=True)
@@ -223,7 +225,8 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
             close_holes(session, options.close_holes)
     if options.target_faces is not None:
         with progress.stage("simplify"):
-            found["simplification"] = simplify(session, options.target_faces)
+            textured = options.pattern.get("texture") == TEXTURES["auto"]
+            found["simplification"] = simplify(session, options.target_faces, textured)
     with progress.stage("segment"):
         made = _make_charts(session, options)
     found["method_results"] = made
@@ -264,8 +267,7 @@ def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
 
 def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[str, Any]:
     """Flattens the charts; measures of them, by kind."""
-    chosen = options.given.charts_from or options.given.keep_seams
-    kept = {"keep": "Seams"} if chosen else {}
+    kept = {"keep": "Seams"} if options.given.has_seams else {}
     with progress.stage("flatten"):
         method, effort = FLATTENINGS[options.flatten], EFFORTS[options.effort]
         flat = session.apply(FLATTEN_FILTER, method=method, effort=effort, **kept)

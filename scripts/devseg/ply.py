@@ -102,12 +102,15 @@ def check_size(path: Path) -> None:
         )
 
 
-def restore_attributes(mesh: Any, path: str | Path) -> list[str]:
-    """Gives a mesh loaded from a binary PLY file the charts and seams that the file holds.
+def restore_attributes(
+    mesh: Any, path: str | Path, attributes: Sequence[str] = ATTRIBUTES
+) -> list[str]:
+    """Gives a mesh loaded from a binary PLY file what the file holds of its faces.
 
     Args:
         mesh: the pymeshlab mesh that was loaded from the file, unchanged.
         path: the file.
+        attributes: their names in the file, charts and seams else.
 
     Returns:
         The names of the attributes that the mesh has now.
@@ -117,7 +120,7 @@ def restore_attributes(mesh: Any, path: str | Path) -> list[str]:
     # A loader that dropped faces has renumbered them.
     if rows is None or len(rows) != mesh.face_number():
         return []
-    names = [name for name in ATTRIBUTES if name in (rows.dtype.names or ())]
+    names = [name for name in attributes if name in (rows.dtype.names or ())]
     for name in names:
         mesh.add_face_custom_scalar_attribute(rows[name].astype("f8"), name)
     return names

@@ -75,7 +75,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--flatten",
         choices=FLATTENINGS,
-        help="default: symmetric-dirichlet; lpfb with --method plush",
+        help="default: symmetric-dirichlet; lpfb with --method plush, and where --material bounds "
+        "the strain of charts",
     )
     parser.add_argument(
         "--seams",
@@ -233,7 +234,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
     """What the options of add_run_options ask for; parser reports those that do not fit."""
     from devseg.pipeline import RunOptions
 
-    if args.close_holes and (args.keep_texcoords or args.charts_from or args.keep_seams):
+    given_seams = args.charts_from or args.keep_seams or args.material_borders
+    if args.close_holes and (args.keep_texcoords or given_seams):
         parser.error("--close-holes needs charts that the method makes, without those of the file")
     if args.keep_texcoords and (args.target_faces or "ply" not in args.formats):
         parser.error("--keep-texcoords needs --formats with ply, and no --target-faces")
@@ -260,7 +262,8 @@ def run_options(args: argparse.Namespace, parser: argparse.ArgumentParser) -> Ru
         segmentation["material"] = args.material
     if method.preset:
         pattern.setdefault("preset", PRESETS[method.preset])
-    flattening = args.flatten or method.flatten
+    bounds_strain = args.material and method.bounds_material
+    flattening = args.flatten or ("lpfb" if bounds_strain else method.flatten)
     return RunOptions(
         args.out,
         method,
@@ -291,7 +294,8 @@ def _smooth_seams(
         parser.error(f"--seams smooth does not apply to --method {args.method}")
     if args.seams == "smooth" and args.keep_texcoords:
         parser.error("--keep-texcoords needs the faces of the file: give --seams edges")
-    if args.seams or args.charts_from or args.keep_seams:
+    given_seams = args.charts_from or args.keep_seams or args.material_borders
+    if args.seams or given_seams:
         return args.seams == "smooth"  # seams that somebody has chosen stay where they are
     if args.material and METHODS[args.method].bounds_material:
         return False  # patches were judged with their seams on edges: curves strain them more

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from devseg import collada, gltf, obj_parts, ply, stl, threemf
+from devseg import collada, gltf, obj_parts, ply, stl, three_ds, threemf
 from devseg.errors import DevsegError
 from devseg.frame import UPRIGHT
 from devseg.obj_parts import Part
@@ -52,7 +52,7 @@ def layers(path: Path, meshes: Any) -> list[Layer]:
         name = "" if mesh.label() == path.name else mesh.label()
         faces = mesh.face_number()
         found.append(Layer(mesh.id(), faces, [(Part(name, "", ""), faces)]))
-    named = _named(path)
+    named = _named(path, found)
     if len(named) != len(found):
         return found
     return [_with_names(layer, parts) for layer, parts in zip(found, named, strict=True)]
@@ -68,7 +68,7 @@ def _with_names(layer: Layer, parts: list[tuple[Part, int]]) -> Layer:
     return replace(layer, parts=[(Part(name, "", ""), layer.faces)], is_lost=len(parts) > 1)
 
 
-def _named(path: Path) -> list[list[tuple[Part, int]]]:
+def _named(path: Path, found: Sequence[Layer]) -> list[list[tuple[Part, int]]]:
     """The parts of each layer and their faces, of formats that are looked into."""
     extension = path.suffix.lower()
     if extension in gltf.EXTENSIONS:
@@ -81,6 +81,12 @@ def _named(path: Path) -> list[list[tuple[Part, int]]]:
         return [
             [(Part(one.name, "", run.material), run.triangles) for run in one.runs]
             for one in threemf.built(path)
+        ]
+    if extension == ".3ds":
+        runs = three_ds.runs_of_layers(path, [(layer.name, layer.faces) for layer in found])
+        return [
+            [(Part(layer.name, "", material), count) for material, count in own]
+            for layer, own in zip(found, runs, strict=True)
         ]
     if extension == ".dae":
         return [[(Part(one.object, "", one.material), one.triangles) for one in collada.runs(path)]]

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from devseg.pipeline import Session
 
 SIMPLIFY_FILTER = "meshing_decimation_quadric_edge_collapse"
+TEXTURED_FILTER = "meshing_decimation_quadric_edge_collapse_with_texture"
 CLOSE_HOLES_FILTER = "meshing_close_holes"
 DISTANCE_FILTER = "get_hausdorff_distance"
 
@@ -21,9 +22,10 @@ def close_holes(session: Session, most_edges: int) -> None:
     session.call(CLOSE_HOLES_FILTER, maxholesize=most_edges, newfaceselected=False)
 
 
-def simplify(session: Session, target_faces: int) -> dict[str, Any]:
+def simplify(session: Session, target_faces: int, textured: bool = False) -> dict[str, Any]:
     """Replaces the mesh by one of so many faces; how far apart both are, both ways.
 
+    A texture that is to be printed keeps its place on the surface, at some cost of the shape.
     Deviations are shares of the diagonal of the model's box.
     """
     meshes = session.meshes
@@ -33,14 +35,15 @@ def simplify(session: Session, target_faces: int) -> dict[str, Any]:
     session.call("generate_copy_of_current_mesh")
     original = meshes.current_mesh_id()
     meshes.set_current_mesh(simplified)
+    keeps = textured and meshes.current_mesh().has_wedge_tex_coord()
     session.call(
-        SIMPLIFY_FILTER,
+        TEXTURED_FILTER if keeps else SIMPLIFY_FILTER,
         targetfacenum=target_faces,
         # Kept rims cost most of the faces: they are simplified, and weigh more than the rest.
         preserveboundary=False,
         boundaryweight=RIM_WEIGHT,
-        preservetopology=True,
         preservenormal=True,
+        **({} if keeps else {"preservetopology": True}),
     )
     ways = [
         session.call(DISTANCE_FILTER, sampledmesh=one, targetmesh=other, samplevert=True)

@@ -4,8 +4,9 @@
 
 The default folder is public/ in DEVSEG_DATA. Each pair of neighbours is joined, and one of what is
 left of it is split; the next pair is one of the new atlas. After each step the charts are flattened
-and measured: all are disks or have flat holes, none is flipped, none lies on itself. A refusal has
-to leave everything as it was. Prints a row for each mesh and ends with 1 where something was wrong.
+and measured: all are disks or have flat holes, none is flipped, none lies on itself, and a joined
+chart is in one piece. A refusal has to leave everything as it was. Prints a row for each mesh and
+ends with 1 where something was wrong.
 """
 
 from __future__ import annotations
@@ -58,11 +59,12 @@ def select(meshes: Any, charts: list[int]) -> None:
     )
 
 
-def faults(meshes: Any) -> str:
+def faults(meshes: Any, name: str) -> str:
     """What is wrong with the atlas, once it is flat; nothing if all is well."""
-    getattr(meshes, FLATTEN)(pack=False)
+    flat = getattr(meshes, FLATTEN)(pack=False)
     found = meshes.get_parametrization_measures()
     wrong = {
+        "cuts of joined charts": flat["overlap_cuts_number"] if name == JOIN else 0,
         "charts that are no disks": found["charts_number"]
         - found["disk_charts_number"]
         - found["holed_charts_number"],
@@ -103,7 +105,7 @@ class Edits:
             return
         self.seconds[name].append(time.process_time() - start)
         self.made[name] += 1
-        if found := faults(self.meshes):
+        if found := faults(self.meshes, name):
             self.wrong.append(f"{name} {charts}: {found}")
 
     def row(self, path: Path) -> str:

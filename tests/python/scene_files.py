@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import struct
 import subprocess
 import sys
 import zipfile
@@ -98,3 +99,37 @@ def run_json(*arguments: str | float | Path) -> dict[str, Any]:
     told = [line.split(": ", 3)[3] for line in done.stderr.splitlines()]
     assert told == result["warnings"]
     return result
+
+
+def chunk(kind: int, *parts: bytes) -> bytes:
+    """A chunk of a 3DS file."""
+    data = b"".join(parts)
+    return struct.pack("<HI", kind, 6 + len(data)) + data
+
+
+def object_3ds(name: str, mesh: meshes.Mesh, materials: dict[str, list[int]]) -> bytes:
+    """A mesh with the faces of each material."""
+    vertices, faces = mesh
+    rows = np.c_[faces, np.zeros(len(faces))].astype("<u2")
+    groups = [
+        chunk(0x4130, f"{material}\0".encode(), np.array([len(own), *own], dtype="<u2").tobytes())
+        for material, own in materials.items()
+    ]
+    points = chunk(0x4110, struct.pack("<H", len(vertices)), vertices.astype("<f4").tobytes())
+    cells = chunk(0x4120, struct.pack("<H", len(faces)), rows.tobytes(), *groups)
+    return chunk(0x4000, f"{name}\0".encode(), chunk(0x4100, points, cells))
+
+
+def write_3ds(path: Path, colors: dict[str, tuple[int, int, int]], *objects: bytes) -> Path:
+    """A file of objects, and of materials whose colours are whole numbers to 255."""
+    materials = [
+        chunk(
+            0xAFFF,
+            chunk(0xA000, f"{name}\0".encode()),
+            chunk(0xA020, chunk(0x0011, bytes(color))),
+        )
+        for name, color in colors.items()
+    ]
+    version = chunk(0x0002, struct.pack("<I", 3))
+    path.write_bytes(chunk(0x4D4D, version, chunk(0x3D3D, *materials, *objects)))
+    return path

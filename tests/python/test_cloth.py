@@ -30,8 +30,9 @@ def _run(ball: Path, folder: Path, *options: str) -> dict[str, Any]:
 
 
 def test_strain_is_told_for_each_piece(ball: Path, tmp_path: Path) -> None:
-    """Few charts strain leather too much, and a note says so."""
-    result = _run(ball, tmp_path, "--charts", "4", "--material", "leather", "--formats", "svg")
+    """Few charts of a method that knows no strain are too much for leather; a note says so."""
+    options = ["--method", "vsa", "--charts", "4", "--material", "leather", "--formats", "svg"]
+    result = _run(ball, tmp_path, *options)
     pieces = result["cloth"]["pieces"]
     assert len(pieces) == result["parametrization"]["charts_number"]
     assert result["cloth"]["pieces_above_limits"] > 0
@@ -39,6 +40,62 @@ def test_strain_is_told_for_each_piece(ball: Path, tmp_path: Path) -> None:
     for piece in pieces.values():
         assert 0 <= piece["along_95"] <= piece["along"]
         assert piece["within_limits"] == (piece["limit_use"] <= 1 and piece["worst_use"] <= 2)
+
+
+def test_charts_keep_the_limits_of_their_material(ball: Path, tmp_path: Path) -> None:
+    """D-Charts are cut until the finished pieces strain the material within its limits."""
+    options = ["--charts", "4", "--formats", "svg", "--preset", "sewing"]
+    lengths = []
+    for material, limit in (("fleece", 0.1), ("vinyl", 0.02)):
+        result = _run(ball, tmp_path / material, *options, "--material", material)
+        assert result["cloth"]["pieces_above_limits"] == 0
+        assert result["method_results"]["strain_99"] <= limit
+        assert result["method_results"]["largest_strain"] <= 2 * limit
+        assert not any(f"strain {material}" in warning for warning in result["warnings"])
+        lengths.append(result["method_results"]["seam_length"])
+    assert lengths[0] < lengths[1]
+
+
+def test_materials_have_pieces_and_strips_of_their_own(tmp_path: Path) -> None:
+    """The upper half of a ball is red, the lower one blue: so is each piece, and each marker."""
+    vertices, faces = meshes.sphere()
+    up = vertices[faces].mean(axis=1)[:, 1] > 0
+    path = tmp_path / "ball.obj"
+    rows = ["v " + " ".join(f"{x:.9g}" for x in vertex) for vertex in vertices]
+    for name, half in (("red felt", faces[up]), ("blue", faces[~up])):
+        rows += [f"usemtl {name}", *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in half)]
+    path.write_text("\n".join(rows))
+    options = ["--material-borders", "materials", "--fabric-width-mm", "500", "--effort", "fast"]
+    result = _run(path, tmp_path / "out", *options, "--formats", "svg,ply", "--charts", "4")
+    count = result["parametrization"]["charts_number"]
+    told = result["materials"]
+    assert set(told) == {"blue", "red felt"}
+    assert sum(len(one["pieces"]) for one in told.values()) == count
+    areas = [one["area_mm2"] for one in told.values()]
+    assert areas[0] == pytest.approx(areas[1], rel=0.05)
+    assert sum(areas) == pytest.approx(result["needs"]["material_mm2"])
+    strips = result["marker"]["strips"]
+    assert set(strips) == set(told)
+    assert sum(strip["length_mm"] for strip in strips.values()) == pytest.approx(
+        result["marker"]["length_mm"]
+    )
+    text = (tmp_path / "out" / "ball_marker.svg").read_text()
+    assert "red felt, 500 mm wide" in text
+    assert "blue, 500 mm wide" in text
+    # No piece has faces of both.
+    assert not any("faces of other materials" in warning for warning in result["warnings"])
+
+
+def test_borders_need_materials(
+    ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A ball of one material has none, and nothing is written."""
+    out = tmp_path / "out"
+    for source in ("colors", "materials", "attribute"):
+        arguments = ["run", str(ball), "-o", str(out), "--material-borders", source]
+        assert main(arguments) == 1
+        assert "expected faces of several materials" in capsys.readouterr().err
+    assert not out.exists()
 
 
 def test_values_of_its_own_come_from_a_file(ball: Path, tmp_path: Path) -> None:
@@ -134,6 +191,7 @@ def test_what_does_not_fit_is_refused(
         (["--fold"], "--fold needs the width of the cloth"),
         (["--fabric-width-mm", "900", "--formats", "ply"], "needs --formats"),
         (["--grain", "sideways"], "expected best"),
+        (["--material-borders", "colors", "--keep-seams"], "charts that the method makes"),
         (["--sizes", "200,200"], "heights in mm that differ"),
         (["--sizes", "200", "--height-mm", "100"], "leave --height-mm"),
         (["--material", "nothing.json"], "cannot read nothing.json"),

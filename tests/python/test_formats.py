@@ -8,9 +8,19 @@ import numpy as np
 import pytest
 
 import meshes
+from devseg import three_ds
 from devseg.load import list_objects, load_mesh
 from devseg.obj_parts import Part
-from scene_files import geometry, primitives, run_json, text_stl, write_3mf, write_dae
+from scene_files import (
+    geometry,
+    object_3ds,
+    primitives,
+    run_json,
+    text_stl,
+    write_3ds,
+    write_3mf,
+    write_dae,
+)
 
 pytestmark = pytest.mark.usefixtures("pymeshlab")
 
@@ -133,3 +143,34 @@ def test_strips_fans_and_polygons_of_collada_are_read(
     assert mesh.vertex_matrix()[mesh.face_matrix()] == pytest.approx(points[faces], abs=1e-5)
     assert loaded.parts == [Part("Sheet", "", "x")]
     assert loaded.warnings == ["lines of the file were left out"]
+
+
+def test_materials_of_3ds(tmp_path: Path) -> None:
+    (vertices, faces), tube = meshes.cube(), meshes.cylinder()
+    cube = 90 * vertices, faces
+    path = write_3ds(
+        tmp_path / "a.3ds",
+        {"Red felt": (255, 0, 0), "Blue": (0, 0, 128)},
+        object_3ds("Lid", cube, {"Red felt": [0, 1, 6, 7], "Blue": [2, 3, 4, 5]}),
+        object_3ds("Tube", tube, {"Blue": list(range(len(tube[1])))}),
+    )
+    result = run_json(path, "-o", tmp_path / "out", "--formats", "obj")
+    assert [tuple(part.values()) for part in result["parts"]] == [
+        ("Lid", "", "Red felt", 4),
+        ("Lid", "", "Blue", 4),
+        ("Lid", "", "", 4),
+        ("Tube", "", "Blue", len(tube[1])),
+    ]
+    library = (tmp_path / "out" / "a.obj.mtl").read_text()
+    assert "newmtl Red felt\nKd 1 0 0\n" in library and "Kd 0 0 0.501961" in library
+
+
+def test_a_3ds_file_that_is_cut_off_has_no_materials(tmp_path: Path) -> None:
+    vertices, faces = meshes.cube()
+    data = write_3ds(
+        tmp_path / "a.3ds", {}, object_3ds("Lid", (vertices, faces), {"Blue": [0, 1, 2]})
+    ).read_bytes()
+    path = tmp_path / "b.3ds"
+    for end in range(len(data)):
+        path.write_bytes(data[:end])
+        assert three_ds.objects(path) == [] and three_ds.material_colors(path) == {}

@@ -69,6 +69,114 @@ def test_islands_of_the_file_are_the_pieces_at_their_true_size(tmp_path: Path) -
     assert all(f"P0{i}" in svg for i in range(1, 5)) and "P05" not in svg
 
 
+def islands(vertices: np.ndarray, faces: np.ndarray, uv: np.ndarray) -> int:
+    """How many parts hang together by edges whose faces have the same coordinates, unfolded."""
+    leader = list(range(len(faces)))
+
+    def find(f: int) -> int:
+        while leader[f] != f:
+            f = leader[f]
+        return f
+
+    beside: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for f, face in enumerate(faces):
+        for k in range(3):
+            a, b = int(face[k]), int(face[(k + 1) % 3])
+            beside.setdefault((min(a, b), max(a, b)), []).append((f, k))
+
+    def area(f: int) -> float:
+        p, q = uv[f, 1] - uv[f, 0], uv[f, 2] - uv[f, 0]
+        return float(p[0] * q[1] - p[1] * q[0])
+
+    for sides in beside.values():
+        if len(sides) != 2:
+            continue
+        (f, i), (g, k) = sides
+        whole = np.allclose(uv[f, i], uv[g, (k + 1) % 3]) and np.allclose(
+            uv[f, (i + 1) % 3], uv[g, k]
+        )
+        if whole and area(f) * area(g) > 0:
+            leader[find(f)] = find(g)
+    return len({find(f) for f in range(len(faces))})
+
+
+def read_obj(file: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices, triangles, and their texture coordinates (#F by 3 by 2)."""
+    words = [line.split() for line in file.read_text().splitlines() if line.strip()]
+    vertices = np.array([list(map(float, w[1:4])) for w in words if w[0] == "v"])
+    places = np.array([list(map(float, w[1:3])) for w in words if w[0] == "vt"])
+    corners = []
+    for row in (w[1:] for w in words if w[0] == "f"):
+        numbers = [[int(n) - 1 for n in corner.split("/")[:2]] for corner in row]
+        corners += [[numbers[0], numbers[k], numbers[k + 1]] for k in range(1, len(numbers) - 1)]
+    both = np.array(corners)
+    return vertices, both[:, :, 0], places[both[:, :, 1]]
+
+
+def built(name: str, folder: Path) -> Path:
+    """An OBJ file with islands at scales of their own."""
+    if name == "tube":
+        mesh = meshes.cylinder()
+        return obj_with_islands(folder / "tube.obj", mesh, quarters(mesh))
+    if name == "ball":
+        mesh = meshes.sphere()
+        return obj_with_islands(folder / "ball.obj", mesh, quarters(mesh))
+    vertices, faces = meshes.cube()  # each side drawn from its own corner, and larger than the last
+    rows = ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in vertices]
+    corners, words = [], []
+    for f, face in enumerate(faces):
+        side = f // 2
+        flat = np.delete(vertices[face], int(np.ptp(vertices[face], axis=0).argmin()), axis=1)
+        words.append("f " + " ".join(f"{v + 1}/{len(corners) + k + 1}" for k, v in enumerate(face)))
+        corners += [f"vt {5 * side + (1 + side) * u} {(1 + side) * v}" for u, v in flat]
+    (folder / "cube.obj").write_text("\n".join([*rows, *corners, *words]) + "\n")
+    return folder / "cube.obj"
+
+
+@pytest.mark.parametrize(
+    ("name", "number"),
+    [
+        ("ball_six_gores_uv_scales.obj", 6),
+        ("mirrored_uv.obj", 2),
+        ("tube", 4),
+        ("ball", 4),
+        ("cube", 6),
+    ],
+)
+def test_pieces_are_as_many_as_islands_and_all_at_one_scale(
+    name: str, number: int, data: Path, tmp_path: Path
+) -> None:
+    file = data / "cases" / name if name.endswith(".obj") else built(name, tmp_path)
+    vertices, faces, uv = read_obj(file)
+    assert islands(vertices, faces, uv) == number
+    result = ran(file, "--charts-from", "uv", out=tmp_path / "out")
+    flat = result["parametrization"]
+    assert flat["charts_number"] == flat["disk_charts_number"] == number
+    assert flat["flipped_faces_number"] == flat["overlapping_faces_number"] == 0
+    rows = saved(tmp_path / "out" / f"{file.stem}.ply")
+    np.testing.assert_array_equal(rows["vertex_indices"], faces)
+    corners = rows["texcoord"].reshape(-1, 3, 2).astype(float)
+    p, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    plane = 0.5 * (p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0])
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    surface = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    chart = rows["chart_id"].astype(int)
+    ratio = np.bincount(chart, plane) / np.bincount(chart, surface)
+    np.testing.assert_allclose(ratio, plane.sum() / surface.sum(), rtol=1e-5)
+
+
+def test_charts_of_a_file_that_was_written_are_the_pieces(tmp_path: Path) -> None:
+    mesh = meshes.sphere()
+    file = obj_with_islands(tmp_path / "ball.obj", mesh, quarters(mesh))
+    ran(file, "--charts-from", "uv", out=tmp_path / "first")
+    written = tmp_path / "first" / "ball.ply"
+    result = ran(written, "--charts-from", "attribute", out=tmp_path / "second")
+    assert result["charts_from"] == "attribute" and result["method"] is None
+    before, after = saved(written), saved(tmp_path / "second" / "ball.ply")
+    for name in ("chart_id", "seam_edges"):
+        np.testing.assert_array_equal(before[name], after[name])
+
+
 def test_kept_seams_stay_and_more_may_come(tmp_path: Path) -> None:
     mesh = meshes.sphere()
     file = obj_with_islands(tmp_path / "ball.obj", mesh, quarters(mesh))

@@ -189,3 +189,12 @@ def test_textures_of_a_rewritten_file_are_found(tmp_path: Path) -> None:
     mesh = found.meshes.current_mesh()
     assert mesh.has_wedge_tex_coord()
     assert [Path(name).name for name in mesh.textures()] == ["wood grain.png"]
+
+
+def test_a_fault_beside_the_triangles_is_told_as_such(tmp_path: Path) -> None:
+    scene, data = gltf_files.document(meshes.cube())
+    primitive(scene)["material"] = 0
+    scene["materials"] = [{"normalTexture": {"scale": "no number"}}]
+    path = gltf_files.write_glb(tmp_path / "a.glb", scene, data)
+    with pytest.raises(DevsegError, match="its triangles are in order, but not what is beside"):
+        load_mesh(path)

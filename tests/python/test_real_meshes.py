@@ -36,7 +36,7 @@ SAMPLES = ("airplane.obj", "bone.ply", "bunny10k_textured.obj", "colored_airplan
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 # Texts of files, and a word of the reason for which they are refused.
 BROKEN = {
-    "empty.obj": ("", "cannot be read"),
+    "empty.obj": ("", "found an empty one"),
     "zero.obj": (TRIANGLE + "f 0 1 2\n", "line 4 names vertex 0"),
     "beyond.obj": (TRIANGLE + "f 1 2 9\n", "line 4 names vertex 9"),
     "points.obj": (TRIANGLE, "no faces"),

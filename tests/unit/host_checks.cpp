@@ -125,6 +125,19 @@ void expect_agreement(const mesh::RawMesh& raw, const declare::HostResult& resul
     }
 }
 
+void expect_kept_seams(const declare::HostMesh& host, const declare::HostResult& result) {
+    const Edges edges = edges_of(refined(host.geometry, result));
+    for (const auto& [ends, faces] : edges_of(host.geometry))
+        for (const auto& [f, edge] : faces) {
+            if ((static_cast<int>(host.seam_edges[f]) >> edge & 1) == 0)
+                continue;
+            const auto now = edges.find(ends);
+            ASSERT_NE(now, edges.end()) << "a seam of face " << f << " was split";
+            for (const auto& [g, side] : now->second)
+                ASSERT_EQ(result.seam_edges[g] >> side & 1, 1) << f;
+        }
+}
+
 double signed_area(const std::array<Vec2, 3>& triangle) {
     const Vec2 p = triangle[1] - triangle[0];
     const Vec2 q = triangle[2] - triangle[0];

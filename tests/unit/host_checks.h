@@ -31,6 +31,9 @@ Edges edges_of(const mesh::RawMesh& raw);
 /// On every inner edge both faces agree about the seam, which lies between any two charts.
 void expect_agreement(const mesh::RawMesh& raw, const declare::HostResult& result);
 
+/// Every seam of the host is one of the result, on the same edge, whatever was split beside it.
+void expect_kept_seams(const declare::HostMesh& host, const declare::HostResult& result);
+
 double signed_area(const std::array<Vec2, 3>& triangle);
 double area_on_surface(const mesh::RawMesh& raw, std::size_t face);
 

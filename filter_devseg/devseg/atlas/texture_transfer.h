@@ -17,6 +17,9 @@ struct TexturedLayout {
     const std::vector<plane::Image>& images;
 };
 
+/// What a face shows; none where it has no image or no finite coordinates.
+const plane::Image* image_of(const TexturedLayout& layout, Face f);
+
 /// An image of size × size pixels for the layout `uv` (3 #F) in the unit square, in which the
 /// surface looks as with `old`. Every pixel within `padding` pixels of a chart takes the colour of
 /// the nearest place on it. Sets the share of pixels that were filled.

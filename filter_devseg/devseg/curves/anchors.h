@@ -12,7 +12,7 @@ namespace devseg::curves {
 class Anchors {
 public:
     /// Vertices inside of the seams' paths that are so curved that seams stay there. `firm` (3 #F):
-    /// 1 on seams that stay at less curved ones as well.
+    /// 1 on edges near which they stay at less curved ones as well.
     Anchors(const Network& network, const std::vector<std::uint8_t>& firm);
 
     /// Adds curved vertices that a curve passes nearby.
@@ -27,7 +27,7 @@ private:
                    const std::vector<FlatStop>& flat, bool left, std::vector<Hold>& holds) const;
 
     std::vector<double> defect_;     // #V: its magnitude, radians
-    std::vector<std::uint8_t> firm_; // of each curve
+    std::vector<std::uint8_t> firm_; // #V: 1 near firm seams
     std::vector<Index> curve_;       // #V: the one that passes, −1 = none
 };
 

@@ -39,7 +39,7 @@ std::vector<Face> mark_sides(const Mesh& fine, const std::vector<Piece>& pieces,
 }
 
 // Every chart is there, and hangs together.
-void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vector<Piece>& pieces,
+void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vector<Side>& sides,
                  std::vector<Index>& failed) {
     const mesh::FaceComponents parts =
         mesh::face_components(fine, [&](HalfEdge h) { return charts.seam[h] == 0; });
@@ -51,15 +51,16 @@ void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vec
             torn[charts.chart[f]] = 1;
         part = parts.label[f];
     }
-    for (const Piece& piece : pieces)
-        if (torn[piece.label] != 0 || part_of[piece.label] < 0)
-            failed.push_back(piece.curve);
+    for (const Side& side : sides)
+        if (torn[side.chart] != 0 || part_of[side.chart] < 0)
+            failed.push_back(side.curve);
 }
 
 } // namespace
 
 atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
-                            const std::vector<Piece>& pieces, std::vector<Index>& failed) {
+                            const std::vector<Piece>& pieces, const std::vector<Side>& sides,
+                            std::vector<Index>& failed) {
     const Mesh& fine = refinement.mesh;
     atlas::ChartMap charts;
     charts.count = old.count;
@@ -85,7 +86,7 @@ atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::Cha
         if (charts.chart[f] < 0)
             charts.chart[f] = old.chart[f];
     // Two labels that meet where there is no seam make one of the two charts torn or gone.
-    check_parts(fine, charts, pieces, failed);
+    check_parts(fine, charts, sides, failed);
     return charts;
 }
 

@@ -20,10 +20,17 @@ struct Piece {
     }
 };
 
+/// A curve bounds a chart, on whichever side. One that has shrunk to a point has no pieces left.
+struct Side {
+    Index chart;
+    Index curve;
+};
+
 /// Labels spread from the two sides of the pieces (sorted) over the finer mesh; components without
 /// seams keep theirs: old face f is face f or a part of it. Curves whose pieces are no edges, or
-/// whose charts would fall apart, are added to `failed`.
+/// whose charts (`sides`: all of both) would fall apart or be gone, are added to `failed`.
 atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
-                            const std::vector<Piece>& pieces, std::vector<Index>& failed);
+                            const std::vector<Piece>& pieces, const std::vector<Side>& sides,
+                            std::vector<Index>& failed);
 
 } // namespace devseg::curves

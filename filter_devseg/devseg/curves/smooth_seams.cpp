@@ -87,13 +87,18 @@ void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face
 
 } // namespace
 
+double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
+                       const SmoothOptions& options) {
+    return std::max(options.smoothness * mesh::mesh_diagonal(mesh),
+                    tuning.least_edges * mean_edge(mesh, charts));
+}
+
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                          const SmoothOptions& options, Progress& progress,
                          const std::vector<Firmness>& firmness) {
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
-    const double scale =
-        std::max(options.smoothness * mesh::mesh_diagonal(mesh), tuning.least_edges * edge);
+    const double scale = smoothing_scale(mesh, charts, options);
     const int rounds = edge > 0.0
                            ? static_cast<int>(std::clamp(tuning.rounds * scale / edge,
                                                          tuning.least_rounds, tuning.most_rounds))

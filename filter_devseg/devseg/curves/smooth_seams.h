@@ -46,6 +46,10 @@ enum class Firmness : std::uint8_t {
     held,  // stays on its edges
 };
 
+/// Length of the waves that go, internal units.
+double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
+                       const SmoothOptions& options);
+
 /// `firmness` (3 #F, or empty): of each seam edge, both half-edges.
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                          const SmoothOptions& options, Progress& progress,

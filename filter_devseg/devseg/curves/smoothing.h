@@ -14,7 +14,7 @@ namespace devseg::curves {
 struct SmoothingAims {
     double scale;                   // internal units: shorter waves go
     int rounds;                     // which share the smoothing among them
-    std::vector<std::uint8_t> firm; // 3 #F: 1 on seams that keep to the vertices of their paths
+    std::vector<std::uint8_t> firm; // 3 #F: 1 on edges near which seams keep to their vertices
     std::optional<mesh::MirrorPlane> plane; // in which curves become mirror images of each other
 };
 

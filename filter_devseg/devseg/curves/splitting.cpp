@@ -341,8 +341,18 @@ private:
             return;
         renumber();
         result.refinement = mesh::refine(mesh_, std::move(points_), splits_);
-        result.charts = label_sides(result.refinement, charts_, pieces_, failed_);
+        result.charts = label_sides(result.refinement, charts_, pieces_, sides(), failed_);
         fail_longer(result.refinement.mesh);
+    }
+
+    std::vector<Side> sides() const {
+        std::vector<Side> sides;
+        for (Index number = 0; number < static_cast<Index>(net_.curves.size()); ++number)
+            for (const HalfEdge h : net_.curves[number].path) {
+                sides.push_back({charts_.chart[face_of(h)], number});
+                sides.push_back({charts_.chart[mesh_.across(h)], number});
+            }
+        return sides;
     }
 
     // A curve that had to go a longer way is no gain.

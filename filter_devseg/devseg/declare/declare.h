@@ -109,6 +109,11 @@ public:
         filter_.needs_texture = true;
         return *this;
     }
+    /// It reads textures and colours where its parameter `texture` is not 0.
+    Declare& takes_surface() {
+        filter_.takes_surface = true;
+        return *this;
+    }
     /// It refuses to run where neither a selection nor a parameter says what is meant.
     Declare& needs_selection() {
         filter_.needs_selection = true;

@@ -122,6 +122,17 @@ std::vector<Value> of_faces(const std::vector<Value>& source, const mesh::GatedM
     return values;
 }
 
+// Colours of the corners of the faces behind the gate.
+std::vector<Color> read_corner_colors(const HostMesh& host, const mesh::GatedMesh& gated) {
+    std::vector<Color> colors;
+    if (!host.corner_color.empty())
+        for (const Face f : gated.mesh.all_faces())
+            for (Index k = 0; k < 3; ++k)
+                colors.push_back(
+                    host.corner_color[at(gated.source_face[f])][at(gated.source_corner(f, k))]);
+    return colors;
+}
+
 // A face of the output as the host has it: whole, or a part of a face that was split.
 struct OutputFace {
     Face face;       // of the output
@@ -339,7 +350,8 @@ void FilterRun::operator()(Progress& progress) {
                             read_selected_vertices(host, gated),
                             read_uv(host.uv_before, gated, false),
                             of_faces(host.page_before, gated),
-                            std::move(host.textures)};
+                            std::move(host.textures),
+                            read_corner_colors(host, gated)};
     auto running = progress.part(0.98);
     try {
         FilterOutput output = run_on_part(filter, input, std::move(values), running);
@@ -353,6 +365,11 @@ void FilterRun::operator()(Progress& progress) {
 }
 
 } // namespace
+
+bool wants_surface(const FilterDeclaration& filter, const ParameterValues& values) {
+    const auto given = values.find("texture");
+    return filter.takes_surface && given != values.end() && std::get<int>(given->second) != 0;
+}
 
 Parameter weld_parameter() {
     return {

@@ -20,7 +20,7 @@
 
 namespace devseg::declare {
 
-using Color = std::array<std::uint8_t, 3>; // red, green, blue
+using plane::Color;
 
 /// A mesh of its own, in model units or millimetres as the filter says.
 struct LayerMesh {
@@ -98,6 +98,7 @@ struct FilterInput {
     std::optional<CornerUv> uv_before; // that fit the textures, for filters that need them
     std::vector<Index> page_before;    // #F: number of the texture
     std::vector<plane::Image> textures;
+    std::vector<Color> corner_color; // 3 #F, of the model itself; empty if it has none
 
     /// Between internal units and model coordinates.
     Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
@@ -114,6 +115,7 @@ struct FilterOutput {
     std::optional<std::vector<Vec3>> points; // #V, internal units
     std::optional<LayerMesh> layer;
     std::optional<mesh::Refinement> refinement; // charts, quality and colours are of its faces then
+    bool charts_go_on = false; // the charts of a refinement are those that the mesh has already
     // #F: numbers of corners, to cut the host's mesh open: those of one vertex with the same number
     // stay together. How many vertices that adds comes with the values (new_vertices_number).
     std::optional<std::vector<Triangle>> fans;
@@ -145,6 +147,7 @@ struct FilterDeclaration {
     bool needs_selection = false; // of faces, edges or vertices, where no parameter names charts
     bool shows_outside = false;   // closed surfaces that are inside out are turned over
     bool needs_texture = false;   // and the coordinates that fit them
+    bool takes_surface = false;   // the same and colours, where its parameter `texture` asks for it
     bool on_part = false;         // takes `selected_only` (declare/part.h)
     bool keeps = false;           // takes `keep`
     std::vector<Parameter> parameters;
@@ -152,6 +155,9 @@ struct FilterDeclaration {
     Command command;
     std::function<FilterOutput(const FilterInput&, const ParameterValues&, Progress&)> run;
 };
+
+/// Whether a run with these values reads what the surface looks like.
+bool wants_surface(const FilterDeclaration& filter, const ParameterValues& values);
 
 /// `weld`, the parameter of every filter: which vertices are read as one (mesh::GateOptions).
 Parameter weld_parameter();
@@ -175,6 +181,7 @@ struct HostMesh {
     std::vector<std::array<Vec2, 3>> uv_before;
     std::vector<Index> page_before;
     std::vector<plane::Image> textures;
+    std::vector<std::array<Color, 3>> corner_color; // of the model itself, where a filter wants it
 };
 
 /// How the host's own faces are split. All that a host keeps for its faces and vertices is carried

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -125,7 +126,7 @@ public:
 
     FilterInput input() const {
         FilterInput part{
-            mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {}, {}, {}, {},
+            mesh_, {}, {}, source_face_, source_vertex_, {}, {}, whole_.center, {}, {}, {}, {}, {},
             {},    {}, {}};
         if (whole_.charts)
             part.charts = charts();
@@ -145,12 +146,9 @@ public:
     }
 
     void put_back(FilterOutput& output) const {
-        if (output.refinement) {
+        if (output.refinement)
             put_back_refined(output);
-            mark_untouched(output);
-            return;
-        }
-        if (output.charts)
+        else if (output.charts)
             output.charts = whole_charts(*output.charts);
         if (output.face_quality)
             output.face_quality = spread(*output.face_quality);
@@ -158,12 +156,13 @@ public:
             output.selected = spread(output.selected);
         if (output.uv)
             output.uv = beside_others(*output.uv);
+        const Mesh& mesh = output.refinement ? output.refinement->mesh : whole_.mesh;
         if (output.face_color)
             output.face_color =
-                output.charts ? fitting_colors(*output.charts) : spread(*output.face_color);
+                output.charts ? fitting_colors(mesh, *output.charts) : spread(*output.face_color);
         for (auto& [name, value] : output.values)
-            if (name == "seam_length" && output.charts)
-                value = metrics::seam_length(whole_.mesh, *output.charts);
+            if (name == "seam_length" && output.charts && !output.charts_go_on)
+                value = metrics::seam_length(mesh, *output.charts);
         mark_untouched(output);
     }
 
@@ -196,12 +195,16 @@ private:
 
     // Numbers of the part's charts that nothing outside has; where they can, they keep theirs.
     std::vector<Index> new_numbers(const atlas::ChartMap& charts) const {
+        std::vector<Index> number(at(charts.count), -1);
+        if (is_whole_) {
+            std::iota(number.begin(), number.end(), 0);
+            return number;
+        }
         std::set<Index> used;
         for (const Face f : whole_.mesh.all_faces())
             if (inside_[f] == 0)
                 used.insert(numbers()[f]);
-        std::vector<Index> number(at(charts.count), -1);
-        for (std::size_t i = 0; i < charts.chart.size(); ++i) {
+        for (std::size_t i = 0; i < surface_.face.size(); ++i) {
             const Index old = numbers()[at(surface_.face[i])];
             Index& own = number[at(charts.chart[i])];
             if (own < 0 && old >= 0 && used.insert(old).second)
@@ -220,12 +223,9 @@ private:
         const Mesh& mesh = whole_.mesh;
         atlas::ChartMap charts = whole_charts_;
         charts.chart = numbers();
-        if (is_whole_)
-            charts.chart = part.chart;
-        const std::vector<Index> number = is_whole_ ? std::vector<Index>() : new_numbers(part);
+        const std::vector<Index> number = new_numbers(part);
         for (const Face f : mesh_.all_faces()) {
-            if (!is_whole_)
-                charts.chart[surface_.face[f]] = number[at(part.chart[f])];
+            charts.chart[surface_.face[f]] = number[at(part.chart[f])];
             for (const HalfEdge h : half_edges_of(f)) {
                 const HalfEdge own = surface_.mesh_half_edge(h);
                 const HalfEdge twin = mesh.twin[own];
@@ -247,7 +247,7 @@ private:
     }
 
     // Charts that stay have their colours already.
-    std::vector<Color> fitting_colors(const atlas::ChartMap& charts) const {
+    std::vector<Color> fitting_colors(const Mesh& mesh, const atlas::ChartMap& charts) const {
         std::vector<Index> chart(charts.chart.size(), 0); // without gaps between the numbers
         std::map<Index, Index> place;
         for (const Index c : charts.chart)
@@ -258,10 +258,10 @@ private:
         std::vector<std::optional<Color>> given(at(count));
         for (std::size_t f = 0; f < chart.size(); ++f) {
             chart[f] = place.at(charts.chart[f]);
-            if (inside_[f] == 0 && !whole_.color.empty())
+            if (f < inside_.size() && inside_[f] == 0 && !whole_.color.empty())
                 given[at(chart[f])] = whole_.color[f];
         }
-        return face_chart_colors(whole_.mesh, {std::move(chart), charts.seam, count}, given);
+        return face_chart_colors(mesh, {std::move(chart), charts.seam, count}, given);
     }
 
     // At the scale of the coordinates outside, to the right of them, so that nothing overlaps.
@@ -340,7 +340,17 @@ private:
                                         : v - mesh_.vertex_count() + whole_.mesh.vertex_count();
     }
 
-    // Splitting makes no new charts: they go on outside.
+    // The whole's numbers of the part's charts: new ones, or those that go on outside.
+    std::vector<Index> numbers_of(const FilterOutput& output) const {
+        if (!output.charts_go_on)
+            return new_numbers(*output.charts);
+        const atlas::ChartMap before = this->charts();
+        std::vector<Index> number(at(before.count));
+        for (const Face f : mesh_.all_faces())
+            number[at(before.chart[f])] = numbers()[at(surface_.face[f])];
+        return number;
+    }
+
     void put_back_refined(FilterOutput& output) const {
         const mesh::Refinement& fine = *output.refinement;
         const Mesh& mesh = whole_.mesh;
@@ -351,10 +361,7 @@ private:
         std::map<Index, const mesh::Refinement::Part*> part_at;
         for (const mesh::Refinement::Part& part : fine.parts)
             part_at[part.face] = &part;
-        const atlas::ChartMap before = this->charts();
-        std::vector<Index> number(at(before.count));
-        for (const Face f : mesh_.all_faces())
-            number[at(before.chart[f])] = numbers()[at(surface_.face[f])];
+        const std::vector<Index> number = numbers_of(output);
         atlas::ChartMap charts = whole_charts_;
         charts.chart = numbers();
         charts.chart.resize(whole.mesh.faces.size());
@@ -367,13 +374,18 @@ private:
             charts.chart[to] = number[at(output.charts->chart[f])];
             for (Index k = 0; k < 3; ++k) {
                 const HalfEdge h = half_edge_of(f, k);
+                const HalfEdge own = half_edge_of(to, k);
+                charts.seam[own] = output.charts->seam[h];
+                const HalfEdge beyond = whole.mesh.twin[own];
+                if (fine.mesh.twin[h] >= 0 || beyond < 0)
+                    continue;
                 const Index edge = split == part_at.end() ? k : mesh::old_edge(*split->second, k);
-                charts.seam[half_edge_of(to, k)] =
-                    fine.mesh.twin[h] >= 0 || edge < 0
-                        ? output.charts->seam[h]
-                        : whole_charts_.seam[surface_.mesh_half_edge(half_edge_of(source, edge))];
+                const HalfEdge old = surface_.mesh_half_edge(half_edge_of(source, edge));
+                charts.seam[own] = output.charts_go_on ? whole_charts_.seam[old] : 1;
+                charts.seam[beyond] = charts.seam[own];
             }
         }
+        charts.count = 1 + *std::max_element(charts.chart.begin(), charts.chart.end());
         output.charts = std::move(charts);
         output.refinement = std::move(whole);
     }

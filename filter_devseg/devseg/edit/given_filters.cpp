@@ -6,6 +6,7 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/atlas/texture.h"
 #include "devseg/base/errors.h"
+#include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
 #include "devseg/edit/given_charts.h"
@@ -17,14 +18,17 @@ using namespace declare;
 
 namespace {
 
-struct EdgesOptions {
-    bool complete_cuts = true; // lead ends inside the surface on
+struct GivenOptions {
     bool cut_to_disks = true;
+    bool smooth = false;
 };
 
-struct TextureOptions {
+struct EdgesOptions : GivenOptions {
+    bool complete_cuts = true; // lead ends inside the surface on
+};
+
+struct TextureOptions : GivenOptions {
     double weld_tolerance = 1e-6; // share of the layout's size
-    bool cut_to_disks = true;
 
     static OptionRanges<TextureOptions> ranges() {
         return {{&TextureOptions::weld_tolerance, {"weld_tolerance", 0.0, 0.1}}};
@@ -33,9 +37,8 @@ struct TextureOptions {
 
 enum class Source { materials, face_colors, components };
 
-struct MaterialsOptions {
+struct MaterialsOptions : GivenOptions {
     Source source = Source::materials;
-    bool cut_to_disks = true;
 };
 
 constexpr const char* edges_help =
@@ -45,8 +48,7 @@ constexpr const char* edges_help =
     "the seams.<br>"
     "A cut that ends inside the surface is led on to another cut, to the border of the mesh, or to "
     "its own other end, by the shortest natural path ahead of it. Leaves the face attributes "
-    "<b>chart_id</b> and <b>seam_edges</b> and a colour for each chart. 'Charts: Smooth Seams' "
-    "makes smooth curves of the seams.";
+    "<b>chart_id</b> and <b>seam_edges</b> and a colour for each chart.";
 
 constexpr const char* texture_help =
     "Makes charts of the islands of existing texture coordinates, such as Blender's seams leave in "
@@ -67,22 +69,30 @@ constexpr const char* open_help =
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. 'Merge Close Vertices' closes the seams again.";
 
-// Charts with their colours, cut to disks if that is wanted, and the values that all filters of
-// this kind return.
-FilterOutput given_output(const FilterInput& input, atlas::ChartMap charts, bool cut_to_disks,
-                          Progress& progress) {
+// Charts with their colours, cut to disks and with smooth seams if that is wanted, and the values
+// that all filters of this kind return.
+FilterOutput given_output(const FilterInput& input, atlas::ChartMap charts,
+                          const GivenOptions& options, Progress& progress) {
     Index cut = 0;
-    if (cut_to_disks) {
-        auto cutting = progress.part("cutting charts to disks", progress.left());
+    if (options.cut_to_disks) {
+        auto cutting = progress.part("cutting charts to disks",
+                                     (options.smooth ? 0.5 : 1.0) * progress.left());
         atlas::DiskCuts cuts = atlas::cut_charts_to_disks(input.mesh, charts, cutting);
         charts = std::move(cuts.charts);
         cut = cuts.cut_charts;
     }
     FilterOutput output;
-    output.face_color = face_chart_colors(input.mesh, charts);
+    if (options.smooth) {
+        auto smoothing = progress.part("smoothing seams", progress.left());
+        curves::SmoothSeams made = curves::smooth_seams(input.mesh, charts, {}, smoothing);
+        charts = std::move(made.charts);
+        output.refinement = std::move(made.refinement);
+    }
+    const Mesh& mesh = output.refinement ? output.refinement->mesh : input.mesh;
+    output.face_color = face_chart_colors(mesh, charts);
     output.values = {{"charts_number", charts.count},
                      {"cut_charts_number", cut},
-                     {"seam_length", metrics::seam_length(input.mesh, charts)}};
+                     {"seam_length", metrics::seam_length(mesh, charts)}};
     output.charts = std::move(charts);
     return output;
 }
@@ -106,7 +116,7 @@ FilterOutput run_edges(const FilterInput& input, const EdgesOptions& options, Pr
     FilterOutput output = given_output(
         input,
         atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), cuts.seam, true),
-        options.cut_to_disks, progress);
+        options, progress);
     output.values.insert(output.values.end(), {{"completed_cuts_number", cuts.completed},
                                                {"loose_ends_number", cuts.loose}});
     return output;
@@ -115,7 +125,7 @@ FilterOutput run_edges(const FilterInput& input, const EdgesOptions& options, Pr
 FilterOutput run_texture(const FilterInput& input, const TextureOptions& options,
                          Progress& progress) {
     return given_output(input, atlas::charts_from_uv(input.mesh, *input.uv, options.weld_tolerance),
-                        options.cut_to_disks, progress);
+                        options, progress);
 }
 
 FilterOutput run_materials(const FilterInput& input, const MaterialsOptions& options,
@@ -133,8 +143,8 @@ FilterOutput run_materials(const FilterInput& input, const MaterialsOptions& opt
         for (std::size_t f = 0; f < input.color.size(); ++f)
             label[f] = input.color[f][0] * 65536 + input.color[f][1] * 256 + input.color[f][2];
     }
-    FilterOutput output = given_output(input, atlas::make_chart_map(input.mesh, label, {}, false),
-                                       options.cut_to_disks, progress);
+    FilterOutput output =
+        given_output(input, atlas::make_chart_map(input.mesh, label, {}, false), options, progress);
     output.notes = std::move(notes);
     return output;
 }
@@ -158,7 +168,13 @@ Declare<O> given(Declare<O> filter) {
     return filter
         .boolean(&O::cut_to_disks, "cut_to_disks", "Cut to disks",
                  "Cut charts that are not disks open, which flattening needs.")
-        .writes(writes_charts | writes_color)
+        .boolean(
+            &O::smooth, "smooth", "Smooth",
+            "Make smooth curves of the new seams, which splits faces, as 'Charts: Smooth Seams' "
+            "does with its usual values. Seams on creases stay on edges.")
+        .on_part()
+        .keeps()
+        .writes(writes_charts | writes_color | writes_mesh)
         .result("charts_number", "charts")
         .result("cut_charts_number", "charts that were no disks and were cut open")
         .result("seam_length", "length of all cut edges, model units");
@@ -172,7 +188,6 @@ FilterDeclaration from_edges() {
                      .boolean(&O::complete_cuts, "complete_cuts", "Complete cuts",
                               "Lead cuts that end inside the surface on. Off: they stay darts."))
         .needs_selection()
-        .keeps()
         .result("completed_cuts_number", "ends of cuts that were led on")
         .result("loose_ends_number", "ends of cuts that nothing lies ahead of, and that stay darts")
         .runs(run_edges);

@@ -5,6 +5,7 @@
 #include "devseg/declare/declare.h"
 #include "devseg/filters/material_parameters.h"
 #include "devseg/filters/sheet_layout.h"
+#include "devseg/pattern/cloth_strain.h"
 #include "devseg/pattern/inside.h"
 #include "devseg/pattern/match.h"
 #include "devseg/pattern/optimize.h"
@@ -24,7 +25,9 @@ constexpr const char* pieces_help =
     "their own.<br>"
     "Faces are coloured by strain: red where the material is longer on paper than on the model, "
     "blue where it is shorter, white where it keeps its length. The face quality is the strain "
-    "(0.05 = 5 %), the face attribute <b>piece_id</b> the number of the piece from 0, and "
+    "(0.05 = 5 %). With a material, colour and quality tell the share of what it bears in that "
+    "direction: red where it is stretched on the model, blue where it is compressed, in full colour "
+    "at its limit and darker above. The face attribute <b>piece_id</b> the number of the piece from 0, and "
     "<b>source_face</b> the number of the face on the model.";
 
 constexpr const char* measures_help =
@@ -77,6 +80,10 @@ Declare<O> with_seams(Declare<O> filter) {
                  "sewing bears, by changing the angles of the outlines as little as possible.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
+        .real(&O::alike_mm, "Make pieces alike within (mm)",
+              "Pieces whose outlines differ by less than this, in millimetres (and 3 % of their "
+              "size), as they are or mirrored, all get the mean of their outlines; so does a piece "
+              "that is so near to its own mirror image. 0 = none.")
         .real(&O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
               "Pieces whose outlines, turned and moved onto each other, differ by less than this, "
               "in millimetres (and a hundredth of their size), have the same shape.");
@@ -86,9 +93,28 @@ std::uint8_t faded(double share) {
     return static_cast<std::uint8_t>(std::lround(255.0 * (1.0 - std::clamp(share, 0.0, 1.0))));
 }
 
+// Signed strain, or the use of limits, of each face: what its quality and colour are made from.
+std::vector<double> face_values(const pattern::Pattern& pattern, double mm) {
+    if (pattern.material)
+        return pattern::limit_uses(pattern, mm);
+    std::vector<double> values;
+    for (const pattern::FaceStrain& own :
+         pattern::measure_strain(pattern.mesh, pattern.corner_place, 1.0 / mm))
+        values.push_back(own.extension >= own.compression ? own.extension : -own.compression);
+    return values;
+}
+
+// Positive values are red and negative ones blue: full at 1 or −1, and half as bright from 2 on.
+Color strain_color(double value) {
+    const std::uint8_t fade = faded(std::abs(value));
+    const double above = std::clamp(std::abs(value) - 1.0, 0.0, 1.0);
+    const auto full = static_cast<std::uint8_t>(std::lround(255.0 - 127.0 * above));
+    return value >= 0.0 ? Color{full, fade, fade} : Color{fade, fade, full};
+}
+
 // The faces of all pieces where they lie on the sheet; vertices are shared within a piece.
 LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& pattern,
-                        const std::vector<pattern::FaceStrain>& strain, double strain_range) {
+                        const std::vector<double>& values, double full_value) {
     const Mesh& mesh = pattern.mesh;
     LayerMesh layer;
     layer.name = "pattern pieces";
@@ -113,11 +139,11 @@ LayerMesh lay_out_faces(const FilterInput& input, const pattern::Pattern& patter
             if (pattern.pieces[p].place.scale.x() < 0.0)
                 std::swap(corners[1], corners[2]); // turned over: faces upwards again
             layer.geometry.faces.push_back(corners);
-            const pattern::FaceStrain& own = strain[source];
-            const std::uint8_t fade = faded(own.largest() / strain_range);
-            const bool longer = own.extension >= own.compression;
-            layer.face_color.push_back(longer ? Color{255, fade, fade} : Color{fade, fade, 255});
-            layer.face_quality.push_back(longer ? own.extension : -own.compression);
+            const double share = values[source] / full_value;
+            // Above the strain in full colour there is no limit to be told.
+            layer.face_color.push_back(
+                strain_color(pattern.material ? share : std::clamp(share, -1.0, 1.0)));
+            layer.face_quality.push_back(values[source]);
             piece_id.push_back(p);
             source_face.push_back(input.source_face[pattern.source_face[source]]);
         }
@@ -132,10 +158,9 @@ FilterOutput run_pieces(const FilterInput& input, const LayerOptions& options, P
         pattern::make_pattern(input.mesh, *input.uv, options, progress);
     FilterOutput output;
     output.notes = pattern.notes;
-    const double scale = 1.0 / (pattern.mm_per_unit * input.mesh.unit_length);
-    output.layer = lay_out_faces(input, pattern,
-                                 pattern::measure_strain(pattern.mesh, pattern.corner_place, scale),
-                                 options.strain_range);
+    const double mm = pattern.mm_per_unit * input.mesh.unit_length;
+    output.layer = lay_out_faces(input, pattern, face_values(pattern, mm),
+                                 pattern.material ? 1.0 : options.strain_range);
     output.values = {{"pieces_number", static_cast<int>(pattern.pieces.size())},
                      {"width_mm", pattern.width},
                      {"height_mm", pattern.height}};
@@ -308,7 +333,7 @@ FilterDeclaration pieces() {
                                      FilterCategory::texture, pieces_help)))
         .real(&O::strain_range, {"strain_range", 1e-6, 10.0}, "Strain in full colour",
               "Strain from which on a face is drawn in full colour, as a share of the length: "
-              "0.05 = 5 %.")
+              "0.05 = 5 %. With a material its limits are.")
         .needs_uv()
         .shows_outside()
         .writes(writes_layer)

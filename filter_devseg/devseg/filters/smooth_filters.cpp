@@ -5,7 +5,7 @@
 #include "devseg/curves/smooth_seams.h"
 #include "devseg/declare/declare.h"
 #include "devseg/judge/cloth.h"
-#include "devseg/judge/trial.h"
+#include "devseg/judge/final_map.h"
 
 namespace devseg::filters {
 
@@ -26,7 +26,9 @@ constexpr const char* smooth_help =
     "Bildverarbeitung f&uuml;r die Medizin, 2005, doi:10.1007/3-540-26431-0_43";
 
 struct Tuning {
-    int rounds = 5; // of smoothing, where charts come out above a bound
+    int rounds = 6;     // of smoothing, where charts come out above a bound
+    double reach = 1.0; // smoothness: what is made firmer around a place that is above; twice each
+                        // time, and all of the chart's seams at the end
 };
 constexpr Tuning tuning;
 
@@ -44,63 +46,100 @@ struct Options : curves::SmoothOptions {
     }
 };
 
-bool is_above_stretch(const Mesh& mesh, const std::vector<Index>& faces,
-                      const std::vector<std::uint8_t>& seam, double bound,
-                      const Progress& progress) {
-    judge::TrialEffort effort;
-    effort.wanted_l2 = bound;
-    effort.push_apart = true;
-    try {
-        const judge::TrialMap map = judge::try_chart(mesh, faces, seam, effort, progress);
-        return !map.flat || map.l2_squared > bound * bound;
-    } catch (const NumericalFailure&) { // no way to flatten it at all
-        return true;
-    }
-}
+// What is wrong with a chart: the middles of its faces where it is.
+struct Excess {
+    bool is_above = false;
+    std::vector<Vec3> places; // none: everywhere
+};
 
-bool is_above_strain(const Mesh& mesh, const std::vector<Index>& faces,
-                     const std::vector<std::uint8_t>& seam, double bound,
-                     const Progress& progress) {
+Excess strain_above(const Mesh& mesh, const std::vector<Index>& faces,
+                    const std::vector<std::uint8_t>& seam, double bound, const Progress& progress) {
     judge::ClothLimits limits;
     limits.max_strain = bound;
     limits.is_search = false;
-    const judge::ClothTrial trial = judge::try_cloth(mesh, faces, seam, limits, false, progress);
-    return !trial.has_map || trial.strain.most_of_it > bound;
+    const judge::ClothTrial trial = judge::try_cloth(mesh, faces, seam, limits, true, progress);
+    Excess excess{!trial.has_map || trial.strain.most_of_it > bound, {}};
+    for (std::size_t k = 0; k < trial.strains.size() && excess.is_above; ++k)
+        if (trial.strains[k] > bound)
+            excess.places.push_back(mesh.face_centers[trial.face[k]]);
+    return excess;
 }
 
-// Which of the charts are above a bound.
-std::vector<std::uint8_t> above(const Mesh& mesh, const atlas::ChartMap& charts,
-                                const Options& options, Progress& progress) {
-    const Buckets<Index> faces = atlas::group_faces(charts);
-    std::vector<std::uint8_t> result(at(charts.count), 0);
+// Which of the chosen charts have a final map above the bound: trials leave out what relieves
+// peaks.
+void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
+                   const std::vector<std::uint8_t>& chosen, double bound,
+                   std::vector<Excess>& above, Progress& progress) {
+    std::vector<std::uint8_t> doubtful(chosen.size(), 0);
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
             const std::vector<Index> own(faces[c].begin(), faces[c].end());
-            const double stretch = options.max_chart_l2_stretch;
-            const double strain = options.max_strain;
-            const bool is_above =
-                own.empty() || // it has vanished between its seams
-                (stretch > 0.0 && is_above_stretch(mesh, own, charts.seam, stretch, progress)) ||
-                (strain > 0.0 && is_above_strain(mesh, own, charts.seam, strain, progress));
-            result[at(c)] = is_above ? 1 : 0;
+            if (chosen[at(c)] != 0)
+                doubtful[at(c)] =
+                    judge::is_surely_within(mesh, own, charts.seam, bound, progress) ? 0 : 1;
         },
         progress);
+    std::vector<std::vector<Index>> tried;
+    std::vector<std::size_t> number;
+    for (std::size_t c = 0; c < doubtful.size(); ++c)
+        if (doubtful[c] != 0) {
+            tried.emplace_back(faces[static_cast<Index>(c)].begin(),
+                               faces[static_cast<Index>(c)].end());
+            number.push_back(c);
+        }
+    const std::vector<judge::TrialMap> maps =
+        judge::whole_maps(mesh, tried, charts.seam, bound, progress);
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        if (!maps[i].flat || maps[i].l2_squared > bound * bound)
+            above[number[i]] = {true, {}}; // stretch is not to be had at one place
+}
+
+// Which of the chosen charts are above a bound, and where.
+std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
+                          const std::vector<std::uint8_t>& chosen, const Options& options,
+                          Progress& progress) {
+    const Buckets<Index> faces = atlas::group_faces(charts);
+    std::vector<Excess> result(chosen.size());
+    if (options.max_strain > 0.0)
+        parallel_for(
+            static_cast<int>(charts.count),
+            [&](int c) {
+                const std::vector<Index> own(faces[c].begin(), faces[c].end());
+                if (chosen[at(c)] != 0)
+                    result[at(c)] =
+                        strain_above(mesh, own, charts.seam, options.max_strain, progress);
+            },
+            progress);
+    if (options.max_chart_l2_stretch > 0.0)
+        judge_stretch(mesh, charts, faces, chosen, options.max_chart_l2_stretch, result, progress);
     return result;
 }
 
-// The seams of a chart that is above come nearer to where they were, and then all the way.
-bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts,
-                 const std::vector<std::uint8_t>& is_above, bool is_last,
-                 std::vector<curves::Firmness>& firmness) {
+// Whether the edge is nearer than `reach` to a place where its chart is above.
+bool is_near(const Mesh& mesh, HalfEdge h, const Excess& excess, double reach) {
+    if (!excess.is_above || excess.places.empty() || reach == infinite)
+        return excess.is_above;
+    const Vec3 middle = 0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)]);
+    return std::any_of(excess.places.begin(), excess.places.end(), [&](const Vec3& place) {
+        return (place - middle).squaredNorm() < reach * reach;
+    });
+}
+
+// The seams of a chart that is above come nearer to where they were, and then all the way, around
+// the places where it is above first.
+bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<Excess>& excess,
+                 double reach, std::vector<curves::Firmness>& firmness) {
     using curves::Firmness;
     bool changed = false;
     for (const HalfEdge h : mesh.all_half_edges()) {
         if (mesh.twin[h] < 0 || charts.seam[h] == 0 || firmness[h] == Firmness::held)
             continue;
-        if (is_above[charts.chart[face_of(h)]] == 0 && is_above[charts.chart[mesh.across(h)]] == 0)
+        if (!is_near(mesh, h, excess[at(charts.chart[face_of(h)])], reach) &&
+            !is_near(mesh, h, excess[at(charts.chart[mesh.across(h)])], reach))
             continue;
-        firmness[h] = is_last || firmness[h] == Firmness::close ? Firmness::held : Firmness::close;
+        firmness[h] =
+            reach == infinite || firmness[h] == Firmness::close ? Firmness::held : Firmness::close;
         changed = true;
     }
     return changed;
@@ -114,23 +153,34 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
-    auto judging = progress.part("judging charts", 0.2);
-    const std::vector<std::uint8_t> before = above(mesh, charts, options, judging);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
-    std::vector<std::uint8_t> kept(before.size(), 0);
+    std::vector<std::uint8_t> judged(at(charts.count), 1); // but for those above already before
+    std::vector<Excess> kept(judged.size());
+    double reach = tuning.reach * curves::smoothing_scale(mesh, charts, options);
     for (int round = 1;; ++round) {
         auto smoothing = progress.part(0.5 * progress.left());
         curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
-        auto again = progress.part("judging charts", 0.5 * progress.left());
-        std::vector<std::uint8_t> after = above(made.refinement.mesh, made.charts, options, again);
+        auto judging = progress.part("judging charts", 0.5 * progress.left());
+        std::vector<Excess> after =
+            above(made.refinement.mesh, made.charts, judged, options, judging);
+        std::vector<std::uint8_t> doubtful(after.size(), 0);
+        for (std::size_t c = 0; c < after.size(); ++c)
+            doubtful[c] = after[c].is_above ? 1 : 0;
+        const std::vector<Excess> before = above(mesh, charts, doubtful, options, judging);
         for (std::size_t c = 0; c < after.size(); ++c) {
-            after[c] = after[c] != 0 && before[c] == 0 ? 1 : 0;
-            kept[c] = kept[c] != 0 || after[c] != 0 ? 1 : 0;
+            if (before[c].is_above) {
+                judged[c] = 0;
+                after[c] = {};
+            }
+            kept[c].is_above = kept[c].is_above || after[c].is_above;
         }
-        kept_charts = static_cast<int>(std::count(kept.begin(), kept.end(), 1));
+        kept_charts = static_cast<int>(
+            std::count_if(kept.begin(), kept.end(), [](const Excess& e) { return e.is_above; }));
         const bool is_last = round + 1 >= tuning.rounds;
-        if (!make_firmer(mesh, charts, is_last ? kept : after, is_last, firmness))
+        if (!make_firmer(mesh, charts, is_last ? kept : after, is_last ? infinite : reach,
+                         firmness))
             return made;
+        reach *= 2.0;
     }
 }
 

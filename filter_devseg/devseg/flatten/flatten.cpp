@@ -49,7 +49,7 @@ std::vector<Index> numbers_of(const std::vector<FlatChart>& flat) {
 // Flattens the charts with the given numbers; returns where to cut them.
 Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> which,
                   std::vector<FlatChart>& flat, Progress& progress,
-                  const WorthPushing& worth = {}) {
+                  const WholeChart* whole = nullptr) {
     // The largest first, so that no core is left with a large chart at the end.
     std::stable_sort(which.begin(), which.end(), [&](Index a, Index b) {
         return flat[a].surface.face.size() > flat[b].surface.face.size();
@@ -60,7 +60,7 @@ Cuts flatten_some(const Mesh& mesh, FlattenMethod method, std::vector<Index> whi
         [&](int i) {
             progress.check();
             const Index c = which[i];
-            cuts[c] = flatten_one(mesh, method, flat[c], progress, worth);
+            cuts[c] = flatten_one(mesh, method, flat[c], progress, whole);
         },
         progress);
     return cuts;
@@ -255,12 +255,10 @@ int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress) 
 }
 
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
-                                     FlattenMethod method, const WorthPushing& worth,
+                                     FlattenMethod method, const WholeChart& whole,
                                      Progress& progress) {
     std::vector<FlatChart> flat = without_maps(mesh, charts);
-    const Cuts cuts = flatten_some(mesh, method, numbers_of(flat), flat, progress, worth);
-    for (std::size_t c = 0; c < flat.size(); ++c)
-        flat[c].torn = !cuts[c].empty();
+    flatten_some(mesh, method, numbers_of(flat), flat, progress, &whole);
     return flat;
 }
 

@@ -46,13 +46,19 @@ struct FlattenResult {
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
 
-/// Whether a map that lies on itself is worth pushing its parts apart. Called from all threads.
-using WorthPushing = std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)>;
+/// What a chart that must stay in one piece has to keep to. Called from all threads.
+struct WholeChart {
+    /// Whether a map is good enough but for parts that overlap, which are pushed apart then.
+    std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)> is_good;
+    /// Maps whose symmetric Dirichlet energy clearly stays above are not finished, unless they are
+    /// good.
+    double give_up_energy = infinite;
+};
 
 /// The same without cutting anything apart: where that would be done, the chart is `torn`, and its
 /// map the last one.
 std::vector<FlatChart> flatten_whole(const Mesh& mesh, const atlas::ChartMap& charts,
-                                     FlattenMethod method, const WorthPushing& worth,
+                                     FlattenMethod method, const WholeChart& whole,
                                      Progress& progress);
 
 /// Joins parts that were cut off and are too small to be charts of their own to a neighbour, along

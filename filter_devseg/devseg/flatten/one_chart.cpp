@@ -54,12 +54,17 @@ struct Map {
 class ChartFlattening {
 public:
     ChartFlattening(const Mesh& mesh, const ChartSurface& surface, const FlatteningProblem& problem,
-                    const Progress& progress)
+                    const WholeChart* whole, const Progress& progress)
         : mesh_(mesh), surface_(surface), problem_(problem),
-          tolerance_(plane::layout_tolerance(problem.model_size)), progress_(progress) {}
+          tolerance_(plane::layout_tolerance(problem.model_size)), whole_(whole),
+          progress_(progress) {}
 
     std::optional<Map> map(FlattenMethod method) const {
         return attempt([&] { return map_by(method); });
+    }
+
+    bool is_good(const std::vector<Vec2>& uv) const {
+        return whole_ == nullptr || whole_->is_good(problem_, uv);
     }
 
 private:
@@ -135,14 +140,31 @@ private:
         } else {
             return std::nullopt;
         }
-        if (!refined || !is_large) {
-            SymmetricDirichletResult result =
-                minimise_symmetric_dirichlet(problem_, map.uv, {}, progress_);
-            map = {std::move(result.uv), result.converged};
-        }
+        if (!refined || !is_large)
+            map = polish(map.uv);
         relieve_peaks(problem_, false, map.uv, progress_);
         scale_to_area(problem_, map.uv);
         return map;
+    }
+
+    Map polish(const std::vector<Vec2>& start) const {
+        SymmetricDirichletOptions options;
+        if (whole_ != nullptr)
+            options.give_up_energy = whole_->give_up_energy;
+        const auto minimise = [&](const std::vector<Vec2>& from) {
+            return minimise_symmetric_dirichlet(problem_, from, options, progress_);
+        };
+        SymmetricDirichletResult result = minimise(start);
+        if (result.energy > options.give_up_energy && is_good_at_scale(result.uv)) {
+            options.give_up_energy = infinite;
+            result = minimise(result.uv);
+        }
+        return {std::move(result.uv), result.converged};
+    }
+
+    bool is_good_at_scale(std::vector<Vec2> uv) const {
+        scale_to_area(problem_, uv);
+        return is_good(uv);
     }
 
     Map single_face() const {
@@ -218,6 +240,7 @@ private:
     const ChartSurface& surface_;
     const FlatteningProblem& problem_;
     double tolerance_;
+    const WholeChart* whole_;
     const Progress& progress_;
 };
 
@@ -263,6 +286,103 @@ bool is_blown_up(const FlatteningProblem& problem, const std::vector<Vec2>& uv) 
              tuning.blown_up * (boundary + std::sqrt(problem.total_area)));
 }
 
+// The way of one chart from its surface to a finished map.
+class OneChart {
+public:
+    OneChart(const Mesh& mesh, FlattenMethod method, FlatChart& chart, const Progress& progress,
+             const WholeChart* whole)
+        : mesh_(mesh), method_(method), chart_(chart), surface_(chart.surface),
+          problem_(make_flattening_problem(mesh, chart.surface)),
+          tolerance_(plane::layout_tolerance(problem_.model_size)), progress_(progress),
+          whole_(whole), flattening_(mesh, surface_, problem_, whole, progress) {}
+
+    /// What is to be cut, see flatten_one.
+    std::vector<HalfEdge> flatten() {
+        if (develop(mesh_, problem_, chart_)) // stays as it is: its parts are not pushed apart
+            return tear(overlaps());
+        const bool has_holes = !problem_.holes.empty();
+        const auto open = [&] { return open_holes(mesh_, surface_, progress_); };
+        auto map = flattening_.map(method_);
+        if (!map && has_holes &&
+            (method_ == FlattenMethod::lpfb || method_ == FlattenMethod::lpfb_even_areas))
+            return tear(open);
+        if (!map && method_ != FlattenMethod::symmetric_dirichlet) {
+            chart_.mended = true;
+            map = flattening_.map(FlattenMethod::symmetric_dirichlet);
+        }
+        if (!map || (surface_.face_count() > 1 && is_blown_up(problem_, map->uv))) {
+            if (has_holes)
+                return tear(open);
+            return tear([&] { return halve(mesh_, surface_); }); // the halves are easier
+        }
+        const Pairs pairs = take(*map);
+        return tear(may_push(pairs) ? push(pairs) : pairs);
+    }
+
+private:
+    template <class FindCut>
+    std::vector<HalfEdge> tear(FindCut find_cut) {
+        chart_.torn = whole_ != nullptr;
+        return chart_.torn ? std::vector<HalfEdge>() : find_cut();
+    }
+    std::vector<HalfEdge> tear(const Pairs& pairs) {
+        if (pairs.empty())
+            return {};
+        return tear([&] { return cut_between(mesh_, surface_, pairs); });
+    }
+
+    Pairs overlaps() const { return overlapping_pairs(surface_, chart_.uv, tolerance_); }
+
+    Pairs take(const Map& map) {
+        chart_.uv = map.uv;
+        chart_.converged = map.converged;
+        restore_needles(problem_, chart_.uv);
+        finish();
+        return overlaps();
+    }
+
+    void finish() {
+        open_closed_slits(mesh_, surface_, slit_gap * problem_.model_size, chart_.uv);
+        chart_.energy = symmetric_dirichlet_energy(problem_, chart_.uv);
+    }
+
+    // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
+    // would not be theirs any more.
+    bool may_push(const Pairs& pairs) const {
+        return !pairs.empty() && (method_ == FlattenMethod::symmetric_dirichlet || chart_.mended) &&
+               surface_.face_count() <= tuning.most_polished_faces &&
+               flattening_.is_good(chart_.uv);
+    }
+
+    // What still overlaps.
+    Pairs push(const Pairs& pairs) {
+        const auto apart = push_apart(problem_, surface_, chart_.uv, pairs, tolerance_, progress_);
+        if (!apart)
+            return pairs;
+        chart_.pushed = true;
+        // Peaks and slits that close again may need room that pushing has left to other parts.
+        for (const bool relieved : {true, false}) {
+            chart_.uv = *apart;
+            if (relieved)
+                relieve_peaks(problem_, true, chart_.uv, progress_);
+            finish();
+            if (!overlaps_itself(surface_, chart_.uv, tolerance_))
+                return {};
+        }
+        return overlaps();
+    }
+
+    const Mesh& mesh_;
+    FlattenMethod method_;
+    FlatChart& chart_;
+    const ChartSurface& surface_;
+    FlatteningProblem problem_;
+    double tolerance_;
+    const Progress& progress_;
+    const WholeChart* whole_;
+    ChartFlattening flattening_;
+};
+
 } // namespace
 
 std::vector<HalfEdge> open_holes(const Mesh& mesh, const ChartSurface& surface,
@@ -290,54 +410,8 @@ bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& char
 }
 
 std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
-                                  const Progress& progress, const WorthPushing& worth) {
-    const ChartSurface& surface = chart.surface;
-    const FlatteningProblem problem = make_flattening_problem(mesh, surface);
-    const double tolerance = plane::layout_tolerance(problem.model_size);
-    if (develop(mesh, problem, chart)) // stays as it is: its parts are not pushed apart
-        return cut_between(mesh, surface, overlapping_pairs(surface, chart.uv, tolerance));
-    const bool has_holes = !problem.holes.empty();
-    const ChartFlattening flattening(mesh, surface, problem, progress);
-    auto map = flattening.map(method);
-    if (!map && has_holes &&
-        (method == FlattenMethod::lpfb || method == FlattenMethod::lpfb_even_areas))
-        return open_holes(mesh, surface, progress);
-    if (!map && method != FlattenMethod::symmetric_dirichlet) {
-        chart.mended = true;
-        map = flattening.map(FlattenMethod::symmetric_dirichlet);
-    }
-    if (!map || (surface.face_count() > 1 && is_blown_up(problem, map->uv)))
-        return has_holes ? open_holes(mesh, surface, progress)
-                         : halve(mesh, surface); // the halves are easier
-    chart.uv = std::move(map->uv);
-    chart.converged = map->converged;
-    const auto finish = [&] {
-        open_closed_slits(mesh, surface, slit_gap * problem.model_size, chart.uv);
-        chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
-    };
-    restore_needles(problem, chart.uv);
-    finish();
-    const Pairs pairs = overlapping_pairs(surface, chart.uv, tolerance);
-    // Pushing moves the whole map towards the least symmetric Dirichlet energy: other methods' maps
-    // would not be theirs any more.
-    const bool may_push = (method == FlattenMethod::symmetric_dirichlet || chart.mended) &&
-                          surface.face_count() <= tuning.most_polished_faces;
-    if (pairs.empty() || !may_push || (worth && !worth(problem, chart.uv)))
-        return cut_between(mesh, surface, pairs);
-    auto apart = push_apart(problem, surface, chart.uv, pairs, tolerance, progress);
-    if (!apart)
-        return cut_between(mesh, surface, pairs);
-    chart.pushed = true;
-    // Peaks and slits that close again may need room that pushing has left to other parts.
-    for (const bool relieved : {true, false}) {
-        chart.uv = *apart;
-        if (relieved)
-            relieve_peaks(problem, true, chart.uv, progress);
-        finish();
-        if (!overlaps_itself(surface, chart.uv, tolerance))
-            return {};
-    }
-    return cut_between(mesh, surface, overlapping_pairs(surface, chart.uv, tolerance));
+                                  const Progress& progress, const WholeChart* whole) {
+    return OneChart(mesh, method, chart, progress, whole).flatten();
 }
 
 } // namespace devseg::flatten

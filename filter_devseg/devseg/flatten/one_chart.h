@@ -10,10 +10,10 @@ namespace devseg::flatten {
 
 /// Flattens chart.surface, which is sound (see atlas/holes.h), and fills in the rest of `chart`.
 /// Returns the half-edges of the mesh to cut where parts overlap in the plane and could not be
-/// pushed apart, which is tried if it is `worth` it, or where there is no map around holes; nothing
-/// where the map is one-to-one.
+/// pushed apart, or where there is no map around holes; nothing where the map is one-to-one.
+/// `whole`: it must stay in one piece, and is `torn` where it does not; nothing is to be cut.
 std::vector<HalfEdge> flatten_one(const Mesh& mesh, FlattenMethod method, FlatChart& chart,
-                                  const Progress& progress, const WorthPushing& worth = {});
+                                  const Progress& progress, const WholeChart* whole = nullptr);
 
 /// The half-edges of the mesh to cut so that the chart's holes open to its rim; nothing for disks.
 std::vector<HalfEdge> open_holes(const Mesh& mesh, const atlas::ChartSurface& surface,

@@ -69,6 +69,7 @@ public:
         excess_[at(c)] += map.excess();
         whole.area += map.area;
         whole.linf = std::max(whole.linf, map.linf);
+        whole.strain.take_worse(map.strain);
         const std::vector<Vec2> turns = flatten::face_turns(problem, flat.uv);
         for (std::size_t f = 0; f < turns.size(); ++f) {
             const Index place = place_[at(flat.surface.face[f])];
@@ -108,14 +109,18 @@ atlas::ChartMap disks_of(const Extract& part, Progress& progress) {
 } // namespace
 
 std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam, Progress& progress) {
+                                 const std::vector<std::uint8_t>& seam, Progress& progress,
+                                 MapFor purpose) {
     if (charts.empty())
         return {};
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
     const flatten::FlattenResult result = flatten::flatten_charts(
-        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, flattening);
+        part.mesh, disks,
+        purpose == MapFor::cloth ? flatten::FlattenMethod::lpfb
+                                 : flatten::FlattenMethod::symmetric_dirichlet,
+        flattening);
     Measures measures(part, charts);
     for (const flatten::FlatChart& flat : result.flat)
         measures.add(flat);
@@ -130,13 +135,16 @@ std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
-    const auto worth = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    flatten::WholeChart asked;
+    asked.is_good = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
         TrialMap map;
         measure_stretch(problem, uv, map);
         return most_l2 <= 0.0 || map.l2_squared <= most_l2 * most_l2;
     };
+    if (most_l2 > 0.0) // l2² − 1 is 1.5 times the excess of the energy, or more
+        asked.give_up_energy = most_l2 * most_l2;
     const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
-        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, worth, flattening);
+        part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, asked, flattening);
     Measures measures(part, charts);
     for (const flatten::FlatChart& flat : whole)
         if (!flat.uv.empty())

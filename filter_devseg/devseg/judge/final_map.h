@@ -9,17 +9,23 @@
 
 namespace devseg::judge {
 
+/// What charts are flattened for: least stretch by Symmetric Dirichlet, or cloth by LPFB, where
+/// both sides of each seam keep their length.
+enum class MapFor { texture, cloth };
+
 /// The final maps of disjoint charts, each given by its faces (ascending), cut open along the
 /// marked edges (`seam`, 3 #F of the mesh) and to disks: cut, flattened and repaired as the filter
 /// does it. `flat` is false where a chart lies on itself and is cut apart by that; `part` is then
 /// filled in, and the stretch is that of the parts. All cores; only the thread that runs the filter
 /// may call it.
 std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam, Progress& progress);
+                                 const std::vector<std::uint8_t>& seam, Progress& progress,
+                                 MapFor purpose = MapFor::texture);
 
 /// The same for charts that must stay in one piece, sooner: one that would be cut apart is not, and
 /// its stretch is that of the map that lies on itself; infinite where there is none without flips.
-/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always).
+/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always);
+/// such a map is not finished, and its stretch may be a little too large.
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, double most_l2,
                                  Progress& progress);

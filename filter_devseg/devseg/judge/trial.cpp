@@ -137,6 +137,7 @@ std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
     map.l2_squared = flatten::squared_l2_stretch(problem, uv);
     std::vector<double> stretch = flatten::face_stretches(problem, uv);
     map.linf = std::max(map.linf, *std::max_element(stretch.begin(), stretch.end()));
+    map.strain = flatten::measure_strain(flatten::face_strains(problem, uv), problem.area);
     return stretch;
 }
 

@@ -7,6 +7,7 @@
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/flatten/energy/strain.h"
 
 namespace devseg::judge {
 
@@ -17,6 +18,7 @@ struct TrialMap {
     double area = 0.0;       // on the surface, internal units squared
     double l2_squared = 1.0; // mean of (Γ² + γ²) / 2 over the area, at the chart's own area
     double linf = 1.0;       // max Γ
+    flatten::Strain strain;  // of the map as it is
     double cut_length = 0.0; // of the cuts that made it a disk, internal units
     std::vector<Index> worst_faces; // of the mesh: local maxima of the stretch, the worst first
     std::vector<double> peaks;      // Γ there
@@ -46,7 +48,7 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
                    const std::vector<std::uint8_t>& seam, const TrialEffort& effort,
                    const Progress& progress, const std::vector<Vec2>& turns = {});
 
-/// Fills in the area and the stretch of a map; returns Γ of each face.
+/// Fills in the area, the stretch and the strain of a map; returns Γ of each face.
 std::vector<double> measure_stretch(const flatten::FlatteningProblem& problem,
                                     const std::vector<Vec2>& uv, TrialMap& map);
 

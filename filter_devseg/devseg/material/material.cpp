@@ -10,6 +10,9 @@ namespace devseg::material {
 
 namespace {
 
+// What a search for seams asks of a material that bears nothing.
+constexpr double least_bound = 1e-3;
+
 std::string trimmed(const std::string& text) {
     const auto first = text.find_first_not_of(" \t");
     return first == std::string::npos
@@ -82,6 +85,10 @@ double Material::stretch_limit(double angle) const {
 
 double Material::least_limit() const {
     return std::min({warp, weft, bias, compression});
+}
+
+double Material::search_bound() const {
+    return std::max(least_bound, least_limit());
 }
 
 std::string names() {

@@ -35,6 +35,8 @@ struct Material {
     double stretch_limit(double angle) const;
     /// What is within the limits in every direction.
     double least_limit() const;
+    /// The same as a bound of a search, where 0 would be none.
+    double search_bound() const;
 };
 
 /// Of one value of a material: its key in texts and files, what it means, and its range.

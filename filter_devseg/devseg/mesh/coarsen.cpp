@@ -47,12 +47,16 @@ struct Quadric {
 
 class Coarsener {
 public:
-    Coarsener(const std::vector<Vec3>& points, CoarseSurface& surface, Progress* shared)
+    // `fixed`: #V, 1 for vertices that stay.
+    Coarsener(const std::vector<Vec3>& points, CoarseSurface& surface,
+              std::vector<std::uint8_t> fixed, Progress* shared)
         : points_(points), s_(surface), leaving_(points.size(), -1), quadric_(points.size()),
           best_(points.size()), stale_(points.size(), 1), touched_(points.size(), 0),
-          shared_(shared) {
+          fixed_(std::move(fixed)), shared_(shared) {
         for (const HalfEdge h : s_.all_half_edges())
             leaving_[s_.origin(h)] = h;
+        if (!s_.line.empty())
+            fix_nodes();
         for (const Face f : s_.all_faces())
             add_face_quadric(f);
     }
@@ -87,6 +91,41 @@ private:
         HalfEdge half_edge = -1;
     };
 
+    bool is_fixed(Vertex v) const { return !fixed_.empty() && fixed_[v] != 0; }
+    bool is_line(HalfEdge h) const { return !s_.line.empty() && s_.line[h] >= 0; }
+
+    // Vertices on lines stay where not just two edges of one line meet.
+    void fix_nodes() {
+        fixed_.resize(points_.size(), 0);
+        on_line_.assign(points_.size(), 0);
+        std::vector<std::uint8_t> ends(points_.size(), 0); // of half-edges that leave: up to 3
+        for (const HalfEdge h : s_.all_half_edges())
+            if (is_line(h)) {
+                const Vertex v = s_.origin(h);
+                ends[v] = std::min<std::uint8_t>(3, ends[v] + 1);
+                on_line_[v] = 1;
+            }
+        for (const HalfEdge h : s_.all_half_edges())
+            if (s_.twin[h] < 0)
+                for (const Vertex v : {s_.origin(h), s_.target(h)})
+                    ends[v] = on_line_[v] != 0 ? 3 : 0;
+        for (std::size_t v = 0; v < ends.size(); ++v)
+            if (on_line_[v] != 0 && ends[v] != 2)
+                fixed_[v] = 1;
+    }
+
+    // A vertex on a line goes along it; the last face of a region stays.
+    bool keeps_lines(HalfEdge h) const {
+        if (s_.line.empty())
+            return true;
+        if (on_line_[s_.origin(h)] != 0 && !is_line(h))
+            return false;
+        const auto is_rim = [&](HalfEdge k) { return s_.twin[k] < 0 || is_line(k); };
+        const HalfEdge twin = s_.twin[h];
+        return !(is_rim(Mesh::next(h)) && is_rim(Mesh::previous(h))) &&
+               (twin < 0 || !(is_rim(Mesh::next(twin)) && is_rim(Mesh::previous(twin))));
+    }
+
     void add_face_quadric(Face f) {
         const Triangle& t = s_.faces[f];
         const Vec3& a = points_[t[0]];
@@ -100,7 +139,7 @@ private:
             quadric_[v].area += 0.5 * length;
         }
         for (const HalfEdge h : half_edges_of(f)) {
-            if (s_.twin[h] >= 0)
+            if (s_.twin[h] >= 0 && !is_line(h))
                 continue;
             const Vec3& p = points_[s_.origin(h)];
             const Vec3 edge = points_[s_.target(h)] - p;
@@ -140,7 +179,7 @@ private:
             progress.check();
             for (Vertex v = part * parts; v < std::min(count, (part + 1) * parts); ++v)
                 if (leaving_[v] >= 0 && stale_[v] != 0) {
-                    best_[v] = cheapest_collapse(v);
+                    best_[v] = is_fixed(v) ? Candidate() : cheapest_collapse(v);
                     stale_[v] = 0;
                 }
         };
@@ -192,7 +231,7 @@ private:
         return is_legal(h, around_v, inner_v);
     }
     bool is_legal(HalfEdge h, const Ring& around_v, bool inner_v) const {
-        return keeps_topology(h, around_v, inner_v) && keeps_shape(h);
+        return keeps_lines(h) && keeps_topology(h, around_v, inner_v) && keeps_shape(h);
     }
 
     // The link condition: the ends of the edge have no common neighbours but the two opposite
@@ -264,11 +303,24 @@ private:
             touch(s_.target(k));
             touch(s_.apex(k));
         });
+        join_lines(h);
         collapse(h);
         leaving_[v] = -1;
         return true;
     }
     void touch(Vertex v) { touched_[v] = stale_[v] = 1; }
+
+    // The edge of a line that collapses becomes part of the next one.
+    void join_lines(HalfEdge h) {
+        if (!is_line(h))
+            return;
+        Index into = -1;
+        visit_star(s_, h, [&](HalfEdge k) {
+            if (k != h && is_line(k))
+                into = s_.line[k];
+        });
+        s_.line[s_.line[h]] = into;
+    }
 
     void collapse(HalfEdge h) {
         const Vertex w = s_.target(h);
@@ -290,6 +342,8 @@ private:
             s_.twin[first] = second;
         if (second >= 0)
             s_.twin[second] = first;
+        if (!s_.line.empty() && first >= 0 && second >= 0)
+            s_.line[first] = s_.line[second] = std::max(s_.line[first], s_.line[second]);
         s_.alive[face_of(h)] = 0;
         --s_.alive_faces;
         for (const HalfEdge k : {first, second})
@@ -306,17 +360,24 @@ private:
     std::vector<Candidate> best_;
     std::vector<std::uint8_t> stale_;   // #V: best_ must be found again
     std::vector<std::uint8_t> touched_; // #V: a neighbour was removed in this round
+    std::vector<std::uint8_t> fixed_;   // #V: stays; empty: all may go
+    std::vector<std::uint8_t> on_line_; // #V; empty where there are no lines
     Progress* shared_;                  // of the whole run, where more threads may be used
     bool thorough_ = false;             // the last round removed nothing
     std::vector<Index> order_;          // candidates, the cheapest first
 };
 
-CoarseMesh coarsen_with(const Mesh& fine, Index target_faces, const Progress& progress,
-                        Progress* shared) {
-    CoarseSurface surface{{fine.faces, fine.twin}, {}, {}, {}, fine.face_count()};
+CoarseSurface whole_surface(const Mesh& fine) {
+    CoarseSurface surface{{fine.faces, fine.twin}, {}, {}, {}, {}, fine.face_count()};
     surface.alive.assign(fine.faces.size(), 1);
+    return surface;
+}
+
+CoarseMesh coarsen_with(const Mesh& fine, CoarseSurface surface, Index target_faces,
+                        const std::vector<std::uint8_t>& fixed, const Progress& progress,
+                        Progress* shared) {
     if (surface.alive_faces > target_faces) {
-        Coarsener coarsener(fine.points, surface, shared);
+        Coarsener coarsener(fine.points, surface, fixed, shared);
         while (surface.alive_faces > target_faces &&
                coarsener.round((surface.alive_faces - target_faces + 1) / 2, progress)) {
         }
@@ -327,11 +388,33 @@ CoarseMesh coarsen_with(const Mesh& fine, Index target_faces, const Progress& pr
 } // namespace
 
 CoarseMesh coarsen(const Mesh& fine, Index target_faces, const Progress& progress) {
-    return coarsen_with(fine, target_faces, progress, nullptr);
+    return coarsen_with(fine, whole_surface(fine), target_faces, {}, progress, nullptr);
 }
 
 CoarseMesh coarsen_in_parallel(const Mesh& fine, Index target_faces, Progress& progress) {
-    return coarsen_with(fine, target_faces, progress, &progress);
+    return coarsen_with(fine, whole_surface(fine), target_faces, {}, progress, &progress);
+}
+
+CoarseMesh coarsen_between_lines(const Mesh& fine, Index target_faces,
+                                 const std::vector<std::uint8_t>& lines,
+                                 const std::vector<std::uint8_t>& fixed, Progress& progress) {
+    CoarseSurface surface = whole_surface(fine);
+    surface.line.assign(fine.twin.size(), -1);
+    for (const HalfEdge h : fine.all_half_edges())
+        if (lines[h] != 0 && fine.twin[h] >= 0)
+            surface.line[h] = std::min<Index>(h, fine.twin[h]);
+    CoarseMesh coarse =
+        coarsen_with(fine, std::move(surface), target_faces, fixed, progress, &progress);
+    std::vector<Index>& line = coarse.surface.line;
+    for (const HalfEdge h : fine.all_half_edges()) {
+        if (lines[h] == 0 || fine.twin[h] < 0)
+            continue;
+        Index root = line[h];
+        while (line[root] != root)
+            root = line[root];
+        line[h] = root;
+    }
+    return coarse;
 }
 
 } // namespace devseg::mesh

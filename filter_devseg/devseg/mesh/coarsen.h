@@ -21,6 +21,9 @@ struct CoarseSurface : Connectivity {
     std::vector<std::uint8_t> alive; // #F
     std::vector<Index> collapses;    // half-edges, removed → kept vertex, in their order
     std::vector<std::size_t> rounds; // number of collapses at the end of each round
+    // 3 #F, where lines are kept: of half-edges on one, the number of the coarse edge that they
+    // became or are part of (a half-edge of the fine mesh); −1 for others. Else empty.
+    std::vector<Index> line;
     Index alive_faces = 0;
 };
 
@@ -39,6 +42,13 @@ CoarseMesh coarsen(const Mesh& fine, Index target_faces, const Progress& progres
 
 /// The same with all cores; not from within a task of parallel_for.
 CoarseMesh coarsen_in_parallel(const Mesh& fine, Index target_faces, Progress& progress);
+
+/// The same for a surface with lines on it: edges that are marked in `lines` (3 #F, symmetric) are
+/// joined to longer ones, from vertex to vertex of theirs, and stay lines. Ends, branches and the
+/// vertices that are marked in `fixed` (#V) stay. All regions between lines stay, too.
+CoarseMesh coarsen_between_lines(const Mesh& fine, Index target_faces,
+                                 const std::vector<std::uint8_t>& lines,
+                                 const std::vector<std::uint8_t>& fixed, Progress& progress);
 
 /// Undoes the last collapse; returns its half-edge, which leaves the vertex that is back.
 HalfEdge undo_collapse(CoarseSurface& surface);

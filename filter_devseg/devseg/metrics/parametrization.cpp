@@ -21,6 +21,9 @@ namespace {
 struct Tuning {
     double shapeless = 1e-12;     // of the longest edge squared: a thinner face has no shape
     double collapsed_face = 1e-6; // of its area: a face that covers less has collapsed in the plane
+    // Of the model's size: a chart that is narrower is a line, whose width in the plane is what
+    // 32-bit coordinates give it, as at the gate.
+    double line = 1e-6;
 };
 constexpr Tuning tuning;
 
@@ -78,18 +81,25 @@ struct ChartAreas {
     std::vector<double> surface; // of each chart
     std::vector<double> plane;   // sum of the absolute areas
     std::vector<double> balance; // sum of the signed areas: its sign is the chart's orientation
+    std::vector<double> longest; // edge on the surface
+
+    bool is_line(const Mesh& mesh, std::size_t c) const {
+        return surface[c] <= tuning.line * std::sqrt(mesh.model_area()) * longest[c];
+    }
 };
 
 ChartAreas sum_areas(const Mesh& mesh, const CornerUv& uv, const atlas::ChartMap& charts) {
     const std::size_t count = at(charts.count);
-    ChartAreas areas{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0),
-                     std::vector<double>(count, 0.0)};
+    const std::vector<double> none(count, 0.0);
+    ChartAreas areas{none, none, none, none};
     for (const Face f : mesh.all_faces()) {
         const std::size_t c = at(charts.chart[f]);
         const double area = plane::uv_area(uv, f);
         areas.surface[c] += mesh.face_areas[f];
         areas.plane[c] += std::abs(area);
         areas.balance[c] += area;
+        for (const HalfEdge h : half_edges_of(f))
+            areas.longest[c] = std::max(areas.longest[c], mesh.edge_length(h));
     }
     return areas;
 }
@@ -183,7 +193,8 @@ ParametrizationMeasures measure_parametrization(const Mesh& mesh, const CornerUv
         const double scale = areas.plane[c] > 0.0 ? areas.surface[c] / areas.plane[c] : 0.0;
         const double flat = std::abs(plane::uv_area(uv, f));
         covered += flat;
-        if (has_area(mesh, f) && flat * scale > tuning.collapsed_face * mesh.face_areas[f]) {
+        if (!areas.is_line(mesh, c) && has_area(mesh, f) &&
+            flat * scale > tuning.collapsed_face * mesh.face_areas[f]) {
             add_face(mesh, uv, f, scale, flipped, result, all, own[c], result.charts[c]);
             if (!flipped)
                 strains.add(mesh, uv, f);

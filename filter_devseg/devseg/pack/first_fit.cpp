@@ -95,8 +95,6 @@ Found fill(const Images& images, double width, const Progress& progress) {
     return found;
 }
 
-constexpr Index word_bits = 64;
-
 Index log2_floor(Index x) {
     Index k = 0;
     while ((x >> (k + 1)) != 0)
@@ -175,6 +173,8 @@ bool FreeCells::find(const FitImage& image, const FitWindow& window, Spot& spot)
     last_ = std::min(width_, window.right) - image.cells.width;
     if (last_ < window.left)
         return false;
+    for (Index y = window.from; y < std::min(window.top, static_cast<Index>(room_.size())); ++y)
+        bring_up_to_date(y);
     for (Index y = window.from; y <= window.top - image.cells.height; ++y)
         if (find_blocked(image, y, window.left)) {
             spot.x = first_free();
@@ -184,6 +184,37 @@ bool FreeCells::find(const FitImage& image, const FitWindow& window, Spot& spot)
     return false;
 }
 
+// Calls task(word, mask) for the words of a row that hold a run's cells, while it returns true.
+template <class Task>
+bool FreeCells::all_words(const CellRun& run, Index x, const Task& task) {
+    const Index first = x + run.first;
+    const Index end = x + run.last;
+    for (Index w = first / word_bits; w * word_bits < end; ++w) {
+        Word mask = ~Word{0};
+        if (w * word_bits < first)
+            mask <<= first - w * word_bits;
+        if ((w + 1) * word_bits > end)
+            mask &= ~Word{0} >> ((w + 1) * word_bits - end);
+        if (!task(at(w), mask))
+            return false;
+    }
+    return true;
+}
+
+bool FreeCells::is_free(const FitImage& image, const Spot& spot) const {
+    const auto rows = static_cast<Index>(room_.size());
+    if (spot.x + image.cells.width > width_)
+        return false;
+    return std::all_of(image.runs.begin(), image.runs.end(), [&](const CellRun& run) {
+        const Index row = spot.y + run.row;
+        if (row >= rows)
+            return true;
+        const Word* words = bits_.data() + at(row) * at(levels_) * words_;
+        return all_words(run, spot.x,
+                         [&](std::size_t w, Word mask) { return (words[w] & mask) == 0; });
+    });
+}
+
 void FreeCells::take(const FitImage& image, const Spot& spot) {
     const Index top = spot.y + image.cells.height;
     if (static_cast<Index>(room_.size()) < top) {
@@ -191,12 +222,13 @@ void FreeCells::take(const FitImage& image, const Spot& spot) {
         room_.resize(at(top), width_);
     }
     for (const CellRun& run : image.cells.runs) {
-        Word* row = level(spot.y + run.row, 0);
-        for (Index x = spot.x + run.first; x < spot.x + run.last; ++x)
-            row[x / word_bits] |= Word{1} << (x % word_bits);
+        Word* words = level(spot.y + run.row, 0);
+        all_words(run, spot.x, [&](std::size_t w, Word mask) {
+            words[w] |= mask;
+            return true;
+        });
+        room_[at(spot.y + run.row)] = unknown;
     }
-    for (Index y = spot.y; y < top; ++y)
-        bring_up_to_date(y);
     height_ = std::max(height_, top);
 }
 
@@ -214,6 +246,8 @@ void FreeCells::add_shifted(const Word* from, Index shift, std::size_t count, Wo
 }
 
 void FreeCells::bring_up_to_date(Index y) {
+    if (room_[at(y)] != unknown)
+        return;
     for (Index k = 1; k < levels_; ++k) {
         const Word* finer = level(y, k - 1);
         std::copy(finer, finer + words_, level(y, k));
@@ -223,9 +257,18 @@ void FreeCells::bring_up_to_date(Index y) {
     const Word* row = level(y, 0);
     Index longest = 0;
     Index free = 0;
-    for (Index x = 0; x < width_; ++x) {
-        free = (row[x / word_bits] >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
-        longest = std::max(longest, free);
+    for (Index x = 0; x < width_;) {
+        const Word word = row[x / word_bits];
+        if (word == 0 && x + word_bits <= width_) {
+            free += word_bits;
+            x += word_bits;
+            longest = std::max(longest, free);
+            continue;
+        }
+        for (const Index end = std::min(width_, x + word_bits); x < end; ++x) {
+            free = (word >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
+            longest = std::max(longest, free);
+        }
     }
     room_[y] = longest;
 }

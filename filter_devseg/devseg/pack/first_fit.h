@@ -52,14 +52,19 @@ public:
 
     /// The lowest place of one image in the window, then the leftmost. Nothing is put there.
     bool find(const FitImage& image, const FitWindow& window, Spot& spot);
+    /// Whether one place of an image is free and within the width.
+    bool is_free(const FitImage& image, const Spot& spot) const;
     void take(const FitImage& image, const Spot& spot);
 
     Index height() const { return height_; }
 
 private:
     using Word = std::uint64_t;
+    static constexpr Index word_bits = 64;
 
     Word* level(Index y, Index k) { return bits_.data() + (at(y) * at(levels_) + at(k)) * words_; }
+    template <class Task>
+    static bool all_words(const CellRun& run, Index x, const Task& task);
     static void add_shifted(const Word* from, Index shift, std::size_t count, Word* to);
     bool find_blocked(const FitImage& image, Index y, Index left);
     Index first_free() const;
@@ -69,9 +74,10 @@ private:
     std::size_t words_; // of a row, one more than it needs
     Index levels_;
     Index height_ = 0;
-    Index last_ = 0;          // the last place of the image that is looked at
-    std::vector<Word> bits_;  // row by row, level by level
-    std::vector<Index> room_; // #rows: the most free cells in a line
+    Index last_ = 0;                     // the last place of the image that is looked at
+    std::vector<Word> bits_;             // row by row, level by level
+    std::vector<Index> room_;            // #rows: the most free cells in a line, or
+    static constexpr Index unknown = -1; // the row has changed, and higher levels have not
     std::vector<Word> blocked_;
 };
 

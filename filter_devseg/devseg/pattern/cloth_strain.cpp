@@ -54,12 +54,16 @@ double share_of(std::vector<std::pair<double, double>> values, double share) {
     return values.empty() ? 0.0 : values.back().first;
 }
 
-// The lines every 5 degrees, and the longest and the shortest one.
-double largest_use(const FaceMetric& face, double grain, const material::Material& material) {
+// The lines every 5 degrees, and the longest and the shortest one. Negative where the line that
+// needs most is shorter on the model.
+double signed_use(const FaceMetric& face, double grain, const material::Material& material) {
     double use = 0.0;
     const auto look = [&](double angle) {
-        use = std::max(use, use_of(length_along(face, direction_at(angle)),
-                                   material.stretch_limit(angle - grain), material.compression));
+        const double length = length_along(face, direction_at(angle));
+        const double own =
+            use_of(length, material.stretch_limit(angle - grain), material.compression);
+        if (own > std::abs(use))
+            use = length < 1.0 ? -own : own;
     };
     for (int i = 0; i < tuning.directions; ++i)
         look(grain + pi * i / tuning.directions);
@@ -67,6 +71,10 @@ double largest_use(const FaceMetric& face, double grain, const material::Materia
     look(longest);
     look(longest + 0.5 * pi);
     return use;
+}
+
+double largest_use(const FaceMetric& face, double grain, const material::Material& material) {
+    return std::abs(signed_use(face, grain, material));
 }
 
 // Limits for both: most of the area, and any face.
@@ -164,6 +172,19 @@ ClothStrain measure_cloth(const std::vector<FaceMetric>& faces, const Vec2& grai
     strain.use_99 = share_of(std::move(uses), tuning.most_of_it);
     strain.is_within = decisive(strain.use_99, strain.worst_use) <= 1.0;
     return strain;
+}
+
+std::vector<double> limit_uses(const Pattern& pattern, double mm) {
+    std::vector<double> uses(pattern.mesh.faces.size(), 0.0);
+    std::vector<Index> faces;
+    for (const Face f : pattern.mesh.all_faces())
+        if (pattern.face_piece[f] >= 0)
+            faces.push_back(f);
+    for (const FaceMetric& face : face_metrics(pattern.mesh, pattern.corner_place, faces, mm)) {
+        const Vec2& grain = pattern.pieces[at(pattern.face_piece[at(face.face)])].grain_direction;
+        uses[at(face.face)] = signed_use(face, std::atan2(grain.y(), grain.x()), *pattern.material);
+    }
+    return uses;
 }
 
 Vec2 choose_grain(const std::vector<FaceMetric>& faces, const PatternOptions& options,

@@ -34,6 +34,11 @@ std::vector<FaceMetric> face_metrics(const Mesh& mesh, const std::vector<Vec2>& 
 ClothStrain measure_cloth(const std::vector<FaceMetric>& faces, const Vec2& grain,
                           const material::Material& material);
 
+/// Of each face (#F) of a pattern with a material: the largest share of its limits that any line
+/// in the face needs; negative where that line is shorter on the model. 0 for faces in no piece and
+/// without area. `mm` as above.
+std::vector<double> limit_uses(const Pattern& pattern, double mm);
+
 /// The unit vector of the grain as the options want it; `longest` is that of the piece's box. Best
 /// is what needs the least share of the material's limits, in steps of 5 degrees; the longest
 /// direction where all are equal. Upwards is that of the model, on the average of the faces; the

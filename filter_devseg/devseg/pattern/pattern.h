@@ -106,6 +106,7 @@ struct PatternPiece {
     double short_side = 0.0;
     PieceStrain strain;
     ClothStrain cloth;            // where the pattern has a material
+    Index fabric = 0;             // what it is cut from: position in Pattern::fabrics
     std::vector<PieceFold> folds; // every edge that bends by more than fold_angle
 
     /// Outline 0 is the outer one, outline i is hole i − 1.
@@ -131,15 +132,16 @@ struct Pattern {
     double width = 0.0;      // mm
     double height = 0.0;     // mm
     std::optional<material::Material> material;
-    double mm_per_unit = 1.0;       // as used, from height_mm where that was given
-    double hem_length = 0.0;        // mm, of all edges of pieces that are sewn to nothing
-    Mesh mesh;                      // with the faces cut that cuts of pieces go through; #F faces
-    std::vector<Index> source_face; // #F: face of the mesh that the pattern was made of
-    std::vector<std::uint8_t> seam; // 3 #F: 1 on edges along which paper or cloth is cut
-    std::vector<Index> face_piece;  // #F: piece that each face lies in, −1 = none
-    std::vector<Vec2> corner_place; // 3 #F: where the corners of each face lie on the sheet, mm;
-                                    // 0 for faces in no piece
-    std::vector<std::string> notes; // what the user should know, one sentence each
+    std::vector<std::string> fabrics; // names of the model's materials; empty where it is of one
+    double mm_per_unit = 1.0;         // as used, from height_mm where that was given
+    double hem_length = 0.0;          // mm, of all edges of pieces that are sewn to nothing
+    Mesh mesh;                        // with the faces cut that cuts of pieces go through; #F faces
+    std::vector<Index> source_face;   // #F: face of the mesh that the pattern was made of
+    std::vector<std::uint8_t> seam;   // 3 #F: 1 on edges along which paper or cloth is cut
+    std::vector<Index> face_piece;    // #F: piece that each face lies in, −1 = none
+    std::vector<Vec2> corner_place;   // 3 #F: where the corners of each face lie on the sheet, mm;
+                                      // 0 for faces in no piece
+    std::vector<std::string> notes;   // what the user should know, one sentence each
 };
 
 } // namespace devseg::pattern

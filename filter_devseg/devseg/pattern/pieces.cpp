@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devseg/base/errors.h"
+#include "devseg/pattern/alike.h"
 #include "devseg/pattern/bends.h"
 #include "devseg/pattern/chart_areas.h"
 #include "devseg/pattern/cloth_strain.h"
@@ -165,6 +166,12 @@ std::vector<Chain> refine_outlines(const Mesh& mesh, const std::vector<std::uint
     progress.check();
     if (options.match_seams)
         match_sides(pieces, chains, progress);
+    if (options.alike_mm > 0.0) {
+        for (PatternPiece& piece : pieces)
+            measure_outlines(piece);
+        if (make_alike(pieces, options.alike_mm, progress) > 0 && options.match_seams)
+            match_sides(pieces, chains, progress);
+    }
     drop_empty_edges(pieces, chains);
     return chains;
 }
@@ -275,6 +282,7 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::max_width_mm, {"max_width_mm", 0.0, 1e9}},
             {&O::simplify_mm, {"simplify_mm", 0.0, 1e6}},
             {&O::notch_spacing_mm, {"notch_spacing_mm", 0.0, 1e6}},
+            {&O::alike_mm, {"alike_mm", 0.0, 1e3}},
             {&O::pair_tolerance_mm, {"pair_tolerance_mm", 0.0, 1e6}},
             {&O::curve_mm, {"curve_mm", 0.0, 1e3}},
             {&O::corner_angle, {"corner_angle", 0.0, 180.0}},

@@ -40,4 +40,23 @@ std::array<double, 3> sample(const Image& image, const Vec2& uv) {
     return color;
 }
 
+Image halved(const Image& image) {
+    Image small{std::max(1, image.width / 2), std::max(1, image.height / 2), {}};
+    small.rgb.reserve(3 * static_cast<std::size_t>(small.width) *
+                      static_cast<std::size_t>(small.height));
+    const auto width = static_cast<std::size_t>(image.width);
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x)
+            for (std::size_t k = 0; k < 3; ++k) {
+                int sum = 0;
+                for (const int row : {2 * y, std::min(2 * y + 1, image.height - 1)})
+                    for (const int column : {2 * x, std::min(2 * x + 1, image.width - 1)})
+                        sum += image.rgb[3 * (static_cast<std::size_t>(row) * width +
+                                              static_cast<std::size_t>(column)) +
+                                         k];
+                small.rgb.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
+            }
+    return small;
+}
+
 } // namespace devseg::plane

@@ -9,6 +9,8 @@
 
 namespace devseg::plane {
 
+using Color = std::array<std::uint8_t, 3>; // red, green, blue
+
 struct Image {
     int width = 0;                 // pixels
     int height = 0;                // pixels
@@ -20,5 +22,8 @@ struct Image {
 /// The colour at texture coordinates, v up, from 0 to 255: bilinear between the middles of pixels.
 /// The image repeats outside of the unit square.
 std::array<double, 3> sample(const Image& image, const Vec2& uv);
+
+/// The image at half its size, each pixel the mean of those that it replaces.
+Image halved(const Image& image);
 
 } // namespace devseg::plane

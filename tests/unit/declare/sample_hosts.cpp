@@ -65,6 +65,9 @@ HostMesh halves_of_a_ball() {
         host.chart_id.push_back(static_cast<double>(side));
         host.face_selected.push_back(seen[side]++ == 30 ? 1 : 0);
         host.edge_selected.push_back(7);
+        std::array<Vec2, 3>& corners = host.wedge_uv.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = host.geometry.points[t[k]].head<2>();
     }
     return host;
 }

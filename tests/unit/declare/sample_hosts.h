@@ -9,7 +9,8 @@ namespace devseg::declare::hosts {
 /// edges that ends inside a chart, and a vertex.
 HostMesh chosen_by_hand(double bulge);
 
-/// A ball in two charts, with a face selected in each.
+/// A ball in two charts, with a face selected in each, and texture coordinates in which the halves
+/// above and below lie on each other.
 HostMesh halves_of_a_ball();
 
 /// A mesh with everything that filters read: a noisy torus, cut open and flattened. One chart, so

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -133,6 +134,64 @@ TEST(GivenCharts, RegionsOfColoursAndMaterialsAreCharts) {
     EXPECT_EQ(charts(0), 2);
     EXPECT_EQ(charts(1), 2);
     EXPECT_EQ(charts(2), 1);
+}
+
+// Charts are as they were, their seams shorter, and the surface the same.
+void expect_smooth(const HostMesh& host, const char* filter, declare::ParameterValues values) {
+    SCOPED_TRACE(filter);
+    const HostResult plain = run(filter, host, values);
+    EXPECT_FALSE(plain.refinement.has_value());
+    values["smooth"] = true;
+    const HostResult smooth = run(filter, host, values);
+    ASSERT_TRUE(smooth.refinement.has_value());
+    const mesh::RawMesh fine = checks::refined(host.geometry, smooth);
+    EXPECT_GT(fine.faces.size(), host.geometry.faces.size());
+    EXPECT_TRUE(checks::is_valid(checks::gated(fine)));
+    checks::expect_agreement(fine, smooth);
+    EXPECT_EQ(smooth.face_color.size(), fine.faces.size());
+    EXPECT_EQ(value(smooth, "charts_number"), value(plain, "charts_number"));
+    EXPECT_LT(value(smooth, "seam_length"), 0.97 * value(plain, "seam_length"));
+}
+
+TEST(GivenCharts, SeamsBecomeSmoothWhereThatIsWanted) {
+    HostMesh host = sphere_with_cap();
+    for (const std::uint8_t selected : host.face_selected) {
+        host.face_material.push_back(selected);
+        host.face_color.push_back({selected, 0, 0});
+    }
+    for (std::size_t f = 0; f < host.face_selected.size(); ++f) { // two islands
+        const double left = host.face_selected[f] != 0 ? 5.0 : 0.0;
+        std::array<Vec2, 3>& corners = host.wedge_uv.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] =
+                host.geometry.points[host.geometry.faces[f][k]].head<2>() + Vec2(left, 0.0);
+    }
+    expect_smooth(host, "Charts: From Selected Edges", {});
+    expect_smooth(host, "Charts: From Texture Coordinates", {});
+    expect_smooth(host, "Charts: From Colors or Materials", {{"source", 0}});
+    expect_smooth(host, "Charts: From Colors or Materials", {{"source", 1}});
+}
+
+TEST(GivenCharts, OnlyNewSeamsBecomeSmooth) {
+    HostMesh host = sphere_with_cap();
+    checks::take_charts(host, run("Charts: From Selected Edges", host));
+    for (std::size_t f = 0; f < host.face_selected.size(); ++f)
+        host.face_selected[f] = middle_of(host, host.geometry.faces[f]).x() > 0.3 ? 1 : 0;
+    const HostResult kept =
+        run("Charts: From Selected Edges", host, {{"keep", 1}, {"smooth", true}});
+    EXPECT_EQ(value(kept, "charts_number"), 4);
+    checks::expect_agreement(checks::refined(host.geometry, kept), kept);
+    checks::expect_kept_seams(host, kept);
+    // The cap stays as it is, and the rest of the ball is divided.
+    for (std::size_t f = 0; f < host.chart_id.size(); ++f)
+        host.chart_id[f] = middle_of(host, host.geometry.faces[f]).z() > 0.5 ? 3.0 : -1.0;
+    const HostResult rest =
+        run("Charts: From Selected Edges", host, {{"keep", 2}, {"smooth", true}});
+    const mesh::RawMesh fine = checks::refined(host.geometry, rest);
+    checks::expect_agreement(fine, rest);
+    for (std::size_t f = 0; f < host.chart_id.size(); ++f)
+        EXPECT_EQ(rest.chart_id[f] == 3, host.chart_id[f] > 0.0) << f;
+    EXPECT_EQ(std::set<int>(rest.chart_id.begin(), rest.chart_id.end()).size(), 3U);
 }
 
 // A ball of six gores, each gore an island at a scale of its own.

@@ -263,6 +263,52 @@ TEST(Coarsen, RefinedLabelsAreConnectedAndCoverAll) {
     }
 }
 
+// Borders of labels are the lines.
+TEST(Coarsen, LinesStayLinesBetweenTheSameRegions) {
+    unsigned seed = 7;
+    for (const Mesh& mesh : surfaces()) {
+        const Index count = std::min<Index>(6, mesh.face_count());
+        const std::vector<Index> label = grown_labels(mesh, count, seed++);
+        std::vector<std::uint8_t> lines(mesh.twin.size(), 0);
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (mesh.twin[h] >= 0 && label[face_of(h)] != label[mesh.across(h)])
+                lines[h] = 1;
+        std::vector<std::uint8_t> fixed(mesh.points.size(), 0);
+        fixed[mesh.points.size() / 2] = 1;
+        Progress progress;
+        const CoarseMesh coarse =
+            coarsen_between_lines(mesh, mesh.face_count() / 8, lines, fixed, progress);
+        ASSERT_TRUE(checks::is_valid(coarse.mesh));
+        EXPECT_EQ(std::count(coarse.vertex.begin(), coarse.vertex.end(),
+                             static_cast<Index>(mesh.points.size() / 2)),
+                  1);
+        std::vector<Index> on_coarse;
+        for (const Index f : coarse.face)
+            on_coarse.push_back(label[at(f)]);
+        // All regions are there, each in one piece.
+        EXPECT_EQ(atlas::make_chart_map(coarse.mesh, on_coarse, {}, false).count, count);
+        EXPECT_EQ(std::set<Index>(on_coarse.begin(), on_coarse.end()).size(), at(count));
+        const std::vector<Index>& line = coarse.surface.line;
+        std::map<Index, double> on_fine; // length of each line's edges
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (lines[h] != 0)
+                on_fine[line[h]] += mesh.edge_length(h);
+        std::set<Index> found;
+        for (const HalfEdge h : coarse.mesh.all_half_edges()) {
+            const Index number = line[at(3 * coarse.face[face_of(h)] + corner_of(h))];
+            const bool is_border = coarse.mesh.twin[h] >= 0 &&
+                                   on_coarse[face_of(h)] != on_coarse[coarse.mesh.across(h)];
+            EXPECT_EQ(number >= 0, is_border);
+            if (number < 0)
+                continue;
+            found.insert(number);
+            EXPECT_LE(2.0 * coarse.mesh.edge_length(h), on_fine[number] + 1e-9);
+            EXPECT_EQ(lines[at(number)], 1);
+        }
+        EXPECT_EQ(found.size(), on_fine.size()); // each became just one edge
+    }
+}
+
 TEST(Coarsen, RunsAreEqualAndCanBeCancelled) {
     const Mesh mesh = checks::gated(shapes::with_noise(shapes::sphere(3), 0.02, 5));
     const CoarseSurface a = coarsened(mesh, 100);

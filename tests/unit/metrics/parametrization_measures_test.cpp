@@ -80,6 +80,28 @@ TEST(ParametrizationMeasures, IsometriesAtAnyScaleAndPlace) {
         }
 }
 
+// The last row of squares is a billionth as high, and a chart of its own that the plane shows
+// wider: it has no area whose stretch anybody could see.
+TEST(ParametrizationMeasures, ChartsThatAreLinesHaveNoStretch) {
+    mesh::RawMesh raw = shapes::grid(cells, cells, 1.0, 1.0);
+    CornerUv uv;
+    const double last = 1.0 - 1.0 / cells;
+    const auto is_last = [&](const Triangle& t) {
+        return raw.points[t[0]].y() + raw.points[t[1]].y() + raw.points[t[2]].y() > 3.0 * last;
+    };
+    for (const Triangle& t : raw.faces)
+        for (const Index v : t)
+            uv.push_back(raw.points[v].head<2>() + (is_last(t) ? Vec2(0.0, 1.0) : Vec2::Zero()));
+    for (Vec3& p : raw.points)
+        if (p.y() > 1.0 - 0.5 / cells)
+            p.y() = 1.0 - 1.0 / cells + 1e-9;
+    const ParametrizationMeasures m = measure_parametrization(checks::gated(raw), uv);
+    ASSERT_EQ(m.charts_number, 2);
+    EXPECT_NEAR(m.linf_stretch, 1.0, 1e-9);
+    EXPECT_NEAR(std::max(m.charts[0].l2_stretch, m.charts[1].l2_stretch), 1.0, 1e-9);
+    EXPECT_EQ(m.flipped_faces_number, 0);
+}
+
 TEST(ParametrizationMeasures, ShearedSquare) {
     const Square square;
     const double k = 0.8;

@@ -81,6 +81,25 @@ TEST(ClothStrain, OfAStretchedCylinderIsThatOfItsAxes) {
     EXPECT_FALSE(lying.is_within);
 }
 
+TEST(ClothStrain, UsesOfLimitsHaveASign) {
+    const Sampled s = sample(
+        grid(1.0, 0.0, 3.0),
+        [](const Vec2& p) { return Vec3(std::sin(p.x()), p.y(), std::cos(p.x())); },
+        [&](const Vec2& p) { return Vec2(p.x() / 1.04, p.y() / 0.97); });
+    Pattern pattern;
+    pattern.mesh = s.mesh;
+    pattern.corner_place = s.paper;
+    pattern.face_piece.assign(s.mesh.faces.size(), 0);
+    pattern.face_piece.front() = -1;
+    pattern.pieces.emplace_back();
+    pattern.material = cloth(0.1, 0.05, 0.1, 0.06); // 4 % across the grain
+    std::vector<double> uses = limit_uses(pattern, 1.0);
+    EXPECT_EQ(uses.front(), 0.0);
+    EXPECT_NEAR(uses.back(), 0.04 / 0.05, 1e-6);
+    pattern.material = cloth(0.1, 0.1, 0.1, 0.02); // 3 % shorter along it
+    EXPECT_NEAR(limit_uses(pattern, 1.0).back(), -0.03 / 0.02, 1e-6);
+}
+
 TEST(ClothStrain, OfAConeThatIsUnrolledIsNone) {
     const double half_angle = 0.5;
     const Sampled s = sample(

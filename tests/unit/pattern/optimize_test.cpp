@@ -171,6 +171,31 @@ TEST(PatternLayer, LiesFlatInMillimetresAndKnowsItsFaces) {
     EXPECT_EQ(count(result, "pieces_number"), 2);
 }
 
+// Of two sheets, one is a fifth longer on paper; its cloth is compressed on the model.
+TEST(PatternLayer, UseOfLimitsIsColoured) {
+    Cloth cloth;
+    cloth.add(shapes::grid(2, 2, 10.0, 10.0), [](const Vec3& p, const Vec3&) {
+        return Vec2(p.x() > 5.0 ? 5.0 + 1.2 * (p.x() - 5.0) : p.x(), p.y());
+    });
+    const auto layer = [&](const std::string& material) {
+        return *checks::run("Pattern: Generate Pieces", cloth.host(), {{"material", material}})
+                    .layer;
+    };
+    const declare::LayerMesh within = layer("neoprene, warp=1, weft=1, bias=1, compression=0.9");
+    for (const double use : within.face_quality)
+        EXPECT_LT(std::abs(use), 1.0);
+    for (const declare::Color& c : within.face_color)
+        EXPECT_EQ(std::max(c[0], c[2]), 255);
+    const declare::LayerMesh above = layer("leather");
+    const auto [least, most] =
+        std::minmax_element(above.face_quality.begin(), above.face_quality.end());
+    EXPECT_LT(*least, -2.0);
+    EXPECT_GT(*most, 2.0);
+    for (std::size_t f = 0; f < above.face_color.size(); ++f)
+        EXPECT_EQ(above.face_color[f], (above.face_quality[f] > 0.0 ? declare::Color{128, 0, 0}
+                                                                    : declare::Color{0, 0, 128}));
+}
+
 TEST(PatternLayer, StrainIsColoured) {
     Cloth cloth;
     cloth.add(shapes::grid(2, 2, 10.0, 10.0), [](const Vec3& p, const Vec3&) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "devseg/flatten/energy/map_tools.h"
 
@@ -22,9 +23,11 @@ struct Tuning {
     // Least height of a needle, of the model's size: a dozen steps of 32 bits in a packed square.
     // Needles in a row leave each other no room on that grid, and would be turned over by it.
     double needle_height = 1e-6;
-    double needle_length = 4.0; // of that height, at least: shorter faces are specks
-    int needle_sweeps = 8;      // as many needles side by side make room for each other
-    double least_step = 0.125;  // of the height that is missing
+    // Least height of a face before rounding, in steps of the largest coordinate. Rounding moves
+    // each corner by 0.71 of them at most, and so changes a height by 1.41.
+    double grid_height = 4.0;
+    double reached = 1.05; // of the least height: what a face that is lower gets
+    int room_rounds = 400; // visits of each low face: rows of needles push others away step by step
 };
 constexpr Tuning tuning;
 
@@ -62,49 +65,42 @@ double unit_in_last_place(const Vec2& p) {
     return static_cast<double>(std::nextafter(size, std::numeric_limits<float>::infinity()) - size);
 }
 
-class Repair {
+// Moves vertices on the grid so that the faces around them come nearest to the areas that they had.
+class AreaKeeper {
 public:
-    Repair(const std::vector<Triangle>& faces, std::vector<Vec2>& uv)
-        : faces_(faces), uv_(uv), stars_(build_stars(faces, uv.size())) {}
+    // `area`: twice that of each face.
+    AreaKeeper(const std::vector<Triangle>& faces, std::vector<double> area, std::vector<Vec2>& uv)
+        : faces_(faces), area_(std::move(area)), uv_(uv), stars_(build_stars(faces, uv.size())) {}
 
-    // Moves a vertex of the face so that fewer faces around it are flipped.
-    bool mend(Face face) {
-        for (const Vertex v : faces_[face])
-            if (move(v))
-                return true;
-        return false;
-    }
-
-    // Moves a vertex of the face, where that flips nothing, so that the face's area comes nearest
-    // to `area` (twice its area).
-    void restore_area(Face face, double area) {
+    void restore(Face face) {
         for (const Vertex v : faces_[face]) {
             const Vec2 home = uv_[v];
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
-            double least = std::abs(twice_area(face) - area);
+            double least = loss_around(v);
             const int most = is_inside(v) ? tuning.grid_reach : tuning.boundary_reach;
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
                     uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
-                    const double off = std::abs(twice_area(face) - area);
-                    if (off < least && flipped_around(v) == 0) {
-                        least = off;
+                    const double loss = loss_around(v);
+                    if (loss < least) {
+                        least = loss;
                         best = uv_[v];
                     }
                 }
             uv_[v] = best;
-            if (least <= tuning.kept_face_area * area)
+            if (std::abs(twice_area(face) - area_[face]) <= tuning.kept_face_area * area_[face])
                 return;
         }
     }
-    double twice_area(Face face) const {
+
+private:
+    double twice_area(Index face) const {
         const Triangle& t = faces_[face];
         return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]);
     }
 
-private:
     // Whether the faces around the vertex close up.
     bool is_inside(Vertex v) const {
         std::vector<Index> after;
@@ -118,34 +114,19 @@ private:
         return std::is_permutation(after.begin(), after.end(), before.begin());
     }
 
-    int flipped_around(Vertex v) const {
-        int count = 0;
-        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i)
-            count += is_positive(faces_, uv_, stars_.faces[i]) ? 0 : 1;
-        return count;
-    }
-    bool move(Vertex v) {
-        const Vec2 home = uv_[v];
-        const double unit = unit_in_last_place(home);
-        Vec2 best = home;
-        int fewest = flipped_around(v);
-        const int before = fewest;
-        for (int step = 1; step <= tuning.grid_reach && fewest > 0; step *= 2)
-            for (int direction = 0; direction < 9; ++direction) {
-                const Vec2 offset(direction % 3 - 1, direction / 3 - 1);
-                const Vec2 moved = home + unit * step * offset;
-                uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
-                const int count = flipped_around(v);
-                if (count < fewest) {
-                    fewest = count;
-                    best = uv_[v];
-                }
-            }
-        uv_[v] = best;
-        return fewest < before;
+    // What one face gains must not cost another one more.
+    double loss_around(Vertex v) const {
+        double loss = 0.0;
+        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i) {
+            const Index f = stars_.faces[i];
+            const double ratio = twice_area(f) / area_[f];
+            loss += ratio > 0.0 ? ratio + 1.0 / ratio - 2.0 : infinite;
+        }
+        return loss;
     }
 
     const std::vector<Triangle>& faces_;
+    std::vector<double> area_;
     std::vector<Vec2>& uv_;
     Stars stars_;
 };
@@ -156,6 +137,88 @@ struct Needle {
     double length;    // of the base
     double height;
     Vec2 upwards; // unit normal of the base, to the side of the face
+};
+
+// Makes low faces higher by moving their corners along the gradients of their areas, as position
+// based dynamics keeps volumes: those around that become too low by it come next.
+class RoomMaker {
+public:
+    RoomMaker(const std::vector<Triangle>& faces, double least, std::vector<Vec2>& uv)
+        : faces_(faces), least_(least), uv_(uv) {}
+
+    // Whether all faces have the least height then.
+    bool make() {
+        std::vector<Index> low;
+        for (Index f = 0; f < static_cast<Index>(faces_.size()); ++f)
+            if (is_low(f))
+                low.push_back(f);
+        if (low.empty())
+            return true;
+        const Stars stars = build_stars(faces_, uv_.size());
+        std::vector<std::uint8_t> waits(faces_.size(), 0);
+        for (const Index f : low)
+            waits[f] = 1;
+        const std::size_t most = tuning.room_rounds * low.size();
+        for (std::size_t i = 0; i < low.size() && i < most; ++i) {
+            waits[low[i]] = 0;
+            if (!is_low(low[i]))
+                continue;
+            raise(low[i]);
+            for (const Vertex v : faces_[low[i]])
+                for (Index k = stars.begin[v]; k < stars.begin[at(v) + 1]; ++k) {
+                    const Index g = stars.faces[k];
+                    if (waits[g] == 0 && is_low(g)) {
+                        waits[g] = 1;
+                        low.push_back(g);
+                    }
+                }
+        }
+        return low.size() <= most;
+    }
+
+private:
+    double longest(Index f) const {
+        const Triangle& t = faces_[f];
+        return std::sqrt(
+            std::max({(uv_[t[1]] - uv_[t[0]]).squaredNorm(), (uv_[t[2]] - uv_[t[1]]).squaredNorm(),
+                      (uv_[t[0]] - uv_[t[2]]).squaredNorm()}));
+    }
+    double twice_area(Index f) const {
+        const Triangle& t = faces_[f];
+        return plane::cross(uv_[t[1]] - uv_[t[0]], uv_[t[2]] - uv_[t[0]]);
+    }
+    // An equilateral triangle is as high as 0.87 of its sides: specks count as well.
+    bool is_low(Index f) const { return !(twice_area(f) >= least_ * longest(f)); }
+
+    void raise(Index f) {
+        const Triangle& t = faces_[f];
+        Vec2 gradient[3]; // of twice the area
+        double squares = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            gradient[k] = plane::left_of(uv_[t[(k + 2) % 3]] - uv_[t[(k + 1) % 3]]);
+            squares += gradient[k].squaredNorm();
+        }
+        // A speck has hardly any gradient: it grows from its middle instead.
+        const double missing = tuning.reached * least_ * longest(f) - twice_area(f);
+        if (!(squares > least_ * least_)) {
+            grow(t);
+            return;
+        }
+        for (std::size_t k = 0; k < 3; ++k)
+            uv_[t[k]] += missing / squares * gradient[k];
+    }
+    void grow(const Triangle& t) {
+        const Vec2 middle = (uv_[t[0]] + uv_[t[1]] + uv_[t[2]]) / 3.0;
+        const double radius = 2.0 / 3.0 * tuning.reached * least_; // of an equilateral one
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double angle = 2.0 * pi / 3.0 * static_cast<double>(k);
+            uv_[t[k]] = middle + radius * Vec2(std::cos(angle), std::sin(angle));
+        }
+    }
+
+    const std::vector<Triangle>& faces_;
+    double least_;
+    std::vector<Vec2>& uv_;
 };
 
 class Needles {
@@ -180,28 +243,6 @@ public:
         }
     }
 
-    // Towards the least height, where that makes no other face as low; whether it helped.
-    bool raise() const {
-        bool raised = false;
-        for (Face f = 0; f < face_count(); ++f) {
-            const Needle needle = of_face(f);
-            if (needle.length < tuning.needle_length * least_ || needle.height >= least_)
-                continue;
-            Vec2& apex = uv_[origin(needle.leaving)];
-            const Vec2 home = apex;
-            const double before = lowest_around(needle.leaving);
-            for (double step = 1.0; step >= tuning.least_step; step *= 0.5) {
-                apex = home + step * (least_ - needle.height) * needle.upwards;
-                if (lowest_around(needle.leaving) > before) {
-                    raised = true;
-                    break;
-                }
-                apex = home;
-            }
-        }
-        return raised;
-    }
-
 private:
     Index face_count() const { return static_cast<Index>(problem_.faces.size()); }
     Vertex origin(HalfEdge h) const { return problem_.faces[face_of(h)][corner_of(h)]; }
@@ -220,16 +261,6 @@ private:
         }
         return needle;
     }
-    // At most the least height; faces without length have no say, but must not turn over.
-    double lowest_around(HalfEdge leaving) const {
-        double lowest = least_;
-        mesh::visit_star(problem_.twin, leaving, [&](HalfEdge h) {
-            const Needle needle = of_face(face_of(h));
-            if (needle.length >= tuning.needle_length * least_ || !(needle.height > 0.0))
-                lowest = std::min(lowest, needle.height);
-        });
-        return lowest;
-    }
 
     const FlatteningProblem& problem_;
     std::vector<Vec2>& uv_;
@@ -239,49 +270,34 @@ private:
 } // namespace
 
 Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) {
-    const std::vector<Vec2> exact = uv;
+    double farthest = 0.0;
+    for (const Vec2& p : uv)
+        farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+    const double step = unit_in_last_place(Vec2::Constant(farthest));
+    RoomMaker(faces, tuning.grid_height * step, uv).make();
+    std::vector<double> area;
+    for (const Triangle& t : faces)
+        area.push_back(orientation(uv[t[0]], uv[t[1]], uv[t[2]]));
     for (Vec2& p : uv)
         p = Vec2(rounded(p.x()), rounded(p.y()));
-    const auto twice_area = [&](const std::vector<Vec2>& points, Face f) {
-        const Triangle& t = faces[f];
-        return orientation(points[t[0]], points[t[1]], points[t[2]]);
-    };
-    std::vector<Index> flipped;
     std::vector<Index> thin;
     for (Face f = 0; f < static_cast<Index>(faces.size()); ++f) {
-        const double area = twice_area(exact, f);
-        if (!is_positive(faces, uv, f))
-            flipped.push_back(f);
-        if (area > 0.0 && std::abs(twice_area(uv, f) - area) > tuning.kept_face_area * area)
+        const Triangle& t = faces[f];
+        const double off = std::abs(orientation(uv[t[0]], uv[t[1]], uv[t[2]]) - area[f]);
+        if (!(off <= tuning.kept_face_area * area[f]))
             thin.push_back(f);
     }
-    if (flipped.empty() && thin.empty())
+    if (thin.empty())
         return 0;
-    Repair repair(faces, uv);
-    // A mended face may have cost a neighbour, and a move have made room: again, until nothing
-    // helps.
-    for (bool mended = true; mended && !flipped.empty();) {
-        mended = false;
-        for (const Face f : flipped)
-            if (!is_positive(faces, uv, f))
-                mended = repair.mend(f) || mended;
-        flipped.clear();
-        for (Face f = 0; f < static_cast<Index>(faces.size()); ++f)
-            if (!is_positive(faces, uv, f))
-                flipped.push_back(f);
-    }
+    AreaKeeper keeper(faces, std::move(area), uv);
     for (const Face f : thin)
-        repair.restore_area(f, twice_area(exact, f));
-    const auto lost = std::count_if(flipped.begin(), flipped.end(),
-                                    [&](Face f) { return !is_positive(faces, uv, f); });
-    return static_cast<Index>(lost);
+        keeper.restore(f);
+    return static_cast<Index>(std::count_if(thin.begin(), thin.end(),
+                                            [&](Face f) { return !is_positive(faces, uv, f); }));
 }
 
 void restore_needles(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
-    const Needles needles(problem, uv);
-    needles.lower();
-    for (int sweep = 0; sweep < tuning.needle_sweeps && needles.raise(); ++sweep) {
-    }
+    Needles(problem, uv).lower();
 }
 
 } // namespace devseg::flatten

@@ -31,7 +31,9 @@ public:
     bool run(Progress& progress) {
         while (true) {
             auto judging = progress.part(0.2 * progress.left());
-            judge_unknown(bounds_.linf == 0.0 && bounds_.max_excess == infinite, judging);
+            judge_unknown(bounds_.linf == 0.0 && bounds_.strain == 0.0 &&
+                              bounds_.max_excess == infinite,
+                          judging);
             const std::vector<Index> above = charts_above();
             if (!bounds_.may_cut) {
                 hand_back();
@@ -91,7 +93,8 @@ private:
         std::vector<std::vector<Index>> faces;
         for (const Index c : which)
             faces.push_back(draft_.faces[c]);
-        std::vector<TrialMap> maps = judge::final_maps(mesh_, faces, draft_.seam, progress);
+        std::vector<TrialMap> maps =
+            judge::final_maps(mesh_, faces, draft_.seam, progress, bounds_.purpose());
         for (std::size_t i = 0; i < which.size(); ++i) {
             draft_.map[which[i]] = std::move(maps[i]);
             known_[which[i]] = Known::map;
@@ -102,10 +105,12 @@ private:
     Standing standing(Index c) const {
         if (is_above(c, 1.0))
             return Standing::above;
-        return known_[c] == Known::map && bounds_.chart_l2 > 0.0 &&
-                       draft_.map[c].l2_squared > bounds_.chart_l2 * bounds_.chart_l2
-                   ? Standing::rough
-                   : Standing::kept;
+        const TrialMap& map = draft_.map[c];
+        StretchBounds smooth;
+        smooth.l2 = bounds_.chart_l2 > 0.0 ? bounds_.chart_l2 : infinite;
+        smooth.linf = infinite;
+        smooth.strain = bounds_.strain > 0.0 ? bounds_.strain : infinite;
+        return known_[c] == Known::map && !smooth.hold(map) ? Standing::rough : Standing::kept;
     }
 
     // l2² − 1 that a chart may use of this share of its bound. Roughness counts apart.
@@ -115,9 +120,11 @@ private:
 
     bool is_above(Index c, double share) const {
         const TrialMap& map = draft_.map[c];
+        StretchBounds strained;
+        strained.strain = bounds_.allowed_strain(share);
         return known_[c] == Known::map &&
                ((bounds_.chart_l2 > 0.0 && map.l2_squared - 1.0 > allowed_excess(share)) ||
-                (bounds_.linf > 0.0 && map.linf > bounds_.linf));
+                (bounds_.linf > 0.0 && map.linf > bounds_.linf) || !strained.keep_strain(map));
     }
 
     // Those above their own bound; and, while all together are above theirs, those that add most.
@@ -206,6 +213,7 @@ private:
         darts.worth = 0.0;
         darts.chart.l2 = bounds_.chart_l2 > 0.0 ? bounds_.chart_l2 : infinite;
         darts.chart.linf = bounds_.linf > 0.0 ? bounds_.linf : infinite;
+        darts.chart.strain = bounds_.allowed_strain(tuning.certain);
         Draft draft = make_draft(coarse, std::vector<Index>(coarse.faces.size(), 0), {},
                                  bounds_.chart_l2, progress);
         dcharts::cut_darts(coarse, darts, draft, progress);
@@ -234,6 +242,8 @@ private:
         MergeOptions merging = merging_;
         if (bounds_.chart_l2 > 0.0)
             merging.chart.hard_l2 = std::sqrt(1.0 + allowed_excess(tuning.certain));
+        merging.chart.strain = bounds_.allowed_strain(tuning.certain);
+        merging.purpose = bounds_.purpose();
         merging.open = touched_;
         auto joining = progress.part("joining charts", 1.0);
         merge_charts(mesh_, merging, draft_, joining);
@@ -258,6 +268,10 @@ private:
         for (Index c = 0; c < static_cast<Index>(draft_.faces.size()); ++c)
             for (const Face f : draft_.faces[c])
                 charts_.standing[f] = standing(c);
+        charts_.strain = {};
+        for (std::size_t c = 0; c < draft_.map.size(); ++c)
+            if (!draft_.faces[c].empty())
+                charts_.strain.take_worse(draft_.map[c].strain);
         if (bounds_.max_excess == infinite && bounds_.linf == 0.0)
             return;
         charts_.l2_stretch = std::sqrt(1.0 + std::max(0.0, draft_.excess()) / mesh_.total_area);
@@ -280,6 +294,10 @@ private:
 };
 
 } // namespace
+
+double FinalBounds::allowed_strain(double share) const {
+    return strain > 0.0 ? share * strain + tuning.rough_tail * std::sqrt(roughness) : infinite;
+}
 
 bool keep_bounds(const Mesh& mesh, const FinalBounds& bounds, const DChartsOptions& growing,
                  const MergeOptions& merging, DevelopableCharts& charts, Progress& progress) {

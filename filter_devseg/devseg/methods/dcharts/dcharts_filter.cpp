@@ -5,6 +5,7 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
 #include "devseg/declare/segmentation_output.h"
+#include "devseg/material/material.h"
 #include "devseg/methods/dcharts/developable_charts.h"
 #include "devseg/methods/dcharts/standing.h"
 #include "devseg/metrics/segmentation.h"
@@ -19,7 +20,8 @@ OptionRanges<DevelopableChartsOptions> DevelopableChartsOptions::ranges() {
                               {&O::merge_threshold, {"merge_threshold", 0.0, 1.0, true}},
                               {&O::max_l2_stretch, {"max_l2_stretch", 1.0, 100.0, true}},
                               {&O::max_linf_stretch, {"max_linf_stretch", 0.0, 1000.0}},
-                              {&O::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}}};
+                              {&O::max_chart_l2_stretch, {"max_chart_l2_stretch", 0.0, 100.0}},
+                              {&O::max_strain, {"max_strain", 0.0, 10.0}}};
     for (const auto& [field, range] : DChartsOptions::ranges())
         std::visit([&, &r = range](auto f) { ranges.push_back({f, r}); }, field);
     return ranges;
@@ -41,8 +43,17 @@ constexpr const char* help =
     "<b>\"D-Charts: Quasi-Developable Mesh Segmentation\"</b><br>"
     "Computer Graphics Forum (Eurographics), 2005, doi:10.1111/j.1467-8659.2005.00883.x";
 
-FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& options,
-                 Progress& progress) {
+struct Options : DevelopableChartsOptions {
+    std::string material; // that sets max_strain where nobody else does
+};
+
+FilterOutput run(const FilterInput& input, const Options& given, Progress& progress) {
+    Options options = given;
+    if (!options.material.empty()) {
+        const material::Material material = material::read_material(options.material);
+        if (options.max_strain == 0.0)
+            options.max_strain = material.search_bound();
+    }
     auto segmenting = progress.part(0.98);
     DevelopableCharts segmentation = segment_developable_charts(input.mesh, options, segmenting);
     auto cutting = progress.part("cutting charts to disks", 0.02);
@@ -61,6 +72,8 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
         {"roughness_l2", std::sqrt(1.0 + segmentation.roughness)},
         {"l2_stretch", segmentation.l2_stretch},
         {"linf_stretch", segmentation.linf_stretch},
+        {"largest_strain", segmentation.strain.worst},
+        {"strain_99", segmentation.strain.most_of_it},
         {"rounds_number", segmentation.rounds},
         {"converged", segmentation.converged},
         {"seam_length", metrics::seam_length(input.mesh, cuts.charts)},
@@ -74,7 +87,7 @@ FilterOutput run(const FilterInput& input, const DevelopableChartsOptions& optio
 } // namespace
 
 std::vector<FilterDeclaration> filters() {
-    using O = DevelopableChartsOptions;
+    using O = Options;
     return {
         Declare<O>("Segmentation: D-Charts", "compute_segmentation_dcharts_per_face",
                    FilterCategory::remeshing, help)
@@ -124,6 +137,16 @@ std::vector<FilterDeclaration> filters() {
                   "Bound of the L2 stretch of each chart's final map, above 1, without unit; 0 for "
                   "no bound, as in the paper. Charts above it get darts or are split, whatever the "
                   "number of charts. Roughness counts apart.")
+            .real(&O::max_strain, "Largest strain",
+                  "How much longer or shorter lines in the material may get in the final map of a "
+                  "chart, as a share: 0.1 = 10 % on 99 % of its area, and at most twice that "
+                  "anywhere. 0 for no bound. Charts above it get darts or are split. Roughness "
+                  "counts apart. The final map is that of LPFB then, which keeps both sides of "
+                  "seams equally long: flatten with it.")
+            .text(&O::material, "material", "Material",
+                  "What the pieces are cut from: " + material::names() +
+                      ", also with values of its own as in fleece, warp=0.12. Where max_strain is "
+                      "0, it is the least of the material's limits.")
             .integer(
                 &O::max_iterations, "Most rounds",
                 "The rounds of growing and reseeding end here at the latest; usually fewer than "
@@ -149,6 +172,9 @@ std::vector<FilterDeclaration> filters() {
                     "L2 stretch of small neighbourhoods, which no segmentation removes")
             .result("l2_stretch", "with charts_number 0: L2 stretch of the final map, else 0")
             .result("linf_stretch", "with charts_number 0: L∞ stretch of the final map, else 0")
+            .result("largest_strain", "with a bound of strain: the largest of a face, else 0")
+            .result("strain_99",
+                    "with a bound of strain: what 99 % of the area of each chart keeps, else 0")
             .result("rounds_number", "rounds of growing and reseeding")
             .result("converged", "whether fewer than 5 % of the faces changed in the last round")
             .result("seam_length", "length of all cut edges, model units")

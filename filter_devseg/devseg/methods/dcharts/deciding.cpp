@@ -149,6 +149,10 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
             options.max_chart_l2_stretch * options.max_chart_l2_stretch + plan.rough.excess);
         merging.chart.l2 = std::min(merging.chart.l2, merging.chart.hard_l2);
     }
+    FinalBounds bounds;
+    bounds.strain = options.max_strain;
+    bounds.roughness = plan.rough.excess;
+    merging.chart.strain = bounds.allowed_strain(tuning.certain);
     merging.max_excess = aim.max_excess;
     if (aim.few || plan.creased)
         merging.least_neck = aim.few ? 0.0 : tuning.creased_neck;
@@ -293,6 +297,7 @@ bool keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
     const DevelopableChartsOptions& options = plan.options;
     FinalBounds bounds;
     bounds.chart_l2 = options.max_chart_l2_stretch;
+    bounds.strain = options.max_strain;
     bounds.roughness = is_rough(charts.roughness) ? charts.roughness : 0.0;
     charts.standing.assign(mesh.faces.size(), Standing::kept);
     if (options.charts_number == 0) {
@@ -300,7 +305,7 @@ bool keep_final_bounds(const Mesh& mesh, const SegmentationPlan& plan, const Aim
         bounds.max_excess =
             (options.max_l2_stretch * options.max_l2_stretch - 1.0) * mesh.total_area;
     }
-    if (bounds.chart_l2 == 0.0 && options.charts_number != 0)
+    if (bounds.chart_l2 == 0.0 && bounds.strain == 0.0 && options.charts_number != 0)
         return true;
     MergeOptions merging = merge_options(plan, aim);
     merging.max_excess = bounds.max_excess;

@@ -131,6 +131,7 @@ void add_up(const DevelopableCharts& part, DevelopableCharts& whole) {
     whole.joins += part.joins;
     whole.darts += part.darts;
     whole.linf_stretch = std::max(whole.linf_stretch, part.linf_stretch);
+    whole.strain.take_worse(part.strain);
     whole.bounds_kept = whole.bounds_kept && part.bounds_kept;
 }
 

@@ -7,6 +7,7 @@
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/strain.h"
 #include "devseg/methods/dcharts/dcharts.h"
 
 namespace devseg::dcharts {
@@ -21,6 +22,9 @@ struct DevelopableChartsOptions : DChartsOptions {
     double max_linf_stretch = 0.0; // 0: no bound
     // Of each chart's final map, whatever the number of charts; 0: no bound, the paper alone.
     double max_chart_l2_stretch = 1.02;
+    // The same of strain: of 99 % of each chart, and twice as much anywhere. The final map is that
+    // of LPFB then.
+    double max_strain = 0.0;
 
     static OptionRanges<DevelopableChartsOptions> ranges();
 };
@@ -41,6 +45,7 @@ struct DevelopableCharts {
     // With charts_number = 0, of the symmetric Dirichlet map of the full surface:
     double l2_stretch = 0.0;
     double linf_stretch = 0.0;
+    flatten::Strain strain;         // with max_strain: the worst of all charts
     bool bounds_kept = true;        // false: rough charts, and single faces that others lie on
     std::vector<Standing> standing; // #F: of each face's chart
     double roughness = 0.0; // l2² − 1 that no segmentation can remove, mean over the surface

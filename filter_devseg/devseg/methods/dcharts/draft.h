@@ -44,9 +44,13 @@ struct StretchBounds {
     double linf = 1.5;
     double hard_l2 = infinite;   // what not even a small chart may exceed
     double hard_linf = infinite; // the same of linf
+    double strain = infinite;    // of 99 % of the area; twice as much anywhere
 
     bool hold(const judge::TrialMap& map) const {
-        return map.l2_squared <= l2 * l2 && map.linf <= linf;
+        return map.l2_squared <= l2 * l2 && map.linf <= linf && keep_strain(map);
+    }
+    bool keep_strain(const judge::TrialMap& map) const {
+        return map.strain.most_of_it <= strain && map.strain.worst <= 2.0 * strain;
     }
 };
 

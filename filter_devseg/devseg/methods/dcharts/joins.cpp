@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "devseg/base/parallel.h"
-#include "devseg/judge/final_map.h"
+#include "devseg/methods/dcharts/closing_trials.h"
 #include "devseg/methods/dcharts/cut_exchange.h"
-#include "devseg/methods/dcharts/joined_turns.h"
 #include "devseg/methods/dcharts/seam_chains.h"
 #include "devseg/methods/dcharts/tuning.h"
 
@@ -16,27 +15,14 @@ namespace devseg::dcharts {
 
 namespace {
 
-using judge::TrialEffort;
 using judge::TrialMap;
-// What a trial has found. It is tried again, after its charts have changed, only where the older
-// verdict makes it the best that there is, and at the end: the more of a chart is closed, the more
-// another part costs.
-struct Verdict {
-    TrialMap map;       // of the joined chart
-    double added = 0.0; // excess
-    double saved = 0.0; // length of seam, internal units
-    bool whole = false; // the whole border of two charts
-    bool tried = false;
-    bool fresh = false; // found with the charts as they are now
-    bool confirmed = false;
-};
 using Verdicts = std::map<std::vector<Index>, std::pair<Closing, Verdict>>; // by edges, ascending
 
 class Joining {
 public:
     Joining(const Mesh& mesh, const MergeOptions& options, Draft& draft)
         : mesh_(mesh), options_(options), draft_(draft), chains_(mesh, options.keep_corners),
-          open_(options.open) {}
+          trials_(mesh, options, draft), open_(options.open) {}
 
     void run(Progress& progress) {
         const auto start = static_cast<double>(draft_.charts_number());
@@ -45,6 +31,7 @@ public:
             auto trying = progress.part(0.0); // joins say how far it is
             Entry* best = nullptr;
             do {
+                trials_.prepare(chains_.corners(), trying);
                 try_promising(trying);
                 best = choose(progress);
                 if (best == nullptr && try_old_again(trying))
@@ -88,6 +75,9 @@ private:
                 if (partly_)
                     add_parts(part, last);
             if (exchanging_ && charts.first == charts.second)
+                for (Closing& other : rerouted_cuts(mesh_, draft_, charts.first, progress))
+                    add(std::move(other), false, last);
+            if (exchanging_ && charts.first == charts.second)
                 for (Closing& part : parts) {
                     part.opened = shorter_cut(mesh_, draft_, part, progress);
                     if (!part.opened.empty())
@@ -99,14 +89,16 @@ private:
     // A chain, and from both ends the longest of its halves, quarters and so on that can be closed.
     void add_parts(const Closing& chain, const Verdicts& last) {
         add(chain, false, last);
-        const double least = tuning.least_part * std::sqrt(mesh_.total_area);
+        const double least =
+            (exchanging_ ? tuning.last_part : tuning.least_part) * std::sqrt(mesh_.total_area);
         const double excess = draft_.excess();
         for (const bool at_end : {false, true})
             for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {
+                count = up_to_kept_vertex(chain.edges, at_end, count);
                 const auto begin = at_end ? chain.edges.end() - static_cast<std::ptrdiff_t>(count)
                                           : chain.edges.begin();
                 Closing part{chain.charts, {begin, begin + static_cast<std::ptrdiff_t>(count)}, {}};
-                if (length_of(part.edges) < least)
+                if (length_of(mesh_, part.edges) < least)
                     break;
                 const Entry* entry = add(std::move(part), false, last);
                 if (entry == nullptr || price(*entry, excess) < infinite)
@@ -114,11 +106,18 @@ private:
             }
     }
 
-    double length_of(const std::vector<Index>& edges) const {
-        double length = 0.0;
-        for (const HalfEdge h : edges)
-            length += mesh_.edge_length(h);
-        return length;
+    // Fewer edges from an end of a chain, up to a vertex that the coarse surface has.
+    std::size_t up_to_kept_vertex(const std::vector<Index>& edges, bool at_end,
+                                  std::size_t count) const {
+        const auto is_kept = [&](std::size_t n) {
+            const HalfEdge h = edges[at_end ? edges.size() - n : n - 1];
+            const HalfEdge k = edges[at_end ? edges.size() - n - 1 : n];
+            const Vertex v = mesh_.origin(h);
+            return trials_.has(v == mesh_.origin(k) || v == mesh_.target(k) ? v : mesh_.target(h));
+        };
+        while (count > 0 && !is_kept(count))
+            --count;
+        return count;
     }
 
     // Returns what is known of it.
@@ -204,15 +203,7 @@ private:
             static_cast<int>(entries.size()),
             [&](int i) {
                 auto& [closing, verdict] = *entries[at(i)];
-                TrialEffort effort;
-                effort.wanted_l2 = bounds_of(closing.charts).l2;
-                effort.give_up = true;
-                effort.only_near = !verdict.whole && closing.opened.empty();
-                effort.only_apart = options_.keep_corners;
-                assess(closing,
-                       judge::try_chart(mesh_, united(closing.charts), seam_without(closing),
-                                        effort, progress, joined_turns(mesh_, draft_, closing)),
-                       verdict);
+                trials_.attempt(closing, verdict, progress);
             },
             progress);
     }
@@ -228,68 +219,12 @@ private:
         return !old.empty();
     }
 
-    void assess(const Closing& closing, TrialMap map, Verdict& verdict) const {
-        const auto [first, second] = closing.charts;
-        const TrialMap& a = draft_.map[first];
-        const TrialMap& b = draft_.map[second];
-        const bool is_join = first != second;
-        verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
-        verdict.saved = length_of(closing.edges) - length_of(closing.opened) - map.cut_length +
-                        a.cut_length + (is_join ? b.cut_length : 0.0);
-        verdict.map = std::move(map);
-        verdict.tried = verdict.fresh = true;
-        verdict.confirmed = false;
-    }
-
-    std::vector<Index> united(const Pair& pair) const {
-        const std::vector<Index>& a = draft_.faces[pair.first];
-        if (pair.first == pair.second)
-            return a;
-        const std::vector<Index>& b = draft_.faces[pair.second];
-        std::vector<Index> faces(a.size() + b.size());
-        std::merge(a.begin(), a.end(), b.begin(), b.end(), faces.begin());
-        return faces;
-    }
-
-    // The cuts inside the joined chart: those of both, and what is left of the border.
-    std::vector<std::uint8_t> seam_without(const Closing& closing) const {
-        std::vector<std::uint8_t> seam = draft_.seam;
-        for (const HalfEdge h : left_border(mesh_, draft_, closing))
-            seam[h] = seam[mesh_.twin[h]] = 1;
-        for (const HalfEdge h : closing.edges)
-            seam[h] = seam[mesh_.twin[h]] = 0;
-        for (const HalfEdge h : closing.opened)
-            seam[h] = seam[mesh_.twin[h]] = 1;
-        return seam;
-    }
-
-    // Stretch up to which a joined chart may be worth having.
-    StretchBounds bounds_of(const Pair& pair) const {
-        const TrialMap& a = draft_.map[pair.first];
-        const TrialMap& b = draft_.map[pair.second];
-        StretchBounds limit = options_.chart;
-        limit.linf = std::max(limit.linf, tuning.like_spot * std::max(a.linf, b.linf));
-        if (std::min(a.area, b.area) < options_.small_share * mesh_.total_area &&
-            pair.first != pair.second) {
-            limit.l2 = std::max({limit.l2, std::sqrt(a.l2_squared), std::sqrt(b.l2_squared)});
-            limit.l2 = 1.0 + tuning.small_allowance * (limit.l2 - 1.0);
-            limit.linf = 1.0 + tuning.small_allowance * (limit.linf - 1.0);
-        }
-        // Nobody cuts out a splinter: it may be as stretched as it likes, for it adds nothing.
-        if (std::min(a.area, b.area) < tuning.negligible * mesh_.total_area)
-            limit.linf = infinite;
-        limit.l2 = std::min(limit.l2, options_.chart.hard_l2);
-        limit.linf = std::min(limit.linf, options_.chart.hard_linf);
-        return limit;
-    }
-
     // Stretch for each length of seam that the closing saves; infinite where it may not be.
     double price(const Entry& entry, double excess) const {
         const auto& [closing, verdict] = entry;
         const bool may_overlap = !options_.keep_corners;
         if (!verdict.map.flat || (verdict.map.overlaps && !may_overlap) ||
-            !bounds_of(closing.charts).hold(verdict.map) ||
-            !(excess + verdict.added <= options_.max_excess) ||
+            !trials_.holds(closing, verdict) || !(excess + verdict.added <= options_.max_excess) ||
             !is_worth(closing.charts, verdict.saved))
             return infinite;
         return price_of(verdict.added, verdict.saved);
@@ -302,7 +237,7 @@ private:
     // No trial finds a lower price: as if the map added no stretch, and needed no cut.
     double least_price(const Closing& closing) const {
         const auto [first, second] = closing.charts;
-        const double saved = length_of(closing.edges) + draft_.map[first].cut_length +
+        const double saved = length_of(mesh_, closing.edges) + draft_.map[first].cut_length +
                              (first != second ? draft_.map[second].cut_length : 0.0);
         return is_worth(closing.charts, saved) ? price_of(0.0, saved) : infinite;
     }
@@ -343,47 +278,26 @@ private:
                         stale.push_back(order[i].second);
                 auto trying = progress.part(0.0);
                 try_again(stale, trying);
-            } else if (verdict.confirmed || (!options_.confirm && !verdict.map.overlaps)) {
+            } else if (trials_.is_sure(verdict)) {
                 return order.front().second;
             } else {
-                confirm(closing, verdict, progress);
+                trials_.confirm(closing, verdict, progress);
             }
         }
     }
 
-    // Overlaps first: a final map that lies on itself is cut apart, which takes long.
-    void confirm(const Closing& closing, Verdict& verdict, Progress& progress) {
-        const std::vector<std::uint8_t> seam = seam_without(closing);
-        if (verdict.map.overlaps) {
-            TrialEffort effort;
-            effort.wanted_l2 = bounds_of(closing.charts).l2;
-            effort.push_apart = true;
-            TrialMap map = judge::try_chart(mesh_, united(closing.charts), seam, effort, progress,
-                                            verdict.map.turns);
-            map.flat = map.flat && !map.overlaps;
-            assess(closing, std::move(map), verdict);
-        }
-        if (options_.confirm && verdict.map.flat) {
-            auto judging = progress.part(0.0);
-            TrialMap map =
-                judge::final_maps(mesh_, {united(closing.charts)}, seam, judging).front();
-            map.cut_length = verdict.map.cut_length;
-            assess(closing, std::move(map), verdict);
-        }
-        verdict.confirmed = true;
-    }
-
     void close(const Closing& closing, const Verdict& verdict) {
         const auto [a, b] = closing.charts;
-        draft_.seam = seam_without(closing);
+        draft_.seam = trials_.seam_without(closing);
         const std::vector<HalfEdge> left = left_border(mesh_, draft_, closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
         draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
         draft_.map[a] = verdict.map;
+        const bool is_anew = trials_.close(closing, verdict);
         if (!open_.empty())
             open_[at(a)] = open_[at(b)] = 1;
         if (a != b) {
-            draft_.faces[a] = united(closing.charts);
+            draft_.faces[a] = united_faces(draft_, closing.charts);
             for (const Face f : draft_.faces[b])
                 draft_.chart[f] = a;
             draft_.faces[b].clear();
@@ -391,7 +305,7 @@ private:
         }
         for (auto& [edges, entry] : verdicts_) {
             const auto [first, second] = entry.first.charts;
-            if (first == a || second == a || first == b || second == b)
+            if (first == a || second == a || first == b || second == b || is_anew)
                 entry.second.fresh = false;
         }
     }
@@ -400,6 +314,7 @@ private:
     const MergeOptions& options_;
     Draft& draft_;
     SeamChains chains_;
+    ClosingTrials trials_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
     bool partly_ = false;            // parts of borders are closed as well
     bool exchanging_ = false;        // cuts are tried in other places as well

@@ -6,6 +6,7 @@
 //           Computer Graphics Forum 24(3), 2005. doi:10.1111/j.1467-8659.2005.00883.x
 #pragma once
 
+#include "devseg/judge/final_map.h"
 #include "devseg/methods/dcharts/draft.h"
 
 namespace devseg::dcharts {
@@ -28,6 +29,7 @@ struct MergeOptions {
     // A join counts only if the final map of the joined chart keeps the bounds: for the surface
     // itself. Else trials decide.
     bool confirm = false;
+    judge::MapFor purpose = judge::MapFor::texture; // of that map
     std::vector<std::uint8_t> open; // of each chart: joins need one of these; empty: any will do
 };
 

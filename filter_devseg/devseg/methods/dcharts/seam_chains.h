@@ -25,6 +25,8 @@ public:
     SeamChains(const Mesh& mesh, bool keep_corners);
 
     bool is_corner(Vertex v) const { return corner_[v] == corner; }
+    /// #V: not 0 for corners, and for vertices on the boundary.
+    const std::vector<std::uint8_t>& corners() const { return corner_; }
 
     /// Of the draft's borders and cuts, each in the order of its edges.
     std::vector<Closing> find(const Draft& draft) const;

@@ -32,7 +32,8 @@ struct Tuning {
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
     double corner_defect = 0.2;
-    double least_part = 0.1;       // of a border, over √area, that is closed on its own
+    double least_part = 0.1;       // of a border, over √area, that is closed on its own,
+    double last_part = 0.02;       // and in the end, where the fewest charts are looked for
     std::size_t tried_again = 4;   // parts at a time, the best of those with old verdicts
     std::size_t tried_at_once = 8; // closings, before the best of them makes others needless
     // Parts between creases, joined one by one. Where there are more, creases are no guide.
@@ -48,7 +49,14 @@ struct Tuning {
     Index decimated_creased_faces = 24000; // where they must run along creases
     Index faces_per_chart = 150;           // of the coarse surface, at least
     double worth_decimation = 2.0;         // faces over those of the coarse surface
-    double rough = 0.002;       // l2² − 1 of small neighbourhoods: less is tessellation
+    Index trial_faces = 3000;              // of the surface on which joins are tried, at least,
+    Index trial_faces_per_chart = 100;     // and for each chart,
+    double coarse_slack = 2.0;             // of the bound of l2² − 1 there: creases are coarser
+    double trial_share = 0.06;             // and of all faces
+    double rough = 0.002; // l2² − 1 of small neighbourhoods: less is tessellation
+    // Strain of 99 % of a rough surface over the root of its l2² − 1, which is about the mean of
+    // squared strains: as of a normal distribution.
+    double rough_tail = 2.6;
     double least_chart = 0.002; // of the surface: less are slivers nobody wants to cut out
 
     // What border is worth against the fitting error of faces.

@@ -38,9 +38,6 @@ constexpr const char* plush_help =
     "<b>\"Conformal Flattening by Curvature Prescription and Metric Scaling\"</b><br>"
     "Computer Graphics Forum (Eurographics), 2008, doi:10.1111/j.1467-8659.2008.01142.x";
 
-// What a material that bears nothing asks for: 0 would be no bound.
-constexpr double least_bound = 1e-3;
-
 enum class MaterialBorders { none, selection, colors };
 
 struct Options : PlushOptions {
@@ -89,7 +86,7 @@ Options with_limits(Options options) {
         return options;
     const material::Material material = material::read_material(options.material);
     if (options.max_strain == Options().max_strain)
-        options.max_strain = std::max(least_bound, material.least_limit());
+        options.max_strain = material.search_bound();
     return options;
 }
 

@@ -29,7 +29,7 @@ struct Model {
         if (options.output_file.empty())
             options.output_file = "pattern.svg";
         Progress progress;
-        return make_pattern_file(mesh, uv, options, progress);
+        return make_pattern_file(mesh, uv, {}, {mesh, {}, {}, {}, {}}, options, progress);
     }
 
     Mesh mesh;

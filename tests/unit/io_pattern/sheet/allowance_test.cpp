@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/base/errors.h"
 #include "devseg/plane/plane.h"
 #include "sheet/export_options.h"
 
@@ -48,6 +49,28 @@ double distance(const Ring& ring, const Vec2& p) {
 const Ring square = {Vec2(0, 0), Vec2(40, 0), Vec2(40, 40), Vec2(0, 40)};
 const Ring corner = {Vec2(0, 0),   Vec2(40, 0),  Vec2(40, 20),
                      Vec2(20, 20), Vec2(20, 40), Vec2(0, 40)};
+
+// Each side of a square is of another kind: so wide is its allowance.
+TEST(Allowance, EachKindOfSeamHasItsOwn) {
+    pattern::PatternPiece piece = piece_of(square);
+    piece.outer.edges = {{3, 0, false}, {2, 0, false}, {5, 0, true}, {-1, 0, false}};
+    ExportOptions options;
+    options.seam_allowance_mm = 7.0;
+    options.dart_allowance_mm = 3.0;
+    options.hem_allowance_mm = 20.0;
+    options.zip_allowance_mm = 12.0;
+    options.zip_seams = "3,9";
+    const Ring ring =
+        add_allowance(piece, resolved(options).allowance(), CornerStyle::miter).front();
+    EXPECT_NEAR(distance(ring, Vec2(20, 0)), 7.0, 1e-6);
+    EXPECT_NEAR(distance(ring, Vec2(40, 20)), 12.0, 1e-6);
+    EXPECT_NEAR(distance(ring, Vec2(20, 40)), 3.0, 1e-6);
+    EXPECT_NEAR(distance(ring, Vec2(0, 20)), 20.0, 1e-6);
+    for (const char* wrong : {"three", "0", "3,,4", ""}) {
+        options.zip_seams = wrong;
+        EXPECT_THROW(resolved(options).allowance(), InvalidParameter) << wrong;
+    }
+}
 
 // Areas of a grown square are known in closed form for each kind of corner.
 TEST(Allowance, CornersAreOfTheirStyle) {

@@ -8,6 +8,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/plane/plane.h"
+#include "sheet/fabrics.h"
 #include "sheet/half_piece.h"
 #include "unit/checks.h"
 
@@ -71,7 +72,7 @@ void expect_inside(const PatternLayout& layout, double left, double right) {
     for (const SheetPiece& piece : layout.pieces) {
         EXPECT_GE(piece.box().min().x(), left - 1e-3) << piece.name;
         EXPECT_LE(piece.box().max().x(), right + 1e-3) << piece.name;
-        EXPECT_LE(piece.box().max().y(), layout.fabric->length + 1e-6) << piece.name;
+        EXPECT_LE(piece.box().max().y(), layout.fabrics.front().length + 1e-6) << piece.name;
     }
 }
 
@@ -88,8 +89,8 @@ TEST(Marker, HasAllPiecesAndCopiesBetweenTheSelvedges) {
     double area = 0.0;
     for (const SheetPiece& piece : layout.pieces)
         area += plane::signed_area(piece.cut.front());
-    EXPECT_NEAR(layout.fabric->use, area / (180.0 * layout.fabric->length), 1e-9);
-    EXPECT_GT(layout.fabric->use, 0.6);
+    EXPECT_NEAR(layout.fabrics.front().use, area / (180.0 * layout.fabrics.front().length), 1e-9);
+    EXPECT_GT(layout.fabrics.front().use, 0.6);
 }
 
 TEST(Marker, NapTurnsNothingRound) {
@@ -106,7 +107,7 @@ TEST(Marker, FoldCutsPairsAtOnceAndHalvesAlongIt) {
     const PatternLayout layout = marker(hooks_and_arrow(), options);
     // A pair of hooks, half an arrow, and a hook that has no partner.
     ASSERT_EQ(layout.pieces.size(), 3u);
-    EXPECT_EQ(layout.fabric->single_layer_pieces, 1);
+    EXPECT_EQ(layout.fabrics.front().single_layer_pieces, 1);
     expect_inside(layout, 0.0, 145.0);
     const SheetPiece* half = nullptr;
     for (const SheetPiece& piece : layout.pieces)
@@ -120,6 +121,52 @@ TEST(Marker, FoldCutsPairsAtOnceAndHalvesAlongIt) {
     options.copies = 2;
     for (const SheetPiece& piece : marker(hooks_and_arrow(), options).pieces)
         EXPECT_EQ(piece.name.find("fold"), std::string::npos) << piece.name;
+}
+
+// Four squares of two materials: one face each.
+pattern::Pattern squares_of(const std::vector<Index>& face_material, const std::string& names) {
+    pattern::Pattern pattern;
+    for (const Index face : {0, 1, 2, 3}) {
+        pattern.pieces.push_back(piece_of({Vec2(0, 0), Vec2(50, 0), Vec2(50, 50), Vec2(0, 50)},
+                                          "P" + std::to_string(face + 1)));
+        pattern.face_piece.push_back(face);
+        pattern.source_face.push_back(face);
+        pattern.mesh.face_areas.push_back(1.0);
+        pattern.mesh.faces.push_back({0, 1, 2});
+    }
+    pattern::find_same_pieces(pattern.pieces, 0.5, Progress());
+    set_fabrics(face_material, names, pattern);
+    return pattern;
+}
+
+TEST(Marker, EachMaterialHasAStripOfItsOwn) {
+    const pattern::Pattern pattern = squares_of({7, 3, 7, 7}, "leather, red fleece");
+    EXPECT_EQ(pattern.fabrics, (std::vector<std::string>{"leather", "red fleece"}));
+    EXPECT_EQ(pattern.pieces[0].quantity, 3) << "what is cut together is of one material";
+    EXPECT_EQ(pattern.pieces[1].quantity, 1);
+    EXPECT_EQ(pattern.pieces[3].model, 0);
+    const PatternLayout layout = marker(pattern, on_cloth(60.0));
+    ASSERT_EQ(layout.sheets.size(), 2u);
+    ASSERT_EQ(layout.fabrics.size(), 2u);
+    EXPECT_NEAR(layout.fabrics[0].length, 50.0, 0.1);
+    EXPECT_NEAR(layout.fabrics[1].length, 156.0, 1.0);
+    ASSERT_EQ(layout.pieces.size(), 4u);
+    EXPECT_EQ(layout.pieces.front().name, "P2");
+    for (const SheetPiece& piece : layout.pieces)
+        EXPECT_EQ(piece.sheet, piece.name == "P2" ? 0 : 1);
+    const writers::DrawingLayer layer = fabric_layer(layout, {Vec2(0, 0), Vec2(100, 0)});
+    ASSERT_EQ(layer.texts.size(), 2u);
+    EXPECT_TRUE(checks::contains(layer.texts[1].text, "red fleece"));
+    EXPECT_GT(layer.texts[1].position.x(), 100.0);
+}
+
+TEST(Marker, MaterialsHaveAsManyNames) {
+    EXPECT_TRUE(squares_of({7, 7, 7, 7}, "one, two").fabrics.empty()) << "of one material";
+    EXPECT_EQ(squares_of({7, 3, 7, 7}, "").fabrics.back(), "material 7");
+    const std::string error = checks::error_of<InvalidParameter>([] {
+        squares_of({7, 3, 7, 7}, "one");
+    });
+    EXPECT_TRUE(checks::contains(error, "material_names")) << error;
 }
 
 TEST(Marker, RefusesWhatDoesNotFit) {

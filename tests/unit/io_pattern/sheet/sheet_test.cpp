@@ -7,8 +7,9 @@
 #include "devseg/plane/plane.h"
 #include "sheet/export_options.h"
 #include "sheet/layout.h"
+#include "sheet/page_footprints.h"
 #include "sheet/page_nesting.h"
-#include "sheet/page_sheet.h"
+#include "sheet/page_search.h"
 #include "sheet/sheet_drawing.h"
 #include "unit/checks.h"
 
@@ -120,6 +121,25 @@ TEST(PageNesting, LargePiecesShareTheirPages) {
     EXPECT_LE(pages, 5);
 }
 
+// Images on the grid are larger than their pieces, and few turns are tried at first.
+TEST(PageNesting, WhatFitsOnAPageNarrowlyLiesOnOne) {
+    for (const SheetPiece& piece : {rectangle(138.5, 98.5), rectangle(160, 6)}) {
+        PageNesting nesting;
+        put_on_pages({piece}, nesting);
+        ASSERT_EQ(nesting.sheets.size(), 1U);
+        EXPECT_EQ(nesting.sheets.front().columns * nesting.sheets.front().rows, 1)
+            << piece.box().sizes().transpose();
+    }
+}
+
+TEST(PageNesting, CrossesStandInTheMiddleOfStrips) {
+    const PatternSheet sheet{Vec2(210, 290), 2, 2}; // of small pages
+    const std::vector<Vec2> crosses = strip_crosses(sheet, small_page());
+    EXPECT_EQ(crosses.size(), 8U);
+    for (const Vec2& place : crosses)
+        EXPECT_TRUE(std::abs(place.x() - 105.0) < 1e-9 || std::abs(place.y() - 145.0) < 1e-9);
+}
+
 TEST(PageNesting, KnowsWhereAPieceNeedsTheFewestPages) {
     // A cross of 200 by 200: in the corner, its upright bar lies on two columns of pages.
     SheetPiece cross;
@@ -140,8 +160,9 @@ TEST(PageNesting, KnowsWhereAPieceNeedsTheFewestPages) {
     std::size_t in_the_corner = 0;
     for (const Footprint& f : found) {
         fewest = std::min(fewest, f.pages.size());
-        if (f.offset == Vec2::Zero())
-            in_the_corner = f.pages.size();
+        for (const PagePlace& place : f.places)
+            if (place.offset == Vec2::Zero())
+                in_the_corner = f.pages.size();
     }
     EXPECT_EQ(in_the_corner, 5U);
     EXPECT_EQ(fewest, 4U);

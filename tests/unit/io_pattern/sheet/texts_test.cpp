@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +53,23 @@ TEST(Texts, WithoutRoomThereAreNoneAndTheLayoutSaysSo) {
     EXPECT_EQ(layout.left_out.seams, (std::vector<Index>{0}));
     EXPECT_EQ(layout.left_out.pieces, (std::vector<Index>{0, 1}));
     EXPECT_EQ(layout_notes(samples::two_pieces().pattern(), layout).size(), 2U);
+}
+
+TEST(Layout, PiecesTooNarrowToBeGluedAreNamed) {
+    ExportOptions options;
+    options.glue_tabs = true;
+    for (const auto& [scale, narrow] : {std::pair(0.05, 2U), std::pair(1.0, 0U)}) {
+        const PatternLayout layout = laid_out(scale, options);
+        EXPECT_EQ(layout.narrow.size(), narrow);
+        const std::vector<std::string> notes =
+            layout_notes(samples::two_pieces().pattern(), layout);
+        EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+                                [](const std::string& note) {
+                                    return note.find("less than 3 mm") != std::string::npos;
+                                }),
+                  narrow > 0 ? 1 : 0);
+    }
+    EXPECT_TRUE(laid_out(0.05, numbered()).narrow.empty()); // nothing is glued
 }
 
 SheetPiece strip(double width, double height) {
