@@ -2,7 +2,7 @@
 # Installs the wheel in dist, which scripts/build_wheel.sh makes, into empty environments, makes a
 # pattern of the Stanford bunny with it, and prints a row for each: what of, seconds of both.
 #   scripts/check_wheel.sh [PYTHON | debian:DIR]...
-# PYTHON is an interpreter; default: python3. DIR is a Debian without anything else, such as
+# PYTHON is an interpreter; default: the system's. DIR is a Debian without anything else, such as
 #   debootstrap --variant=minbase --include=python3-venv testing DIR
 # whose Python is used inside of it, by root; its packages are fetched from outside.
 
@@ -92,7 +92,7 @@ main() {
     wheels=("$root"/dist/devseg-*.whl)
     ((${#wheels[@]} == 1)) && [[ -f ${wheels[0]} ]] ||
         die "expected one wheel in dist, found others; remove them, or run scripts/build_wheel.sh"
-    (($#)) || set -- python3
+    (($#)) || set -- /usr/bin/python3
     for one in "$@"; do
         if [[ $one == debian:* ]]; then
             check_debian "${wheels[0]}" "${one#debian:}"

@@ -105,6 +105,7 @@ HostRun run_in_host(const declare::FilterDeclaration& filter, MeshDocument& docu
             run.changed |= MeshModel::MM_GEOMETRY_AND_TOPOLOGY_CHANGE;
         if (layer)
             layer->keep();
+        tell(result.notes);
         run.log = std::move(result.notes);
         for (const auto& [name, value] : result.values)
             run.log.push_back(name + ": " + to_text(value));

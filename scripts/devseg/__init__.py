@@ -55,12 +55,14 @@ _MODULES = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    for module, names in _MODULES.items():
-        if name in names:
-            value = globals()[name] = getattr(importlib.import_module(f"devseg.{module}"), name)
-            return value
-    raise AttributeError(f"module 'devseg' has no attribute {name!r}")
+if not TYPE_CHECKING:  # else checkers would take any name
+
+    def __getattr__(name: str) -> Any:
+        for module, names in _MODULES.items():
+            if name in names:
+                value = globals()[name] = getattr(importlib.import_module(f"devseg.{module}"), name)
+                return value
+        raise AttributeError(f"module 'devseg' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

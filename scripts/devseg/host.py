@@ -64,6 +64,7 @@ _FILTERS = {
         "apply_matrix_freeze",
         "meshing_close_holes",
         "meshing_decimation_quadric_edge_collapse",
+        "meshing_decimation_quadric_edge_collapse_with_texture",
         "meshing_invert_face_orientation",
         "set_matrix",
     ),

@@ -8,9 +8,6 @@ from collections.abc import Iterable, Sequence
 from devseg.methods import OPTION_OF
 from devseg.pattern_options import OPTION_OF as PATTERN_OPTION_OF
 
-# What the host prints for each line of a filter's log, and for its progress.
-_LOGGED = re.compile(r"^LOG: \d+ (.*)$", re.MULTILINE)
-_PROGRESS = re.compile(r"\[ +\d+% \]$")
 # What notes advise users of a window: ('Remove Duplicate Faces' drops such faces).
 _HINT = re.compile(r" \('[A-Z][^()]*\)$")
 # What errors advise, and what the command line has instead.
@@ -25,26 +22,23 @@ ADVICE = (
 _TURNED = re.compile(r"(; patterns are|: read) turned over$")
 
 
-def new_notes(chatter: str, results: Iterable[str], told: Sequence[str]) -> list[str]:
-    """The notes that a filter has left in what the host printed, without those told before.
+def new_notes(notes: Iterable[str], told: Sequence[str]) -> list[str]:
+    """The notes of a filter, without those told before.
 
     Every filter that reads the mesh tells of its faults again, also where it has been split since
     then and has more of them.
 
     Args:
-        chatter: what the host printed.
-        results: names of the filter's results, which the host logs as well.
+        notes: of the filter.
         told: the notes of the filters before.
     """
-    values = tuple(f"{result}: " for result in results)
     known = {_shape(note) for note in told}
     found: list[str] = []
-    for logged in _LOGGED.findall(chatter):
-        note = _HINT.sub("", logged.rstrip())
-        if _PROGRESS.search(note) or note.startswith(values) or _shape(note) in known:
-            continue
-        known.add(_shape(note))
-        found.append(note)
+    for told_now in notes:
+        note = _HINT.sub("", told_now.rstrip())
+        if _shape(note) not in known:
+            known.add(_shape(note))
+            found.append(note)
     return found
 
 

@@ -1,4 +1,4 @@
-"""Progress of filters in this process, and a way to cancel them, which the host does not offer."""
+"""Progress of filters, a way to cancel them, and their notes, which the host does not pass on."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from devseg.plugins import plugin_paths
 ProgressFunction = Callable[[float, str], Any]
 
 _Observer = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_char_p)
+_Listener = ctypes.CFUNCTYPE(None, ctypes.c_char_p)
 
 
 class Observation:
@@ -63,6 +64,24 @@ def observed(observation: Observation) -> Iterator[None]:
         yield
     finally:
         set_observer(_Observer())
+
+
+@contextlib.contextmanager
+def heard() -> Iterator[list[str]]:
+    """The notes of the filters that this thread runs in the block, in order.
+
+    The host prints them to its log, but none any more once a filter has failed in this process.
+    """
+    notes: list[str] = []
+    set_listener = _plugin().devseg_listen
+    set_listener.argtypes = [_Listener]
+    set_listener.restype = None
+    listener = _Listener(lambda note: notes.append(note.decode(errors="replace")))
+    set_listener(listener)
+    try:
+        yield notes
+    finally:
+        set_listener(_Listener())
 
 
 def _plugin() -> ctypes.CDLL:

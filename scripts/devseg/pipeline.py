@@ -20,6 +20,7 @@ from devseg.lengths import shown
 from devseg.load import load_mesh
 from devseg.methods import EFFORTS, FLATTENINGS, Method
 from devseg.notes import as_option, new_notes
+from devseg.observer import heard
 from devseg.outputs import plain, staged, to_json
 from devseg.pattern_options import EXPORT_FILTER, TEXTURES
 from devseg.pattern_writer import MESH_FORMATS, PatternWriter
@@ -101,7 +102,6 @@ class Session:
         self.meshes = meshes
         self.parameters: dict[str, dict[str, Any]] = {}
         self.warnings = list(warnings)
-        self._chatter = ""  # what the host printed last
 
     def apply(self, name: str, **parameters: Any) -> dict[str, Any]:
         """Applies a filter of ours and returns its results; its notes are warnings.
@@ -128,9 +128,11 @@ class Session:
         self._guard(self.meshes.save_current_mesh, str(file), **parameters)
 
     def _noted(self, name: str, **parameters: Any) -> dict[str, Any]:
-        # The host drops texts from results, but logs them.
-        results = self._guard(self.meshes.apply_filter, name, **parameters) or {}
-        self.warnings += new_notes(self._chatter, results, self.warnings)
+        with heard() as notes:
+            results: dict[str, Any] = (
+                self._guard(self.meshes.apply_filter, name, **parameters) or {}
+            )
+        self.warnings += new_notes(notes, self.warnings)
         return results
 
     def _guard(self, function: Callable[..., Any], *args: Any, **parameters: Any) -> Any:
@@ -139,10 +141,8 @@ class Session:
         # so for all meshes to come.
         self.meshes.set_verbosity(True)
         try:
-            with host.captured() as chatter:
-                result = function(*args, **parameters)
-            self._chatter = chatter.text
-            return result
+            with host.captured():
+                return function(*args, **parameters)
         except errors as error:
             raise self.failure(host_message(error)) from error
         finally:

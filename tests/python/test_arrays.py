@@ -310,3 +310,47 @@ def test_importing_does_no_work_and_names_are_functions(pymeshlab: ModuleType) -
     )
     subprocess.run([sys.executable, "-c", code], check=True, env={"PYTHONPATH": f"{ROOT}/scripts"})
     assert host.pymeshlab() is pymeshlab and devseg.__version__
+    with pytest.raises(AttributeError, match="no attribute 'unwarp'"):
+        devseg.unwarp  # noqa: B018
+    assert set(devseg.__all__) <= set(dir(devseg))
+    assert all(getattr(devseg, name) is not None for name in devseg.__all__)
+
+
+def test_users_scripts_are_checked_by_the_types_of_the_package(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import numpy as np\n"
+        "import devseg\n"
+        "atlas: devseg.Atlas = devseg.unwrap(np.eye(3), [[0, 1, 2]], progress=lambda s, w: s < 1)\n"
+        "saved: tuple[str, ...] = devseg.pattern(atlas, height_mm=9).save('a.pdf')\n"
+        "devseg.unwarp(atlas)\n"
+        "devseg.pattern(3)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache", script],
+        env={**os.environ, "MYPYPATH": f"{ROOT}/scripts"},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    told = [line for line in done.stdout.splitlines() if line.startswith("script.py")]
+    assert [line.split(":")[1] for line in told] == ["5", "6"], done.stdout
+
+
+def test_warnings_come_after_a_failure_of_the_hosts_own() -> None:
+    """The host prints no log any more then, whatever MeshSet is used in the process."""
+    code = """
+import numpy as np, devseg, pymeshlab
+corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0.5, 0.5, 1], [0.5, 0.5, -1]])
+fins = corners, np.array([[0, 1, 2], [1, 3, 2], [1, 2, 4], [2, 1, 5]])
+devseg.load_plugins()
+meshes = pymeshlab.MeshSet()
+meshes.add_mesh(pymeshlab.Mesh(*fins))
+try:
+    meshes.compute_segmentation_dcharts_per_face(charts_number=-1)
+except pymeshlab.PyMeshLabException:
+    print(*devseg.segment(*fins, charts_number=1).warnings, sep="\\n")
+"""
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout.endswith("1 edge has more than two faces and was cut\n")
