@@ -1,6 +1,7 @@
 // Pieces on a roll of cloth, folded and not; what a cut burns away.
 #include "sheet/marker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -234,8 +235,13 @@ TEST(Marks, DrillsLieWhereDartsEnd) {
         return Vec2(0.5 * (line.front() + line.back()));
     };
     EXPECT_LT((middle(piece.drills[0]) - middle(piece.drills[1])).norm(), 1e-9);
-    // Its tip is the centre of the grid; the border opposite is 40 mm away.
-    EXPECT_NEAR(middle(piece.drills[0]).x() - piece.box().min().x(), 40.0, 1e-6);
+    // Its tip is the centre of the grid, 40 mm from the border opposite, but for the scale at which
+    // the piece has its area.
+    const Vec2 tip = middle(piece.drills[0]);
+    EXPECT_NEAR(tip.x() - piece.box().min().x(), 40.0, 1.0);
+    const std::vector<Vec2>& ring = piece.cut.front();
+    EXPECT_TRUE(std::any_of(ring.begin(), ring.end(),
+                            [&](const Vec2& p) { return (p - tip).norm() < 1e-9; }));
 }
 
 TEST(Marks, NotchesReachTheCutLineOfEachKindOfSeam) {
