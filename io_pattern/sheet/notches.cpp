@@ -54,12 +54,16 @@ void add_notch(const pattern::PiecePath& path, const pattern::SeamSide& side, do
 void add_notches(const pattern::Pattern& pattern, const ExportOptions& options,
                  SheetPiece& result) {
     const pattern::PatternPiece& piece = pattern.pieces[result.piece];
-    for (const pattern::Seam& seam : pattern.seams)
-        for (const pattern::SeamSide& side : seam.sides)
-            if (side.piece == result.piece)
-                for (const double distance : side.notches)
-                    add_notch(piece.path(side.path), side, distance, options.seam_allowance_mm,
-                              result);
+    const AllowanceWidths widths = options.allowance();
+    for (std::size_t s = 0; s < pattern.seams.size(); ++s)
+        for (const pattern::SeamSide& side : pattern.seams[s].sides) {
+            if (side.piece != result.piece)
+                continue;
+            const pattern::OutlineSeam edge{static_cast<Index>(s), 0, pattern.seams[s].is_dart};
+            for (const double distance : side.notches)
+                add_notch(piece.path(side.path), side, distance, widths.of(edge, side.path > 0),
+                          result);
+        }
 }
 
 void add_grain(const pattern::PatternPiece& piece, SheetPiece& result) {

@@ -1,6 +1,7 @@
 // Pieces on a roll of cloth, folded and not; what a cut burns away.
 #include "sheet/marker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -11,6 +12,7 @@
 #include "sheet/fabrics.h"
 #include "sheet/half_piece.h"
 #include "unit/checks.h"
+#include "unit/pattern_samples.h"
 
 namespace devseg::sheet {
 namespace {
@@ -220,6 +222,53 @@ TEST(Kerf, MovesOutlinesOutwardsAndHolesInwards) {
     EXPECT_EQ(resolved(options).kerf_mm, 0.0);
     options.preset = PatternPreset::laser;
     EXPECT_EQ(resolved(options).kerf_mm, material::read_material("leather").kerf_mm);
+}
+
+TEST(Marks, DrillsLieWhereDartsEnd) {
+    const pattern::Pattern pattern = samples::with_dart(20.0).pattern();
+    ExportOptions options;
+    EXPECT_TRUE(compose_piece(pattern, 0, {}, options).drills.empty());
+    options.drill_marks = true;
+    const SheetPiece piece = compose_piece(pattern, 0, {}, options);
+    ASSERT_EQ(piece.drills.size(), 2u);
+    const auto middle = [](const std::vector<Vec2>& line) {
+        return Vec2(0.5 * (line.front() + line.back()));
+    };
+    EXPECT_LT((middle(piece.drills[0]) - middle(piece.drills[1])).norm(), 1e-9);
+    // Its tip is the centre of the grid, 40 mm from the border opposite, but for the scale at which
+    // the piece has its area.
+    const Vec2 tip = middle(piece.drills[0]);
+    EXPECT_NEAR(tip.x() - piece.box().min().x(), 40.0, 1.0);
+    const std::vector<Vec2>& ring = piece.cut.front();
+    EXPECT_TRUE(std::any_of(ring.begin(), ring.end(),
+                            [&](const Vec2& p) { return (p - tip).norm() < 1e-9; }));
+}
+
+TEST(Marks, NotchesReachTheCutLineOfEachKindOfSeam) {
+    pattern::PatternOptions spaced;
+    spaced.notch_spacing_mm = 20.0;
+    const pattern::Pattern pattern = samples::two_pieces().pattern(spaced);
+    ASSERT_EQ(pattern.seams.size(), 1u);
+    ExportOptions options;
+    options.seam_allowance_mm = 5.0;
+    const auto depth = [&] {
+        const SheetPiece piece = compose_piece(pattern, 0, {}, resolved(options));
+        EXPECT_FALSE(piece.notches.empty());
+        const double edge = piece.box().max().x();
+        for (const SheetNotch& notch : piece.notches) {
+            EXPECT_NEAR(notch.outer.x(), edge, 1e-6);
+            const std::vector<Vec2> triangle = notch.line(NotchKind::triangle);
+            EXPECT_EQ(triangle[1], notch.inner);
+            EXPECT_LT((0.5 * (triangle[0] + triangle[2]) - notch.outer).norm(), 1e-9);
+            EXPECT_GT((triangle[2] - triangle[0]).norm(), 1.0);
+            EXPECT_EQ(notch.line(NotchKind::slit).size(), 2u);
+        }
+        return (piece.notches.front().outer - piece.notches.front().inner).norm();
+    };
+    const double narrow = depth();
+    options.zip_allowance_mm = 15.0;
+    options.zip_seams = "1";
+    EXPECT_NEAR(depth(), 3.0 * narrow, 1e-6);
 }
 
 } // namespace
