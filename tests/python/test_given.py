@@ -374,6 +374,23 @@ def test_host_reads_selected_edges_faces_and_vertices(
     assert split["charts_number"] == 6
 
 
+def test_host_makes_smooth_seams_of_a_selection(ball: Any) -> None:
+    faces = ball.current_mesh().face_number()
+    ball.compute_selection_by_condition_per_face(condselect="x0 + 0.4 * y0 > 0.2")
+    plain = ball.compute_charts_from_selected_edges_per_face()
+    assert ball.current_mesh().face_number() == faces
+    made = ball.compute_charts_from_selected_edges_per_face(smooth=True)
+    mesh = ball.current_mesh()
+    assert mesh.face_number() > faces
+    assert made["charts_number"] == plain["charts_number"] == 2
+    assert made["seam_length"] < plain["seam_length"]
+    chart, color = mesh.face_custom_scalar_attribute_array("chart_id"), mesh.face_color_matrix()
+    assert len(np.unique(color[chart == 0], axis=0)) == len(np.unique(color[chart == 1], axis=0))
+    ball.compute_texcoord_parametrization_charts_per_wedge()
+    flat = ball.get_parametrization_measures()
+    assert flat["flipped_faces_number"] == flat["overlapping_faces_number"] == 0
+
+
 def test_host_cuts_the_mesh_open_and_merging_closes_it(ball: Any) -> None:
     before = ball.current_mesh()
     vertices, faces = before.vertex_number(), before.face_number()
