@@ -148,9 +148,9 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
 declare::Declare<O> with_print(declare::Declare<O> filter) {
     return filter
         .choice(&O::texture, "texture", "Texture on the pieces", {"None", "Automatic"},
-                "Automatic: what the model looks like is printed on the pieces of SVG, PDF and "
-                "PNG files: its textures, else the colours of its faces, else those of its "
-                "vertices. Tabs go on with the colours beside them.")
+                "What the model looks like is printed on the pieces of SVG, PDF and PNG files, or "
+                "nothing (None). Automatic: its textures, else the colours of its faces, else "
+                "those of its vertices. Tabs go on with the colours beside them.")
         .real(&O::bleed_mm, {"bleed_mm", 0.0, sheet::widest_bleed}, "Bleed (mm)",
               "How far the texture is printed beyond the cut lines, in millimetres.")
         .boolean(&O::registration_marks, "registration_marks", "Registration marks",

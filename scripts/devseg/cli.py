@@ -177,6 +177,7 @@ _LABELS = {
     "svg": "pattern",
     "pdf": "pattern",
     "dxf": "pattern",
+    "page": "pattern",
     "html": "guide",
     "marker": "marker",
     "ply": "mesh",

@@ -60,10 +60,11 @@ class PatternWriter:
                 own = PAGE + suffix if extension == "png" else suffix
                 target = self._target(extension, own)
                 results = self.session.export(target, parameters)
-                for page in pages(target, results) if extension == "png" else [target]:
-                    if page.stem != self.stem.name:
-                        kind = page.stem.removeprefix(self.stem.name)
-                        self.outputs[f"{extension}{kind}"] = page.name
+                if extension == "png":
+                    for page in pages(target, results):
+                        self.outputs[page.stem.removeprefix(f"{self.stem.name}_")] = page.name
+                elif suffix:
+                    self.outputs[f"{extension}{suffix}"] = target.name
             names = cloth.fabrics(plain)
             self.guide = {"assembly": guide.assembly(results), "needs": guide.needs(results)}
             if names:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import json
 import re
 import subprocess
 from collections.abc import Callable
@@ -157,7 +158,7 @@ def test_svg_keeps_the_picture_off_the_cut_layer(
     paper = ["--page", "a4", "--height-mm", "80", "--registration-marks"]
     formats = ["--formats", "svg,pdf,png,dxf"]
     assert main(["run", str(two_textures), "-o", str(out), *options, *paper, *formats]) == 0
-    capfd.readouterr()
+    printed = capfd.readouterr().out
     root = etree.parse(str(out / "tube.svg")).getroot()
     name = {"svg": "http://www.w3.org/2000/svg", "x": "http://www.w3.org/1999/xlink"}
     layers = [g.get("id") for g in root.findall("svg:g", name)]
@@ -171,7 +172,10 @@ def test_svg_keeps_the_picture_off_the_cut_layer(
         with Image.open(io.BytesIO(base64.b64decode(data))) as opened:
             assert opened.width / float(image.get("width")) == pytest.approx(DPI / 25.4, rel=0.01)
     assert len(images) == len(root.findall("svg:g[@id='cut']/svg:path", name))
-    assert sorted(p.name for p in out.glob("tube_page*.png"))
+    pages = sorted(p.name for p in out.glob("tube_page*.png"))
+    written = json.loads((out / "tube.json").read_text())["outputs"]
+    assert pages and pages == sorted(n for k, n in written.items() if k.startswith("page"))
+    assert "pattern" in printed and pages[0] in printed
 
 
 def test_says_that_there_are_no_colours(
