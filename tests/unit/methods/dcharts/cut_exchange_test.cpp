@@ -117,7 +117,8 @@ TEST(Joins, StepsGoOnFromEachOther) {
     EXPECT_GE(steps[2].excess(), steps[1].excess());
 }
 
-// Two cuts side by side to tips at the same height: one of them can begin at the other's tip.
+// Two cuts from below to tips that are nearer to the left side: one of them goes there, the other
+// begins at its tip.
 TEST(CutExchange, CutsAreRoutedToTheirTipsTogether) {
     Sheet sheet;
     sheet.mark(0.45, 0.0, 0.5);
@@ -128,9 +129,9 @@ TEST(CutExchange, CutsAreRoutedToTheirTipsTogether) {
     for (const Closing& other : others)
         lengths.push_back(sheet.side + length(sheet.mesh, other.opened) -
                           length(sheet.mesh, other.edges));
-    EXPECT_NEAR(lengths[0], 0.6 * sheet.side, 1e-9);
-    EXPECT_NEAR(lengths[1], 0.5 * sheet.side, 1e-9);
-    EXPECT_NEAR(lengths[2], 0.5 * sheet.side, 1e-9);
+    EXPECT_NEAR(lengths[0], 0.55 * sheet.side, 1e-9);
+    EXPECT_NEAR(lengths[1], 0.45 * sheet.side, 1e-9);
+    EXPECT_NEAR(lengths[2], 0.45 * sheet.side, 1e-9);
 }
 
 } // namespace
