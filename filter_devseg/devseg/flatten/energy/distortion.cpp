@@ -11,9 +11,10 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 
 #include "devseg/base/errors.h"
+#include "devseg/flatten/energy/block_cholesky.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::flatten {
@@ -264,7 +265,7 @@ struct ProjectedNewton::State {
     FaceHessian face_hessian;
     double boundary_stiffness = 0.0;
     HessianMatrix hessian;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    BlockCholesky solver;
 };
 
 ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
@@ -320,13 +321,14 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
         hessian.add(i, i, (stays ? tuning.locked_share : tuning.shift_share) * trace / unknowns);
     }
     if (hessian.finish())
-        state_->solver.analyzePattern(hessian.matrix);
-    state_->solver.factorize(hessian.matrix);
+        state_->solver.analyze(hessian.matrix);
+    if (!state_->solver.factorize(hessian.matrix))
+        throw NumericalFailure("expected a positive definite Hessian, found one that is not");
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>; // x, y, x, y …
     const Rows descent = -gradient;
     const Eigen::Map<const Eigen::VectorXd> rhs(descent.data(), unknowns);
     const Eigen::VectorXd solution = state_->solver.solve(rhs);
-    if (state_->solver.info() != Eigen::Success || !solution.allFinite())
+    if (!solution.allFinite())
         throw NumericalFailure("expected a positive definite Hessian, found a singular one");
     return Eigen::Map<const Rows>(solution.data(), problem.vertex_count, 2);
 }

@@ -15,13 +15,4 @@ namespace devseg::dcharts {
 std::vector<Index> shorter_cut(const Mesh& mesh, const Draft& draft, const Closing& chain,
                                const Progress& progress);
 
-/// All cuts inside the chart along other ways: a tree of shortest paths [TM80] that joins the other
-/// seams around the chart and leads to where cuts end now; and the same without one of these ends.
-/// Those that are shorter, each with what closes and what opens.
-///
-///   [TM80] H. Takahashi, A. Matsuyama: An Approximate Solution for the Steiner Problem in Graphs.
-///          Mathematica Japonica 24, 1980.
-std::vector<Closing> rerouted_cuts(const Mesh& mesh, const Draft& draft, Index chart,
-                                   const Progress& progress);
-
 } // namespace devseg::dcharts

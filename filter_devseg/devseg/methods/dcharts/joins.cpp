@@ -75,9 +75,6 @@ private:
                 if (partly_)
                     add_parts(part, last);
             if (exchanging_ && charts.first == charts.second)
-                for (Closing& other : rerouted_cuts(mesh_, draft_, charts.first, progress))
-                    add(std::move(other), false, last);
-            if (exchanging_ && charts.first == charts.second)
                 for (Closing& part : parts) {
                     part.opened = shorter_cut(mesh_, draft_, part, progress);
                     if (!part.opened.empty())
@@ -89,8 +86,7 @@ private:
     // A chain, and from both ends the longest of its halves, quarters and so on that can be closed.
     void add_parts(const Closing& chain, const Verdicts& last) {
         add(chain, false, last);
-        const double least =
-            (exchanging_ ? tuning.last_part : tuning.least_part) * std::sqrt(mesh_.total_area);
+        const double least = tuning.least_part * std::sqrt(mesh_.total_area);
         const double excess = draft_.excess();
         for (const bool at_end : {false, true})
             for (std::size_t count = chain.edges.size() / 2; count > 0; count /= 2) {

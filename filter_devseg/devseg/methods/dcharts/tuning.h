@@ -32,8 +32,7 @@ struct Tuning {
     // Angle defect, in radians, of vertices at which the surface has a corner: seams may be closed
     // up to one.
     double corner_defect = 0.2;
-    double least_part = 0.1;       // of a border, over √area, that is closed on its own,
-    double last_part = 0.02;       // and in the end, where the fewest charts are looked for
+    double least_part = 0.1;       // of a border, over √area, that is closed on its own
     std::size_t tried_again = 4;   // parts at a time, the best of those with old verdicts
     std::size_t tried_at_once = 8; // closings, before the best of them makes others needless
     // Parts between creases, joined one by one. Where there are more, creases are no guide.

@@ -117,21 +117,5 @@ TEST(Joins, StepsGoOnFromEachOther) {
     EXPECT_GE(steps[2].excess(), steps[1].excess());
 }
 
-// Two cuts side by side to tips at the same height: one of them can begin at the other's tip.
-TEST(CutExchange, CutsAreRoutedToTheirTipsTogether) {
-    Sheet sheet;
-    sheet.mark(0.45, 0.0, 0.5);
-    sheet.mark(0.55, 0.0, 0.5);
-    const std::vector<Closing> others = rerouted_cuts(sheet.mesh, sheet.draft, 0, Progress());
-    ASSERT_EQ(others.size(), 3U); // to both tips, and to each alone
-    std::vector<double> lengths;
-    for (const Closing& other : others)
-        lengths.push_back(sheet.side + length(sheet.mesh, other.opened) -
-                          length(sheet.mesh, other.edges));
-    EXPECT_NEAR(lengths[0], 0.6 * sheet.side, 1e-9);
-    EXPECT_NEAR(lengths[1], 0.5 * sheet.side, 1e-9);
-    EXPECT_NEAR(lengths[2], 0.5 * sheet.side, 1e-9);
-}
-
 } // namespace
 } // namespace devseg::dcharts
