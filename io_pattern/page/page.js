@@ -509,7 +509,7 @@ function setTheme(theme) {
   byId("theme").textContent = theme === "dark" ? TEXT.light : TEXT.dark;
 }
 
-function fillLists() {
+function fillTexts() {
   for (const place of document.querySelectorAll("[data-text]"))
     place.textContent = TEXT[place.dataset.text];
   byId("canvas").setAttribute("aria-label", TEXT.canvas(DATA.title));
@@ -520,6 +520,9 @@ function fillLists() {
   byId("step").max = DATA.steps.length;
   for (const name of ["byPiece", "bySection", "byStrain"])
     byId("colors").add(new Option(TEXT[name], name));
+}
+
+function fillLists() {
   const chip = (text, list, over) => {
     const button = document.createElement("button");
     button.type = "button";
@@ -617,18 +620,18 @@ function listen() {
 }
 
 setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
-fillLists();
-sheet = new SheetView(byId("paper"));
-goTo(0);
+fillTexts();
 const context = byId("canvas").getContext("webgl2", { antialias: true });
 if (context) model = new ModelView(byId("canvas"), context);
 else byId("view").textContent = TEXT.noWebgl;
-listen();
-draw();
-// The model is on the screen before the sheet is painted: a browser that draws in software paints
+// The model is on the screen before lists and sheet are made: a browser that draws in software paints
 // outlines and texts far longer than a model, and a new WebGL context would wait for them.
 requestAnimationFrame(() => requestAnimationFrame(() => {
   performance.mark("model");
+  fillLists();
+  sheet = new SheetView(byId("paper"));
+  listen();
+  goTo(0);
   byId("paper").classList.add("shown");
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
 }));

@@ -12,11 +12,11 @@ struct Tuning {
     std::size_t most_footprints = 600; // that are looked at for one piece, evenly from all
     int tests = 12;                    // of places with the same pages
     int most_tests = 3000;             // of one piece on one sheet
-    std::int64_t work_of_row = 100;    // that is put on a sheet
-    std::int64_t work_of_test = 40;    // of one place, and of one set of pages
+    std::int64_t work_of_row = 40;     // that is put on a sheet
+    std::int64_t work_of_test = 20;    // of one place, and of one set of pages
     Index longest_slide = 16;          // cells at a time, until others are in the way
     int most_slides = 8;               // of one length
-    std::int64_t work_of_slide = 2500;
+    std::int64_t work_of_slide = 1000;
 };
 constexpr Tuning tuning;
 
