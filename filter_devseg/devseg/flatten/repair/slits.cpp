@@ -10,6 +10,12 @@ namespace devseg::flatten {
 
 namespace {
 
+struct Tuning {
+    double kept_height = 0.1; // share of the lowest face's height by which a lip may move
+    double needle = 0.1;      // of the gap: lower faces have no shape to keep
+};
+constexpr Tuning tuning;
+
 // Local number of the other side of each boundary half-edge that lies on a cut inside the chart,
 // as pairs of local half-edges.
 std::vector<std::pair<Index, Index>> slit_sides(const Mesh& mesh,
@@ -51,11 +57,27 @@ private:
         const double length = edge.norm();
         if (!(length > 0.0))
             return;
-        uv_[v] = home_[v] + 0.5 * gap_ / length * plane::left_of(edge);
-        done_[v] = 1;
         const HalfEdge leaving = s_.origin(h) == v ? h : Mesh::next(h);
+        const double step = std::min(0.5 * gap_, tuning.kept_height * lowest_around(leaving));
+        uv_[v] = home_[v] + step / length * plane::left_of(edge);
+        done_[v] = 1;
         if (!is_positive_around(s_.faces, s_.twin, uv_, leaving))
             uv_[v] = home_[v];
+    }
+
+    // A small chart has faces as low as the gap of a large model is wide.
+    double lowest_around(HalfEdge leaving) const {
+        double lowest = infinite;
+        mesh::visit_star(s_.twin, leaving, [&](HalfEdge h) {
+            const Triangle& t = s_.faces[face_of(h)];
+            const Vec2 a = home_[t[1]] - home_[t[0]];
+            const Vec2 b = home_[t[2]] - home_[t[0]];
+            const double height =
+                std::abs(plane::cross(a, b)) / std::max({a.norm(), b.norm(), (b - a).norm()});
+            if (height > tuning.needle * gap_)
+                lowest = std::min(lowest, height);
+        });
+        return lowest;
     }
 
     const atlas::ChartSurface& s_;

@@ -25,7 +25,10 @@ struct Tuning {
     double needle_height = 1e-6;
     // Least height of a face before rounding, in steps of the largest coordinate. Rounding moves
     // each corner by 0.71 of them at most, and so changes a height by 1.41.
-    double grid_height = 4.0;
+    double grid_height = 2.5;
+    // How easily a vertex of the boundary gives way, beside one inside: rows of needles along two
+    // borders that touch must not push them over each other.
+    double boundary_mobility = 1.0 / 16.0;
     double reached = 1.05; // of the least height: what a face that is lower gets
     int room_rounds = 400; // visits of each low face: rows of needles push others away step by step
 };
@@ -59,6 +62,19 @@ Stars build_stars(const std::vector<Triangle>& faces, std::size_t vertices) {
     return stars;
 }
 
+// Whether the faces around the vertex close up.
+bool is_inside(const std::vector<Triangle>& faces, const Stars& stars, Vertex v) {
+    std::vector<Index> after;
+    std::vector<Index> before;
+    for (Index i = stars.begin[v]; i < stars.begin[at(v) + 1]; ++i) {
+        const Triangle& t = faces[stars.faces[i]];
+        const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+        after.push_back(t[(k + 1) % 3]);
+        before.push_back(t[(k + 2) % 3]);
+    }
+    return std::is_permutation(after.begin(), after.end(), before.begin());
+}
+
 // The distance between neighbouring single precision numbers near the point.
 double unit_in_last_place(const Vec2& p) {
     const float size = static_cast<float>(p.cwiseAbs().maxCoeff());
@@ -78,7 +94,8 @@ public:
             const double unit = unit_in_last_place(home);
             Vec2 best = home;
             double least = loss_around(v);
-            const int most = is_inside(v) ? tuning.grid_reach : tuning.boundary_reach;
+            const int most =
+                is_inside(faces_, stars_, v) ? tuning.grid_reach : tuning.boundary_reach;
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
@@ -99,19 +116,6 @@ private:
     double twice_area(Index face) const {
         const Triangle& t = faces_[face];
         return orientation(uv_[t[0]], uv_[t[1]], uv_[t[2]]);
-    }
-
-    // Whether the faces around the vertex close up.
-    bool is_inside(Vertex v) const {
-        std::vector<Index> after;
-        std::vector<Index> before;
-        for (Index i = stars_.begin[v]; i < stars_.begin[at(v) + 1]; ++i) {
-            const Triangle& t = faces_[stars_.faces[i]];
-            const std::size_t k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
-            after.push_back(t[(k + 1) % 3]);
-            before.push_back(t[(k + 2) % 3]);
-        }
-        return std::is_permutation(after.begin(), after.end(), before.begin());
     }
 
     // What one face gains must not cost another one more.
@@ -163,7 +167,7 @@ public:
             waits[low[i]] = 0;
             if (!is_low(low[i]))
                 continue;
-            raise(low[i]);
+            raise(low[i], stars);
             for (const Vertex v : faces_[low[i]])
                 for (Index k = stars.begin[v]; k < stars.begin[at(v) + 1]; ++k) {
                     const Index g = stars.faces[k];
@@ -190,22 +194,24 @@ private:
     // An equilateral triangle is as high as 0.87 of its sides: specks count as well.
     bool is_low(Index f) const { return !(twice_area(f) >= least_ * longest(f)); }
 
-    void raise(Index f) {
+    void raise(Index f, const Stars& stars) {
         const Triangle& t = faces_[f];
         Vec2 gradient[3]; // of twice the area
+        double mobility[3];
         double squares = 0.0;
         for (std::size_t k = 0; k < 3; ++k) {
             gradient[k] = plane::left_of(uv_[t[(k + 2) % 3]] - uv_[t[(k + 1) % 3]]);
-            squares += gradient[k].squaredNorm();
+            mobility[k] = is_inside(faces_, stars, t[k]) ? 1.0 : tuning.boundary_mobility;
+            squares += mobility[k] * gradient[k].squaredNorm();
         }
         // A speck has hardly any gradient: it grows from its middle instead.
         const double missing = tuning.reached * least_ * longest(f) - twice_area(f);
-        if (!(squares > least_ * least_)) {
+        if (!(longest(f) > least_)) {
             grow(t);
             return;
         }
         for (std::size_t k = 0; k < 3; ++k)
-            uv_[t[k]] += missing / squares * gradient[k];
+            uv_[t[k]] += missing * mobility[k] / squares * gradient[k];
     }
     void grow(const Triangle& t) {
         const Vec2 middle = (uv_[t[0]] + uv_[t[1]] + uv_[t[2]]) / 3.0;
