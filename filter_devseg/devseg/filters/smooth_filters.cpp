@@ -203,6 +203,7 @@ FilterOutput run_smooth(const FilterInput& input, const Options& options, Progre
         output.notes.emplace_back("the model is not its own mirror image: both sides got seams of "
                                   "their own");
     output.charts = std::move(made.charts);
+    output.charts_go_on = true;
     output.refinement = std::move(made.refinement);
     return output;
 }

@@ -81,6 +81,11 @@ std::vector<std::size_t> closest(const std::vector<Known>& models,
     return result;
 }
 
+// Direction of the axis of a mirror image, which has half the angle of −turn.
+std::complex<double> axis_of(const Motion& mirror) {
+    return std::polar(1.0, 0.5 * std::arg(-mirror.turn));
+}
+
 double tolerance_for(const PatternPiece& piece, double tolerance_mm, double share) {
     return std::min(tolerance_mm, share * std::sqrt(piece.area));
 }
@@ -88,20 +93,25 @@ double tolerance_for(const PatternPiece& piece, double tolerance_mm, double shar
 } // namespace
 
 std::optional<Motion> mirror_motion(const PatternPiece& piece, double tolerance_mm, double share) {
-    return same_shape(Shape(piece, true), Shape(piece, false), 0.0,
-                      plane::perimeter(piece.outer.points),
-                      tolerance_for(piece, tolerance_mm, share));
+    std::optional<Motion> motion =
+        same_shape(Shape(piece, true), Shape(piece, false), 0.0,
+                   plane::perimeter(piece.outer.points), tolerance_for(piece, tolerance_mm, share));
+    if (!motion)
+        return motion;
+    // In complex numbers around the middle of the box, the mirror image of z is −turn z̄ + shift:
+    // a mirror image of that is z again where nothing of the shift lies along the axis.
+    const std::complex<double> along = axis_of(*motion);
+    motion->shift -= (motion->shift * std::conj(along)).real() * along;
+    return motion;
 }
 
 std::optional<MirrorAxis> find_mirror_axis(const PatternPiece& piece, double tolerance_mm) {
     const auto motion = mirror_motion(piece, tolerance_mm, size_share);
     if (!motion)
         return std::nullopt;
-    // In complex numbers around the middle of the box, the mirror image of z is −turn z̄ + shift:
-    // its axis has half the angle of −turn, and half of the shift lies on it.
-    const double angle = 0.5 * std::arg(-motion->turn);
+    const std::complex<double> along = axis_of(*motion);
     return MirrorAxis{piece.box.center() + 0.5 * Vec2(motion->shift.real(), motion->shift.imag()),
-                      Vec2(std::cos(angle), std::sin(angle))};
+                      Vec2(along.real(), along.imag())};
 }
 
 std::vector<Likeness> find_likenesses(const std::vector<PatternPiece>& pieces, double tolerance_mm,

@@ -17,16 +17,19 @@ using Ring = std::vector<Vec2>;
 // it three times around. One half is longer, so that it is not its own mirror image.
 Ring petal(int count, double wave, double longer = 10.0) {
     Ring ring;
+    bool has_dart = false;
     for (int i = 0; i < count; ++i) {
         const double t = 2.0 * pi * i / count;
         const double r = 1.0 + wave / 50.0 * std::sin(3.0 * t + 0.4);
         const double x = 50.0 * std::cos(t);
-        ring.emplace_back(r * (x + (x > 0.0 ? longer * x / 50.0 : 0.0)), r * 30.0 * std::sin(t));
-        if (i < count / 4 && (i + 1) >= count / 4) { // 2 mm wide, 20 mm deep
-            ring.emplace_back(1.0, 29.5);
-            ring.emplace_back(0.0, 10.0);
-            ring.emplace_back(-1.0, 29.5);
+        if (x < 0.0 && !has_dart) { // 2 mm wide, 20 mm deep
+            for (const Vec2& p : {Vec2(1.0, 30.0), Vec2(0.0, 10.0), Vec2(-1.0, 30.0)})
+                ring.push_back(p);
+            has_dart = true;
         }
+        if (std::sin(t) < 0.0 || std::abs(x) > 1.5)
+            ring.emplace_back(r * (x + (x > 0.0 ? longer * x / 50.0 : 0.0)),
+                              r * 30.0 * std::sin(t));
     }
     return ring;
 }
@@ -92,10 +95,10 @@ TEST(Alike, PiecesThatDifferByMoreStay) {
 
 TEST(Alike, APieceNearToItsOwnImageBecomesSymmetric) {
     std::vector<PatternPiece> pieces{piece_of(petal(97, 0.4, 0.5), 1.0, Vec2(5.0, 7.0), false)};
-    ASSERT_FALSE(find_mirror_axis(pieces[0], 0.2));
+    ASSERT_FALSE(find_mirror_axis(pieces[0], 0.3));
     EXPECT_EQ(make_alike(pieces, 2.0, Progress()), 1);
     measure_outlines(pieces[0]);
-    EXPECT_TRUE(find_mirror_axis(pieces[0], 0.2));
+    EXPECT_TRUE(find_mirror_axis(pieces[0], 0.3));
 }
 
 TEST(Alike, HolesFollowTheirPieces) {
