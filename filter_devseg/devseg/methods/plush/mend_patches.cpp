@@ -176,6 +176,37 @@ OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vec
     return part;
 }
 
+OpenPart failing_part(const Mesh& mesh, SeamMarks seam, PatchTester& tester, Progress& progress) {
+    OpenPart part{std::vector<std::uint8_t>(mesh.faces.size(), 0), std::move(seam)};
+    const std::vector<std::vector<Index>> patches = patches_of(mesh, part.seam);
+    parallel_for(
+        static_cast<int>(patches.size()),
+        [&](int p) {
+            if (!tester.accepts(patches[p], part.seam, progress))
+                for (const Face f : patches[p])
+                    part.faces[f] = 1;
+        },
+        progress);
+    return part;
+}
+
+bool mend_part(const WorkingSurface& surface, const VertexGraph& graph,
+               const std::vector<double>& cost, const OpenPart& part,
+               const judge::ClothLimits& limits, SeamMarks& seam, const Progress& progress) {
+    bool changed = false;
+    for (const std::vector<Index>& patch : patches_of(surface.mesh, seam)) {
+        if (!part.is_open(patch.front()))
+            continue;
+        // The second one of two images has its cuts already.
+        const auto cuts = mend_patch(surface.mesh, graph, cost, patch, seam, limits, progress);
+        if (!cuts || cuts->empty())
+            continue;
+        mark_both(surface, *cuts, 1, seam);
+        changed = true;
+    }
+    return changed;
+}
+
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part) {
     SeamMarks fixed = part.seam;
     for (const HalfEdge h : mesh.all_half_edges())
@@ -215,18 +246,19 @@ Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cos
     Index tried = 0;
     const auto join_along = [&](const std::vector<Index>& border) {
         SeamMarks marks = seam;
-        mark(mesh, border, 0, marks);
+        mark_both(setting.surface, border, 0, marks);
         ++tried;
         progress.check();
-        const std::vector<Index> joined =
-            patches_of(mesh, marks, {face_of(border.front())}).front();
-        open_what_floats(mesh, setting.hard, joined, marks);
-        const auto cuts =
-            mend_patch(mesh, setting.graph, cost, joined, marks, setting.tester.limits(), progress);
-        if (!cuts || length_of(mesh, *cuts) > tuning.longest_darts * length_of(mesh, border))
+        const auto joined = patches_beside(mesh, marks, with_image(setting.surface, {border}));
+        for (const std::vector<Index>& patch : joined)
+            open_what_floats(mesh, setting.hard, patch, marks);
+        const auto cuts = mend_patch(mesh, setting.graph, cost, joined.front(), marks,
+                                     setting.tester.limits(), progress);
+        if (!cuts)
             return false;
-        mark(mesh, *cuts, 1, marks);
-        if (patches_of(mesh, marks, joined).size() > 1)
+        mark_both(setting.surface, *cuts, 1, marks);
+        if (patches_of(mesh, marks, joined.front()).size() > 1 ||
+            !(saved_cost(setting, seam, marks, setting.tester, progress) > 0.0))
             return false;
         seam = std::move(marks);
         return true;

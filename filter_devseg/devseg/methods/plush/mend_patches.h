@@ -37,6 +37,15 @@ struct OpenPart {
 OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
                       SeamMarks seam, const judge::ClothLimits& limits, Progress& progress);
 
+/// The patches that do not pass the tester of the mesh.
+OpenPart failing_part(const Mesh& mesh, SeamMarks seam, PatchTester& tester, Progress& progress);
+
+/// Gives the open patches of the surface, and their mirror images, cuts with which they keep the
+/// limits. Returns whether there was any. `cost`: of paths, 3 #F.
+bool mend_part(const WorkingSurface& surface, const VertexGraph& graph,
+               const std::vector<double>& cost, const OpenPart& part,
+               const judge::ClothLimits& limits, SeamMarks& seam, const Progress& progress);
+
 /// Seams that are not inside the open part.
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 

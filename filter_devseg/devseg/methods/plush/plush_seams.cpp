@@ -213,7 +213,8 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
     any_patch.random_seed = options.random_seed;
     RemovalOptions small_patches = any_patch;
     small_patches.most_area = tuning.small_patch;
-    small_patches.least_neck = tuning.narrow_neck;
+    const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
+                                  tuning.least_thin * mean_edge_length(surface.mesh));
     const std::vector<Pass> passes{
         {"laying seams", 0.04,
          [&](SeamMarks& seam, Progress& part) {
@@ -238,43 +239,18 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
          }},
         {"joining patches", 0.03,
          [&](auto& seam, auto& part) { return join_patches(setting, small_patches, seam, part); }},
-        {"shortening darts", 0.08,
+        {"giving tongues away", 0.05,
+         [&](auto& seam, auto& part) { return give_tongues_away(setting, width, seam, part); }},
+        {"absorbing remnants", 0.05,
+         [&](auto& seam, auto& part) {
+             return absorb_remnants(setting, costs.cut, tuning.small_patch, seam, part);
+         }},
+        {"blunting corners", 0.05,
+         [&](auto& seam, auto& part) { return blunt_acute_corners(setting, seam, part); }},
+        {"shortening darts", 0.05,
          [&](auto& seam, auto& part) { return shorten_darts(setting, seam, part); }}};
     SeamMarks seam = open.seam;
     seam.resize(surface.mesh.twin.size(), 0);
-    return run(passes, std::move(seam), result, progress);
-}
-
-// The seams of the model, with small patches and thin tongues given to neighbours.
-SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
-                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
-    const WorkingSurface& surface = evidence.surface;
-    const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, limits_of(options, 1.0, false));
-    PatchTester search(surface, limits_of(options, 1.0, true));
-    const std::vector<double> cost =
-        natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
-    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
-                              cost,    options.max_iterations};
-    const SeamSetting searching{surface, evidence.graph,        hard, weight, search, search, cost,
-                                cost,    options.max_iterations};
-    RemovalOptions remnants;
-    remnants.random_seed = options.random_seed;
-    remnants.most_area = tuning.small_patch / 5.0;
-    remnants.least_neck = tuning.narrow_neck;
-    const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
-                                  tuning.least_thin * mean_edge_length(surface.mesh));
-    const std::vector<Pass> passes{
-        {"giving tongues away", 0.35,
-         [&](auto& seams, auto& part) { return give_tongues_away(searching, width, seams, part); }},
-        {"joining patches", 0.2,
-         [&](auto& seams, auto& part) { return join_patches(setting, remnants, seams, part); }},
-        {"absorbing remnants", 0.25,
-         [&](auto& seams, auto& part) {
-             return absorb_remnants(setting, cost, tuning.small_patch / 10.0, seams, part);
-         }},
-        {"blunting corners", 0.2,
-         [&](auto& seams, auto& part) { return blunt_acute_corners(setting, seams, part); }}};
     return run(passes, std::move(seam), result, progress);
 }
 
@@ -294,36 +270,37 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
                               : tuning.far_margin;
     auto deciding = progress.part(0.5);
     SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
-    // Where the model has two halves, they stay alike only as long as seams are decided on both.
-    // By strain, darts and cuts on the model do better.
-    const int most_rounds =
-        by_strain ? 0 : tuning.second_thoughts + (surface.is_symmetric() ? 1 : 0);
+    // The two halves of a model stay alike as long as what the model needs is decided on both.
+    const judge::ClothLimits limits = limits_of(options, 1.0, false);
+    PatchTester on_itself(model, limits);
+    const std::vector<double> cost =
+        natural_lengths(surface.mesh, working.weights.stray, tuning.natural_dart);
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part =
-            mend_patches(model.mesh, on_model.graph,
-                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                        transfer_factors(on_model, options), transferring),
-                         limits_of(options, 1.0, false), transferring);
-        if (!part.has_open_faces() || round == most_rounds)
+        part = failing_part(model.mesh,
+                            transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                           transfer_factors(on_model, options), transferring),
+                            on_itself, transferring);
+        if (!part.has_open_faces() || round == tuning.second_thoughts)
             break;
-        const OpenPart again = same_part(surface, seam, model.mesh, part);
-        if (!again.has_open_faces())
-            break;
-        share *= tuning.tighter;
-        auto deciding_again = progress.part(0.4 * progress.left());
-        seam = decide(working, again, fixed_seams(surface.mesh, again), share, options, result,
-                      deciding_again);
+        const OpenPart same = same_part(surface, seam, model.mesh, part);
+        do
+            share *= tuning.tighter;
+        while (share > tuning.least_share &&
+               !mend_part(surface, working.graph, cost, same, limits_of(options, share, true), seam,
+                          transferring));
     }
+    auto mending = progress.part("mending patches", 0.5 * progress.left());
+    part = mend_patches(model.mesh, on_model.graph,
+                        natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
+                        std::move(part.seam), limits, mending);
     if (part.has_open_faces()) {
-        auto deciding_on_model = progress.part(0.6 * progress.left());
+        auto deciding_on_model = progress.part(progress.left());
         part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
                            deciding_on_model);
     }
-    auto cleaning = progress.part(progress.left());
-    return without_remnants(on_model, std::move(part.seam), {}, options, result, cleaning);
+    return std::move(part.seam);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are
@@ -410,10 +387,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     auto deciding = progress.part(0.8);
     SeamMarks seam;
     if (!hard.empty()) {
-        auto first = deciding.part(0.8);
-        seam = decide(working, {}, hard, 1.0, options, result, first);
-        auto cleaning = deciding.part(0.2);
-        seam = without_remnants(working, std::move(seam), hard, options, result, cleaning);
+        seam = decide(working, {}, hard, 1.0, options, result, deciding);
     } else {
         seam = decide_for_any(working, framed, options, result, deciding);
     }

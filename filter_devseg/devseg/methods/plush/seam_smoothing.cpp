@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "devseg/base/parallel.h"
 #include "devseg/methods/plush/seam_guides.h"
 #include "devseg/methods/plush/tuning.h"
 
@@ -167,23 +166,8 @@ private:
         if (!is_free(line, path, marks))
             return;
         mark_both(s_.surface, path, 1, marks);
-        if (keeps_patches(line, path, marks))
+        if (saved_cost(s_, seam_, marks, s_.tester, progress_) > 0.0)
             seam_ = std::move(marks);
-    }
-
-    bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
-                       const SeamMarks& marks) const {
-        // As they would be.
-        const auto parts = patches_beside(mesh_, marks, {line, path});
-        std::vector<std::uint8_t> fits(parts.size(), 0);
-        parallel_for(
-            static_cast<int>(parts.size()),
-            [&](int i) {
-                const auto k = static_cast<std::size_t>(i);
-                fits[k] = s_.tester.accepts(parts[k], marks, progress_) ? 1 : 0;
-            },
-            progress_);
-        return std::find(fits.begin(), fits.end(), 0) == fits.end();
     }
 
     const SeamSetting& s_;

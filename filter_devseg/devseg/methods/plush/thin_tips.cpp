@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/base/parallel.h"
 #include "devseg/graph/shortest_paths.h"
 #include "devseg/methods/plush/tuning.h"
 
@@ -30,9 +29,9 @@ struct Change {
     Line opened;
     Line closed;
 
-    void apply(const Mesh& mesh, SeamMarks& marks) const {
-        mark(mesh, closed, 1, marks);
-        mark(mesh, opened, 0, marks);
+    void apply(const WorkingSurface& surface, SeamMarks& marks) const {
+        mark_both(surface, closed, 1, marks);
+        mark_both(surface, opened, 0, marks);
     }
 };
 
@@ -140,102 +139,18 @@ std::vector<Change> find_changes(const SeamSetting& setting, double radius, cons
     return changes;
 }
 
-// The changes that share no edge with one before.
-std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Change>& changes) {
-    std::vector<Change> group;
-    SeamMarks is_used(mesh.twin.size(), 0);
-    for (const Change& change : changes) {
-        Line edges = change.opened;
-        edges.insert(edges.end(), change.closed.begin(), change.closed.end());
-        if (any_marked(is_used, edges))
-            continue;
-        mark(mesh, edges, 1, is_used);
-        group.push_back(change);
-    }
-    return group;
-}
-
-// All at once; those beside patches that are not accepted are left out.
-bool apply_together(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
-                    Progress& progress) {
-    const Mesh& mesh = setting.mesh();
-    std::vector<Change> group = without_shared_edges(mesh, changes);
-    while (!group.empty()) {
-        SeamMarks marks = seam;
-        std::vector<Line> closed;
-        for (const Change& change : group) {
-            change.apply(mesh, marks);
-            closed.push_back(change.closed);
-        }
-        const std::vector<std::vector<Index>> patches = patches_beside(mesh, marks, closed);
-        std::vector<std::uint8_t> fails(mesh.faces.size(), 0);
-        parallel_for(
-            static_cast<int>(patches.size()),
-            [&](int i) {
-                const auto& patch = patches[static_cast<std::size_t>(i)];
-                if (!setting.tester.accepts(patch, marks, progress))
-                    for (const Face f : patch)
-                        fails[f] = 1;
-            },
-            progress);
-        const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change& change) {
-            const HalfEdge h = change.closed.front();
-            return fails[face_of(h)] != 0 || fails[face_of(mesh.twin[h])] != 0;
-        });
-        if (kept == group.end()) {
-            seam = std::move(marks);
-            return true;
-        }
-        group.erase(kept, group.end());
-    }
-    return false;
-}
-
-// Each by itself, of each patch one.
-void apply_each(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
-                Progress& progress) {
-    const Mesh& mesh = setting.mesh();
-    std::vector<std::uint8_t> is_accepted(changes.size(), 0);
-    std::vector<std::vector<std::vector<Index>>> patches(changes.size());
-    parallel_for(
-        static_cast<int>(changes.size()),
-        [&](int i) {
-            const auto k = static_cast<std::size_t>(i);
-            SeamMarks marks = seam;
-            changes[k].apply(mesh, marks);
-            patches[k] = patches_beside(mesh, marks, {changes[k].closed});
-            is_accepted[k] = setting.tester.accepts_all(patches[k], marks, progress) ? 1 : 0;
-        },
-        progress);
-    std::vector<std::uint8_t> is_changed(mesh.faces.size(), 0);
-    for (std::size_t k = 0; k < changes.size(); ++k) {
-        bool is_free = is_accepted[k] != 0;
-        for (const auto& patch : patches[k])
-            for (const Face f : patch)
-                is_free = is_free && is_changed[f] == 0;
-        if (!is_free)
-            continue;
-        changes[k].apply(mesh, seam);
-        for (const auto& patch : patches[k])
-            for (const Face f : patch)
-                is_changed[f] = 1;
-    }
-}
-
 } // namespace
 
 Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
                         Progress& progress) {
-    const double radius = 0.5 * width;
-    std::vector<Change> changes = find_changes(setting, radius, seam, progress);
-    auto tried = static_cast<Index>(changes.size());
-    progress.update(0.1);
-    if (apply_together(setting, changes, seam, progress)) {
-        changes = find_changes(setting, radius, seam, progress);
-        tried += static_cast<Index>(changes.size());
+    Index tried = 0;
+    for (const Change& change : find_changes(setting, 0.5 * width, seam, progress)) {
+        SeamMarks marks = seam;
+        change.apply(setting.surface, marks);
+        ++tried;
+        if (saved_cost(setting, seam, marks, setting.tester, progress) > 0.0)
+            seam = std::move(marks);
     }
-    progress.update(0.6);
-    apply_each(setting, changes, seam, progress);
     return tried;
 }
 

@@ -1,7 +1,7 @@
 // Thin tips and tongues of patches, and acute corners where seams meet.
 #pragma once
 
-#include "devseg/methods/plush/seam_removal.h"
+#include "devseg/methods/plush/seam_setting.h"
 
 namespace devseg::plush {
 
@@ -24,6 +24,9 @@ struct AcuteCorner {
 /// most acute one first. `hard` (3 #F or empty) parts segments.
 std::vector<AcuteCorner> find_acute_corners(const Mesh& mesh, const SeamMarks& seam,
                                             const SeamMarks& hard, double reach, double max_angle);
+
+/// How many there are by the limits of this method.
+std::size_t count_acute_corners(const SeamSetting& setting, const SeamMarks& seam);
 
 /// Lets junctions slide along one of their seams: the tip goes to the patch beyond the other seam,
 /// as little of it as makes the corner blunt, where both patches stay developable disks and no

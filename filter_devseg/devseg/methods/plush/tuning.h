@@ -81,13 +81,16 @@ struct Tuning {
     int patient_rounds = 15;   // after them, what is left is cut in halves
     int isoline_rounds = 4;    // of smoothing
 
+    // Shapes of pieces.
+    double outline_corners = 100.0;         // an outline is measured with about so many
+    double outline_notch = 60.0 * degrees;  // turning more into the piece is kept exactly
+
     // Removal.
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
     int most_passes = 2;      // over all segments
     double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
-    double small_patch = 0.1; // smaller ones are joined along narrow necks once seams are straight;
+    double small_patch = 0.1; // smaller ones are joined again once seams are straight;
                               // a fifth of it on the model, and a tenth with darts
-    double narrow_neck = 0.15; // of the root of the smaller patch
     int tooth_rounds = 12;     // of taking teeth away
     int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
     double path_worth = 0.97;  // of its cost: what a new path must save
@@ -111,9 +114,9 @@ struct Tuning {
     double own_margin = 0.95;
     double own_strain = 0.9;
     double tighter = 0.88;
-    int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
+    double least_share = 0.3;   // cuts that less does not ask for help little
+    int second_thoughts = 3;    // rounds of cutting on the working surface what fails on the model
     int most_cuts = 4;          // that mend a patch
-    double longest_darts = 1.5; // over the border of a remnant that goes: an island is worse
 
     // Thin tips. Shares of the root of the surface.
     double thin = 0.03;          // tongues that are narrower go

@@ -1,0 +1,24 @@
+// What a network of seams costs whoever sews it: one number, which every move asks for.
+#pragma once
+
+#include <vector>
+
+#include "devseg/base/numbers.h"
+
+namespace devseg::plush {
+
+/// Prices, as lengths of seam. What has no unit counts in roots of the model's surface.
+struct SeamCost {
+    double per_patch = 0.1;   // a patch more to cut out, to turn and to place
+    double per_narrow = 3.0;  // each length by which a piece is too narrow somewhere
+    double per_corner = 0.1;  // an acute angle between two seams that meet
+    double wide_enough = 0.6; // a neck's width over the root of the smaller part beyond it
+};
+
+/// By how much a piece is too narrow, in the unit of its outline (a closed polygon, counterclockwise):
+/// the sum over all parts that hang on it by a neck, a tongue by its root, a lobe by its stalk, a
+/// hook by its bend, of what the neck lacks of `wide_enough`. Darts are notches of the outline, and
+/// narrow what they leave. Round, square and pointed pieces have none of it.
+double narrowness(const std::vector<Vec2>& outline, double wide_enough);
+
+} // namespace devseg::plush
