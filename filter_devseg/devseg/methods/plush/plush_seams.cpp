@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -40,9 +43,9 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
     if (!hard.empty())
         return {mesh, {}};
     if (plane)
-        if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
+        if (auto surface = mirrored_working_surface(mesh, *plane, Index(tune("MF",tuning.mirrored_faces)), progress))
             return std::move(*surface);
-    const Index most = tuning.mirrored_faces * 3 / 2;
+    const Index most = Index(tune("MF",tuning.mirrored_faces)) * 3 / 2;
     if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
     return plain_working_surface(mesh, most, progress);
@@ -102,7 +105,8 @@ PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
     if (options.max_strain > 0.0) {
         const std::vector<double> cost =
             natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
-        return {cost, cost};
+        return {cost, natural_lengths(evidence.surface.mesh, evidence.weights.stray,
+                                      tune("NS", tuning.natural_straight))};
     }
     const std::vector<double>& weight = evidence.weights.weight;
     std::vector<double> straight = edge_lengths(evidence.surface.mesh);
@@ -120,14 +124,13 @@ std::vector<double> transfer_factors(const Evidence& evidence, const PlushOption
     return factors;
 }
 
-// Extrema in the open part; those on the mirror image are left to it.
-std::vector<Index> limb_tips(const Evidence& evidence, const OpenPart& open) {
+// Extrema; those on the mirror image are left to it.
+std::vector<Index> limb_tips(const Evidence& evidence) {
     const WorkingSurface& surface = evidence.surface;
     const Mesh& mesh = surface.mesh;
     std::vector<std::uint8_t> is_left_out(mesh.points.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
-        if (!open.is_open(face_of(h)) ||
-            (surface.is_symmetric() && surface.image[h] < h && !surface.starts_on_plane(h)))
+        if (surface.is_symmetric() && surface.image[h] < h && !surface.starts_on_plane(h))
             is_left_out[mesh.origin(h)] = 1;
     std::vector<Index> tips = evidence.extrema;
     tips.erase(
@@ -143,8 +146,7 @@ void mark_plane(const WorkingSurface& surface, SeamMarks& seam) {
 }
 
 // Patches without teeth, the same on both sides; seams inside patches go.
-void clean_patches(const WorkingSurface& surface, const OpenPart& open, const SeamMarks& hard,
-                   SeamMarks& seam) {
+void clean_patches(const WorkingSurface& surface, const SeamMarks& hard, SeamMarks& seam) {
     const Mesh& mesh = surface.mesh;
     mirror_marks(surface, seam);
     std::vector<Index> label =
@@ -152,19 +154,19 @@ void clean_patches(const WorkingSurface& surface, const OpenPart& open, const Se
     remove_teeth(mesh, label);
     seam = atlas::make_chart_map(mesh, label, {}, false).seam;
     for (const HalfEdge h : mesh.all_half_edges())
-        if (!hard.empty() && (hard[h] != 0 || !open.is_inside(mesh, h)))
-            seam[h] = hard[h];
+        if (is_marked(hard, h))
+            seam[h] = 1;
     mark_plane(surface, seam);
     mirror_marks(surface, seam);
 }
 
 // Seams along the plane, around limbs and between extrema.
-void lay_candidates(Evidence& evidence, const OpenPart& open, const SeamMarks& hard,
-                    PlushSeams& result, SeamMarks& seam, Progress& progress) {
+void lay_candidates(Evidence& evidence, const SeamMarks& hard, PlushSeams& result,
+                    SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = evidence.surface.mesh;
     mark_plane(evidence.surface, seam);
     const std::vector<Limb> limbs =
-        find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence, open), progress);
+        find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence), progress);
     result.limbs = std::max(result.limbs, static_cast<Index>(limbs.size()));
     for (const Limb& limb : limbs)
         for (const HalfEdge h : limb_border(mesh, limb)) {
@@ -174,7 +176,7 @@ void lay_candidates(Evidence& evidence, const OpenPart& open, const SeamMarks& h
     mirror_marks(evidence.surface, evidence.limb_borders);
     add_structural_seams(mesh, evidence.graph, evidence.weights.weight, evidence.extrema, seam,
                          progress);
-    clean_patches(evidence.surface, open, hard, seam);
+    clean_patches(evidence.surface, hard, seam);
 }
 
 // One pass over the seams of a surface; returns how many trials it took.
@@ -188,7 +190,9 @@ SeamMarks run(const std::vector<Pass>& passes, SeamMarks seam, PlushSeams& resul
               Progress& progress) {
     for (const Pass& pass : passes) {
         auto part = progress.part(pass.name, pass.share);
+        const auto t0 = clock();
         result.trials += pass.run(seam, part);
+        if (getenv("PLUSHDBG")) fprintf(stderr, "%s %.1f s\n", pass.name, double(clock() - t0) / CLOCKS_PER_SEC);
     }
     return seam;
 }
@@ -198,8 +202,8 @@ judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_
     return {share * options.max_area_change, share * options.max_strain, is_search};
 }
 
-// Seams of the open part. `hard` has all seams that are not inside of it; or is empty.
-SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
+// `share`: of the limits, that the patches keep.
+SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
                  const PlushOptions& options, PlushSeams& result, Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
@@ -218,12 +222,12 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
     const std::vector<Pass> passes{
         {"laying seams", 0.04,
          [&](SeamMarks& seam, Progress& part) {
-             lay_candidates(evidence, open, hard, result, seam, part);
+             lay_candidates(evidence, hard, result, seam, part);
              return 0;
          }},
         {"cutting patches", 0.03,
          [&](SeamMarks& seam, Progress& part) {
-             add_local_seams(setting, open.faces, seam, part);
+             add_local_seams(setting, {}, seam, part);
              result.candidates +=
                  static_cast<Index>(find_segments(surface.mesh, seam, hard).size());
              return 0;
@@ -249,14 +253,11 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
          [&](auto& seam, auto& part) { return blunt_acute_corners(setting, seam, part); }},
         {"shortening darts", 0.05,
          [&](auto& seam, auto& part) { return shorten_darts(setting, seam, part); }}};
-    SeamMarks seam = open.seam;
-    seam.resize(surface.mesh.twin.size(), 0);
-    return run(passes, std::move(seam), result, progress);
+    return run(passes, SeamMarks(surface.mesh.twin.size(), 0), result, progress);
 }
 
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
-// not developable on it and cannot be mended, seams are decided again: with a smaller bound on the
-// working surface, and in the end on the model itself.
+// not developable on the model, they get further cuts on the working surface, in pairs.
 SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     auto weighing = progress.part("finding the skeleton", 0.02);
@@ -265,11 +266,11 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
-    double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
+    double share = by_strain  ? (is_model ? tune("OS",tuning.own_strain) : tune("FS",tuning.far_strain))
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
     auto deciding = progress.part(0.5);
-    SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
+    SeamMarks seam = decide(working, {}, share, options, result, deciding);
     // The two halves of a model stay alike as long as what the model needs is decided on both.
     const judge::ClothLimits limits = limits_of(options, 1.0, false);
     PatchTester on_itself(model, limits);
@@ -279,26 +280,16 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
         part = failing_part(model.mesh,
+                            absorb_specks(model.mesh, 
                             transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                           transfer_factors(on_model, options), transferring),
+                                           transfer_factors(on_model, options), transferring)),
                             on_itself, transferring);
-        if (!part.has_open_faces() || round == tuning.second_thoughts)
+        if (getenv("PLUSHDBG")) fprintf(stderr, "round %d share %.2f open %.3f  at %.1f s\n", round, share, double(std::count(part.faces.begin(),part.faces.end(),1))/double(part.faces.size()), double(clock()) / CLOCKS_PER_SEC);
+        if (!part.has_open_faces() || round == int(tune("ST",tuning.second_thoughts)))
             break;
-        const OpenPart same = same_part(surface, seam, model.mesh, part);
-        do
-            share *= tuning.tighter;
-        while (share > tuning.least_share &&
-               !mend_part(surface, working.graph, cost, same, limits_of(options, share, true), seam,
-                          transferring));
-    }
-    auto mending = progress.part("mending patches", 0.5 * progress.left());
-    part = mend_patches(model.mesh, on_model.graph,
-                        natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                        std::move(part.seam), limits, mending);
-    if (part.has_open_faces()) {
-        auto deciding_on_model = progress.part(progress.left());
-        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
-                           deciding_on_model);
+        share *= tuning.tighter;
+        mend_part(surface, working.graph, cost, same_part(surface, seam, model.mesh, part),
+                  limits_of(options, share, true), seam, transferring);
     }
     return std::move(part.seam);
 }
@@ -335,6 +326,7 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress)
             .weight;
+    // Where seams look natural is not known exactly enough here.
     OpenPart part = mend_patches(mesh, graph, weight, std::move(seam), tester.limits(), progress);
     result.all_developable =
         add_local_seams({surface, graph, {}, weight, tester, tester, weight, weight},
@@ -387,7 +379,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     auto deciding = progress.part(0.8);
     SeamMarks seam;
     if (!hard.empty()) {
-        seam = decide(working, {}, hard, 1.0, options, result, deciding);
+        seam = decide(working, hard, 1.0, options, result, deciding);
     } else {
         seam = decide_for_any(working, framed, options, result, deciding);
     }

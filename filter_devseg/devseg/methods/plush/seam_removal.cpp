@@ -292,7 +292,7 @@ double jitter(const Network& network, std::size_t i, int random_seed) {
 double unnatural_first(const Network& network, std::size_t i, const RemovalOptions& options) {
     return jitter(network, i, options.random_seed) *
            std::pow(network.segments[i].weight, options.weight_power) *
-           std::pow(network.size(i), -options.size_power);
+           network.segments[i].length * std::pow(network.size(i), -options.size_power);
 }
 
 } // namespace

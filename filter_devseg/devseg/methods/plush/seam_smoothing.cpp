@@ -30,8 +30,9 @@ public:
     }
 
     void run() {
-        // Loops have other ends the second time.
+        // Anywhere between the two patches first. Loops have other ends the second time.
         for (const int turn : {0, 1}) {
+            rings_ = turn == 0 ? mesh_.face_count() : tuning.corridor_rings;
             const std::vector<Line> lines = find_lines(turn);
             for (std::size_t i = 0; i < lines.size(); ++i) {
                 progress_.update(0.5 * turn +
@@ -100,7 +101,7 @@ private:
                 }
         const std::uint8_t side =
             s_.surface.is_symmetric() && s_.surface.image[line.front()] < line.front();
-        for (int k = 0; k < tuning.corridor_rings; ++k) {
+        for (int k = 0; k < rings_ && !ring.empty(); ++k) {
             std::vector<Index> next;
             for (const Vertex v : ring)
                 for (Index i = s_.graph.begin[v]; i < s_.graph.begin[at(v) + 1]; ++i) {
@@ -174,6 +175,7 @@ private:
     const Mesh& mesh_;
     SeamMarks& seam_;
     Progress& progress_;
+    Index rings_ = 0;                    // of vertices beside a segment, for its path
     std::vector<double> cost_;           // 3 #F
     std::vector<std::uint8_t> side_;     // #V: 1 on the mirror image
     std::vector<std::uint8_t> on_plane_; // #V

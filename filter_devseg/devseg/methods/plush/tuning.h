@@ -76,6 +76,7 @@ struct Tuning {
     double through_flat = 10.0; // factor of its edges
 
     // Local seams.
+    double least_patch = 3e-3; // of the surface: nobody sews smaller ones
     double fragment = 4e-4;    // smaller parts go to a neighbour
     double least_split = 0.12; // of the patch: smaller parts are not cut off by isolines
     int patient_rounds = 15;   // after them, what is left is cut in halves
@@ -116,7 +117,7 @@ struct Tuning {
     double tighter = 0.88;
     double least_share = 0.3;   // cuts that less does not ask for help little
     int second_thoughts = 3;    // rounds of cutting on the working surface what fails on the model
-    int most_cuts = 4;          // that mend a patch
+    int most_cuts = 8;          // that mend a patch
 
     // Thin tips. Shares of the root of the surface.
     double thin = 0.03;          // tongues that are narrower go
