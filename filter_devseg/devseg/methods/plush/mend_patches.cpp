@@ -109,7 +109,23 @@ private:
     const SeamCost prices_;
 };
 
-// Darts that ended on a border that is open now, from one side or the other.
+// The patches up to a share of the surface, the smallest first.
+std::vector<std::pair<double, std::vector<Index>>>
+find_remnants(const Mesh& mesh, const SeamMarks& seam, double most_area) {
+    std::vector<std::pair<double, std::vector<Index>>> found;
+    for (std::vector<Index>& patch : patches_of(mesh, seam)) {
+        double area = 0.0;
+        for (const Face f : patch)
+            area += mesh.face_areas[f];
+        if (area <= most_area * mesh.total_area)
+            found.emplace_back(area, std::move(patch));
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+} // namespace
+
 void open_what_floats(const Mesh& mesh, const SeamMarks& hard, const std::vector<Index>& faces,
                       SeamMarks& marks) {
     std::vector<std::uint8_t> inside(mesh.faces.size(), 0);
@@ -136,23 +152,6 @@ void open_what_floats(const Mesh& mesh, const SeamMarks& hard, const std::vector
             mark(mesh, h, 0, marks);
 }
 
-// The patches up to a share of the surface, the smallest first.
-std::vector<std::pair<double, std::vector<Index>>>
-find_remnants(const Mesh& mesh, const SeamMarks& seam, double most_area) {
-    std::vector<std::pair<double, std::vector<Index>>> found;
-    for (std::vector<Index>& patch : patches_of(mesh, seam)) {
-        double area = 0.0;
-        for (const Face f : patch)
-            area += mesh.face_areas[f];
-        if (area <= most_area * mesh.total_area)
-            found.emplace_back(area, std::move(patch));
-    }
-    std::sort(found.begin(), found.end());
-    return found;
-}
-
-// The common borders of a patch with its neighbours, the longest first, without those that must
-// stay.
 std::vector<std::vector<Index>> common_borders(const Mesh& mesh, const SeamMarks& seam,
                                                const SeamMarks& hard,
                                                const std::vector<Index>& patch) {
@@ -171,8 +170,6 @@ std::vector<std::vector<Index>> common_borders(const Mesh& mesh, const SeamMarks
     }
     return borders;
 }
-
-} // namespace
 
 CutThrough cut_through(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
                        const atlas::ChartSurface& surface, Vertex tip, const Progress& progress) {
@@ -318,7 +315,7 @@ void mend_part(const WorkingSurface& surface, const VertexGraph& graph,
 
 SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam) {
     const std::vector<Index> before = find_patches(mesh, seam).label;
-    const std::vector<Index> after = atlas::absorb_fragments(mesh, before, tuning.least_patch);
+    const std::vector<Index> after = atlas::absorb_fragments(mesh, before, tuning.fragment);
     std::vector<Index> joined;
     for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.twin[h] >= 0 && before[face_of(h)] != before[face_of(mesh.twin[h])] &&

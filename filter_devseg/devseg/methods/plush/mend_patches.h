@@ -31,6 +31,16 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
                                              const judge::ClothLimits& limits,
                                              const Progress& progress);
 
+/// Removes darts of the patch that ended on a border that is open now, from one side or the other.
+void open_what_floats(const Mesh& mesh, const SeamMarks& hard, const std::vector<Index>& faces,
+                      SeamMarks& marks);
+
+/// The common borders of a patch with its neighbours, the longest first, without those that must
+/// stay.
+std::vector<std::vector<Index>> common_borders(const Mesh& mesh, const SeamMarks& seam,
+                                               const SeamMarks& hard,
+                                               const std::vector<Index>& patch);
+
 /// A part of a surface where seams are still to be decided.
 struct OpenPart {
     std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
@@ -54,7 +64,7 @@ void mend_part(const WorkingSurface& surface, const VertexGraph& graph,
                const std::vector<double>& cost, const OpenPart& part,
                const judge::ClothLimits& limits, SeamMarks& seam, const Progress& progress);
 
-/// Patches that nobody would sew, smaller than `tuning.least_patch`, go to their neighbours.
+/// Specks between seams that run side by side, smaller than `tuning.fragment`, go to neighbours.
 SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam);
 
 /// The patches of the working surface most of which lie on an open part of the model, and their

@@ -215,10 +215,6 @@ SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
                               costs.cut, costs.straight, options.max_iterations};
     RemovalOptions any_patch;
     any_patch.random_seed = options.random_seed;
-    RemovalOptions small_patches = any_patch;
-    small_patches.most_area = tuning.small_patch;
-    const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
-                                  tuning.least_thin * mean_edge_length(surface.mesh));
     const std::vector<Pass> passes{
         {"laying seams", 0.04,
          [&](SeamMarks& seam, Progress& part) {
@@ -241,19 +237,40 @@ SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
              straighten_seams(setting, seam, part);
              return 0;
          }},
-        {"joining patches", 0.03,
-         [&](auto& seam, auto& part) { return join_patches(setting, small_patches, seam, part); }},
-        {"giving tongues away", 0.05,
-         [&](auto& seam, auto& part) { return give_tongues_away(setting, width, seam, part); }},
+        {"cutting necks", 0.03,
+         [&](auto& seam, auto& part) { return cut_necks(setting, seam, part); }},
+        {"joining patches", 0.05,
+         [&](auto& seam, auto& part) { return join_patches(setting, any_patch, seam, part); }},
         {"absorbing remnants", 0.05,
          [&](auto& seam, auto& part) {
              return absorb_remnants(setting, costs.cut, tuning.small_patch, seam, part);
          }},
         {"blunting corners", 0.05,
          [&](auto& seam, auto& part) { return blunt_acute_corners(setting, seam, part); }},
+        {"cutting necks", 0.02,
+         [&](auto& seam, auto& part) { return cut_necks(setting, seam, part); }},
         {"shortening darts", 0.05,
          [&](auto& seam, auto& part) { return shorten_darts(setting, seam, part); }}};
     return run(passes, SeamMarks(surface.mesh.twin.size(), 0), result, progress);
+}
+
+// What still fails on the model, and what became too small or too acute on the way to it, is mended
+// there.
+SeamMarks without_remnants(const Evidence& on_model, SeamMarks seam, const PlushOptions& options,
+                           PlushSeams& result, Progress& progress) {
+    const WorkingSurface& surface = on_model.surface;
+    const std::vector<double> cost =
+        natural_lengths(surface.mesh, on_model.weights.stray, tuning.natural_dart);
+    PatchTester tester(surface, limits_of(options, 1.0, false));
+    const SeamMarks hard;
+    const SeamSetting setting{surface, on_model.graph, hard, on_model.weights.weight, tester,
+                              tester,  cost,           cost, options.max_iterations};
+    seam = mend_patches(surface.mesh, on_model.graph, cost, std::move(seam), tester.limits(),
+                        progress)
+               .seam;
+    result.trials += absorb_remnants(setting, cost, tuning.small_patch / 5.0, seam, progress);
+    result.trials += blunt_acute_corners(setting, seam, progress);
+    return seam;
 }
 
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
@@ -291,7 +308,8 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
         mend_part(surface, working.graph, cost, same_part(surface, seam, model.mesh, part),
                   limits_of(options, share, true), seam, transferring);
     }
-    return std::move(part.seam);
+    auto cleaning = progress.part("absorbing remnants", progress.left());
+    return without_remnants(on_model, std::move(part.seam), options, result, cleaning);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are

@@ -13,26 +13,19 @@ namespace devseg::plush {
 
 namespace {
 
-// A part of a piece that a straight line parts from the rest: between two corners of its outline.
-struct Part {
-    double lacking = 0.0;
-    std::size_t first = 0;
-    std::size_t last = 0;
-};
-
 // The outline with fewer corners: steps of one length, and where it turns sharply into the piece,
 // as at the tips of darts.
-std::vector<Vec2> simplified(const std::vector<Vec2>& outline) {
+std::vector<std::size_t> simplified(const std::vector<Vec2>& outline) {
     const std::size_t count = outline.size();
     const double step = plane::perimeter(outline) / tuning.outline_corners;
-    std::vector<Vec2> corners;
+    std::vector<std::size_t> corners;
     double before = infinite;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec2& p = outline[i];
         const Vec2 in = p - outline[(i + count - 1) % count];
         const Vec2 out = outline[(i + 1) % count] - p;
         if (before >= step || plane::signed_angle(in, out) < -tuning.outline_notch) {
-            corners.push_back(p);
+            corners.push_back(i);
             before = 0.0;
         }
         before += out.norm();
@@ -48,7 +41,7 @@ public:
                              0.5 * plane::cross(corners_[i], corners_[(i + 1) % corners_.size()]));
     }
 
-    double area() const { return swept_.back(); }
+    double area() const { return std::max(0.0, swept_.back()); }
     // Of the part from one corner on to a later one.
     double area_between(std::size_t first, std::size_t last) const {
         return swept_[last] - swept_[first] + 0.5 * plane::cross(corners_[last], corners_[first]);
@@ -56,8 +49,8 @@ public:
 
     // The parts on narrow necks, those that lack most first. A line may leave the piece: is_inside
     // tells.
-    std::vector<Part> narrow_parts(double wide_enough) const {
-        std::vector<Part> parts;
+    std::vector<Neck> narrow_parts(double wide_enough) const {
+        std::vector<Neck> parts;
         for (std::size_t last = 2; last < corners_.size(); ++last)
             for (std::size_t first = 0; first + 1 < last; ++first) {
                 const double part = area_between(first, last);
@@ -67,14 +60,14 @@ public:
                 if (lacking > tuning.tiny)
                     parts.push_back({lacking, first, last});
             }
-        std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+        std::sort(parts.begin(), parts.end(), [](const Neck& a, const Neck& b) {
             return std::make_tuple(-a.lacking, a.first, a.last) <
                    std::make_tuple(-b.lacking, b.first, b.last);
         });
         return parts;
     }
 
-    bool is_inside(const Part& part) const {
+    bool is_inside(const Neck& part) const {
         const Vec2& a = corners_[part.first];
         const Vec2& b = corners_[part.last];
         for (std::size_t i = 0; i < corners_.size(); ++i)
@@ -84,13 +77,13 @@ public:
     }
 
     // Whether the corner belongs to the smaller part, its ends included.
-    bool holds(const Part& part, std::size_t corner) const {
+    bool holds(const Neck& part, std::size_t corner) const {
         const bool is_inner = 2.0 * area_between(part.first, part.last) <= area();
         return is_inner ? corner >= part.first && corner <= part.last
                         : corner <= part.first || corner >= part.last;
     }
 
-    bool holds_any(const Part& part, const std::vector<std::uint8_t>& marks) const {
+    bool holds_any(const Neck& part, const std::vector<std::uint8_t>& marks) const {
         for (std::size_t i = 0; i < corners_.size(); ++i)
             if (marks[i] != 0 && holds(part, i))
                 return true;
@@ -98,7 +91,7 @@ public:
     }
 
     // The corners of the smaller part, and those beside its neck, within the width that it lacks.
-    void take(const Part& part, std::vector<std::uint8_t>& marks) const {
+    void take(const Neck& part, std::vector<std::uint8_t>& marks) const {
         const Vec2& a = corners_[part.first];
         const Vec2& b = corners_[part.last];
         const double near = part.lacking + (a - b).norm();
@@ -116,19 +109,28 @@ private:
 
 } // namespace
 
-double narrowness(const std::vector<Vec2>& outline, double wide_enough) {
-    const Outline piece(simplified(outline));
-    if (!(piece.area() > 0.0))
-        return 0.0;
-    double sum = 0.0;
+std::vector<Neck> find_necks(const std::vector<Vec2>& outline, double wide_enough) {
+    const std::vector<std::size_t> kept = simplified(outline);
+    std::vector<Vec2> corners;
+    for (const std::size_t i : kept)
+        corners.push_back(outline[i]);
+    const Outline piece(std::move(corners));
+    std::vector<Neck> necks;
     std::vector<std::uint8_t> taken(piece.size(), 0); // beyond a neck that counts already
-    for (const Part& part : piece.narrow_parts(wide_enough)) {
+    for (const Neck& part : piece.narrow_parts(wide_enough)) {
         if (taken[part.first] != 0 || taken[part.last] != 0 || piece.holds_any(part, taken) ||
             !piece.is_inside(part))
             continue;
-        sum += part.lacking;
+        necks.push_back({part.lacking, kept[part.first], kept[part.last]});
         piece.take(part, taken);
     }
+    return necks;
+}
+
+double narrowness(const std::vector<Vec2>& outline, double wide_enough) {
+    double sum = 0.0;
+    for (const Neck& neck : find_necks(outline, wide_enough))
+        sum += neck.lacking;
     return sum;
 }
 

@@ -18,10 +18,21 @@ struct SeamCost {
     double wide_enough = tune("WE", 0.7); // a neck's width over the root of the smaller part beyond it
 };
 
-/// By how much a piece is too narrow, in the unit of its outline (a closed polygon, counterclockwise):
-/// the sum over all parts that hang on it by a neck, a tongue by its root, a lobe by its stalk, a
-/// hook by its bend, of what the neck lacks of `wide_enough`. Darts are notches of the outline, and
-/// narrow what they leave. Round, square and pointed pieces have none of it.
+/// A narrow place of a piece: what hangs on it by less than it should, a tongue by its root, a lobe
+/// by its stalk, a hook by its bend. Between two corners of the outline.
+struct Neck {
+    double lacking = 0.0; // width, in the unit of the outline
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+
+/// The necks of an outline (a closed polygon, counterclockwise), those that lack most first, and no
+/// other one beyond each: where a straight line inside the piece is shorter than `wide_enough` times
+/// the root of the smaller area on either side. Darts are notches of the outline, and narrow what
+/// they leave. Round and square pieces, and points of more than 12 degrees, have none.
+std::vector<Neck> find_necks(const std::vector<Vec2>& outline, double wide_enough);
+
+/// What they lack together.
 double narrowness(const std::vector<Vec2>& outline, double wide_enough);
 
 } // namespace devseg::plush

@@ -76,7 +76,6 @@ struct Tuning {
     double through_flat = 10.0; // factor of its edges
 
     // Local seams.
-    double least_patch = 3e-3; // of the surface: nobody sews smaller ones
     double fragment = 4e-4;    // smaller parts go to a neighbour
     double least_split = 0.12; // of the patch: smaller parts are not cut off by isolines
     int patient_rounds = 15;   // after them, what is left is cut in halves
@@ -90,8 +89,8 @@ struct Tuning {
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
     int most_passes = 2;      // over all segments
     double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
-    double small_patch = 0.1; // smaller ones are joined again once seams are straight;
-                              // a fifth of it on the model, and a tenth with darts
+    double small_patch = 0.1; // smaller ones are joined to others with darts in their
+                              // place; a fifth of it on the model
     int tooth_rounds = 12;     // of taking teeth away
     int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
     double path_worth = 0.97;  // of its cost: what a new path must save
@@ -111,19 +110,15 @@ struct Tuning {
     // Of the bound: what is used of it on another surface than the model, on the model before seams
     // are smoothed, by areas and by strain, and in each round of deciding again.
     double far_margin = 0.75;
-    double far_strain = 0.65;
+    double far_strain = 0.8;
     double own_margin = 0.95;
     double own_strain = 0.9;
     double tighter = 0.88;
     double least_share = 0.3;   // cuts that less does not ask for help little
-    int second_thoughts = 3;    // rounds of cutting on the working surface what fails on the model
+    int second_thoughts = 1;    // rounds of cutting on the working surface what fails on the model
     int most_cuts = 8;          // that mend a patch
 
-    // Thin tips. Shares of the root of the surface.
-    double thin = 0.03;          // tongues that are narrower go
-    double least_thin = 2.4;     // mean edges: at least so narrow
-    double tongue_slack = 1.3;   // paths over faces are longer than straight lines
-    double tongue_reach = 0.8;   // of half the width: how far a tongue sticks out at least
+    // Acute corners. Shares of the root of the surface.
     double corner_reach = 0.033; // of seams beside a corner
     double acute = 40.0 * degrees;
     // Over the reach: how far along both seams a junction may slide.
