@@ -201,8 +201,7 @@ private:
             return false;
         ++tried_;
         progress_.check();
-        const auto patches =
-            patches_beside(mesh_, marks, with_image(s_.surface, {opened, closed}));
+        const auto patches = patches_beside(mesh_, marks, with_image(s_.surface, {opened, closed}));
         if ((may_mend && !mend(patches, marks)) ||
             !(saved_cost(s_, seam_, marks, s_.tester, progress_) > 0.0))
             return false;

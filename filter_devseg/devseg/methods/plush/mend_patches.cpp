@@ -87,10 +87,11 @@ private:
         for (std::vector<Index>& part : patches_of(mesh_, marks, patch)) {
             const judge::ClothTrial trial =
                 judge::try_cloth(mesh_, part, marks, limits_, false, progress_);
-            cut.price += prices_.per_patch +
-                         (trial.outline.empty() ? 0.0
-                                                : prices_.per_narrow * narrowness(trial.outline,
-                                                                        prices_.wide_enough));
+            cut.price +=
+                prices_.per_patch +
+                (trial.outline.empty()
+                     ? 0.0
+                     : prices_.per_narrow * narrowness(trial.outline, prices_.wide_enough));
             if (!trial.accepted) {
                 cut.price += prices_.per_failure;
                 cut.failing.push_back(std::move(part));
@@ -271,13 +272,6 @@ OpenPart failing_part(const Mesh& mesh, SeamMarks seam, PatchTester& tester, Pro
     parallel_for(
         static_cast<int>(patches.size()),
         [&](int p) {
-            if (getenv("PLUSHDBG")) {
-                const auto t = judge::try_cloth(mesh, patches[p], part.seam, tester.limits(), false, progress);
-                if (!t.accepted) {
-                    double area = 0; for (auto f : patches[p]) area += mesh.face_areas[f];
-                    fprintf(stderr, "fails: area %.4f sound %d map %d strain %.3f worst %.2f mean %.3f\n", area / mesh.total_area, t.is_sound, t.has_map, t.strain.most_of_it, t.strain.worst, t.strain.mean);
-                }
-            }
             if (!tester.accepts(patches[p], part.seam, progress))
                 for (const Face f : patches[p])
                     part.faces[f] = 1;

@@ -19,7 +19,6 @@ struct CutThrough {
 CutThrough cut_through(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
                        const atlas::ChartSurface& surface, Vertex tip, const Progress& progress);
 
-
 /// Cuts that make a patch keep the limits: half-edges, none where it keeps them already. While its
 /// map lies on itself, it is cut in two between the sheets; else it gets darts, each from the
 /// vertex that a conformal map shrinks most, where curvature gathers, to the nearest seam, so that

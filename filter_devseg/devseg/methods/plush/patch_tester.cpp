@@ -27,9 +27,8 @@ Verdict PatchTester::judge(const std::vector<Index>& faces, const std::vector<st
     }
     const judge::ClothTrial trial =
         judge::try_cloth(surface_.mesh, patch, seam, limits_, false, progress);
-    const Verdict verdict{trial.accepted, trial.outline.empty()
-                                              ? 0.0
-                                              : narrowness(trial.outline, cost_.wide_enough)};
+    const Verdict verdict{
+        trial.accepted, trial.outline.empty() ? 0.0 : narrowness(trial.outline, cost_.wide_enough)};
     const std::lock_guard<std::mutex> lock(mutex_);
     known_.emplace(std::move(key), verdict);
     return verdict;

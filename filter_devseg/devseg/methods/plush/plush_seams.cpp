@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -43,9 +40,9 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
     if (!hard.empty())
         return {mesh, {}};
     if (plane)
-        if (auto surface = mirrored_working_surface(mesh, *plane, Index(tune("MF",tuning.mirrored_faces)), progress))
+        if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
             return std::move(*surface);
-    const Index most = Index(tune("MF",tuning.mirrored_faces)) * 3 / 2;
+    const Index most = tuning.mirrored_faces * 3 / 2;
     if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
     return plain_working_surface(mesh, most, progress);
@@ -106,7 +103,7 @@ PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
         const std::vector<double> cost =
             natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
         return {cost, natural_lengths(evidence.surface.mesh, evidence.weights.stray,
-                                      tune("NS", tuning.natural_straight))};
+                                      tuning.natural_straight)};
     }
     const std::vector<double>& weight = evidence.weights.weight;
     std::vector<double> straight = edge_lengths(evidence.surface.mesh);
@@ -161,8 +158,8 @@ void clean_patches(const WorkingSurface& surface, const SeamMarks& hard, SeamMar
 }
 
 // Seams along the plane, around limbs and between extrema.
-void lay_candidates(Evidence& evidence, const SeamMarks& hard, PlushSeams& result,
-                    SeamMarks& seam, Progress& progress) {
+void lay_candidates(Evidence& evidence, const SeamMarks& hard, PlushSeams& result, SeamMarks& seam,
+                    Progress& progress) {
     const Mesh& mesh = evidence.surface.mesh;
     mark_plane(evidence.surface, seam);
     const std::vector<Limb> limbs =
@@ -190,9 +187,7 @@ SeamMarks run(const std::vector<Pass>& passes, SeamMarks seam, PlushSeams& resul
               Progress& progress) {
     for (const Pass& pass : passes) {
         auto part = progress.part(pass.name, pass.share);
-        const auto t0 = clock();
         result.trials += pass.run(seam, part);
-        if (getenv("PLUSHDBG")) fprintf(stderr, "%s %.1f s\n", pass.name, double(clock() - t0) / CLOCKS_PER_SEC);
     }
     return seam;
 }
@@ -265,9 +260,9 @@ SeamMarks without_remnants(const Evidence& on_model, SeamMarks seam, const Plush
     const SeamMarks hard;
     const SeamSetting setting{surface, on_model.graph, hard, on_model.weights.weight, tester,
                               tester,  cost,           cost, options.max_iterations};
-    seam = mend_patches(surface.mesh, on_model.graph, cost, std::move(seam), tester.limits(),
-                        progress)
-               .seam;
+    seam =
+        mend_patches(surface.mesh, on_model.graph, cost, std::move(seam), tester.limits(), progress)
+            .seam;
     result.trials += absorb_remnants(setting, cost, tuning.small_patch / 5.0, seam, progress);
     result.trials += blunt_acute_corners(setting, seam, progress);
     return seam;
@@ -283,7 +278,7 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
-    double share = by_strain  ? (is_model ? tune("OS",tuning.own_strain) : tune("FS",tuning.far_strain))
+    double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
     auto deciding = progress.part(0.5);
@@ -296,13 +291,13 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part = failing_part(model.mesh,
-                            absorb_specks(model.mesh, 
-                            transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                           transfer_factors(on_model, options), transferring)),
-                            on_itself, transferring);
-        if (getenv("PLUSHDBG")) fprintf(stderr, "round %d share %.2f open %.3f  at %.1f s\n", round, share, double(std::count(part.faces.begin(),part.faces.end(),1))/double(part.faces.size()), double(clock()) / CLOCKS_PER_SEC);
-        if (!part.has_open_faces() || round == int(tune("ST",tuning.second_thoughts)))
+        part = failing_part(
+            model.mesh,
+            absorb_specks(model.mesh,
+                          transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                         transfer_factors(on_model, options), transferring)),
+            on_itself, transferring);
+        if (!part.has_open_faces() || round == tuning.second_thoughts)
             break;
         share *= tuning.tighter;
         mend_part(surface, working.graph, cost, same_part(surface, seam, model.mesh, part),

@@ -3,19 +3,17 @@
 
 #include <vector>
 
-#include <cstdlib>
 #include "devseg/base/numbers.h"
 
 namespace devseg::plush {
 
-inline double tune(const char* n, double d) { const char* v = getenv(n); return v ? atof(v) : d; }
 /// Prices, as lengths of seam. What has no unit counts in roots of the model's surface.
 struct SeamCost {
-    double per_patch = tune("PP", 0.1);   // a patch more to cut out, to turn and to place
-    double per_narrow = tune("PN", 6.0);  // each length by which a piece is too narrow somewhere
-    double per_corner = tune("PC", 0.1);  // an acute angle between two seams that meet
-    double per_failure = tune("PF", 0.3); // a patch that must be cut again
-    double wide_enough = tune("WE", 0.7); // a neck's width over the root of the smaller part beyond it
+    double per_patch = 0.1;    // a patch more to cut out, to turn and to place
+    double per_narrow = 4.0;   // each length by which a piece is too narrow somewhere
+    double per_corner = 0.1;   // an acute angle between two seams that meet
+    double per_failure = 0.3;  // a patch that must be cut again
+    double wide_enough = 0.65; // a neck's width over the root of the smaller part beyond it
 };
 
 /// A narrow place of a piece: what hangs on it by less than it should, a tongue by its root, a lobe
@@ -27,9 +25,9 @@ struct Neck {
 };
 
 /// The necks of an outline (a closed polygon, counterclockwise), those that lack most first, and no
-/// other one beyond each: where a straight line inside the piece is shorter than `wide_enough` times
-/// the root of the smaller area on either side. Darts are notches of the outline, and narrow what
-/// they leave. Round and square pieces, and points of more than 12 degrees, have none.
+/// other one beyond each: where a straight line inside the piece is shorter than `wide_enough`
+/// times the root of the smaller area on either side. Darts are notches of the outline, and narrow
+/// what they leave. Round and square pieces, and points of more than 12 degrees, have none.
 std::vector<Neck> find_necks(const std::vector<Vec2>& outline, double wide_enough);
 
 /// What they lack together.

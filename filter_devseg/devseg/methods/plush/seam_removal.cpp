@@ -291,8 +291,8 @@ double jitter(const Network& network, std::size_t i, int random_seed) {
 // The least natural segments first, those of small patches before others.
 double unnatural_first(const Network& network, std::size_t i, const RemovalOptions& options) {
     return jitter(network, i, options.random_seed) *
-           std::pow(network.segments[i].weight, options.weight_power) *
-           network.segments[i].length * std::pow(network.size(i), -options.size_power);
+           std::pow(network.segments[i].weight, options.weight_power) * network.segments[i].length *
+           std::pow(network.size(i), -options.size_power);
 }
 
 } // namespace
@@ -313,9 +313,10 @@ Index join_patches(const SeamSetting& setting, const RemovalOptions& options, Se
             return std::vector<Window>{Window{}}; // nearly flat patches need no darts
         // A neck is no wider than the part of the seam that goes.
         const SeamCost& cost = setting.tester.cost();
-        const double least = (cost.per_narrow * cost.wide_enough *
-                                  std::sqrt(network.smaller_area(i)) - 2.0 * cost.per_patch) /
-                             (cost.per_narrow + 1.0) / network.segments[i].length;
+        const double least =
+            (cost.per_narrow * cost.wide_enough * std::sqrt(network.smaller_area(i)) -
+             2.0 * cost.per_patch) /
+            (cost.per_narrow + 1.0) / network.segments[i].length;
         std::vector<Window> result;
         for (const Window& w : tuning.join_windows)
             if (w.to - w.from >= least && (!network.is_crossing(i) || w.from == 1.0 - w.to))
@@ -323,10 +324,7 @@ Index join_patches(const SeamSetting& setting, const RemovalOptions& options, Se
         return result;
     };
     const Policy joins{
-        [&](const Network& network, std::size_t i) {
-            return network.smaller_area(i) <= options.most_area * network.mesh.total_area &&
-                   network.is_longest_between(i);
-        },
+        [](const Network& network, std::size_t i) { return network.is_longest_between(i); },
         [](const Network& network, std::size_t i) {
             const SeamSegment& segment = network.segments[i];
             return segment.length * segment.weight / std::max(network.size(i), tuning.tiny);

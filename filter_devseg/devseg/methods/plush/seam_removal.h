@@ -12,7 +12,6 @@ struct RemovalOptions {
     double size_power = 0.5;
     int random_seed = 0;        // other numbers than 0 change the order a little
     double most_together = 0.2; // of the surface: larger patches must pass the strict tester
-    double most_area = 1.0; // of joins: only patches up to this share of the surface are joined
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all

@@ -82,8 +82,8 @@ struct Tuning {
     int isoline_rounds = 4;    // of smoothing
 
     // Shapes of pieces.
-    double outline_corners = 100.0;         // an outline is measured with about so many
-    double outline_notch = 60.0 * degrees;  // turning more into the piece is kept exactly
+    double outline_corners = 100.0;        // an outline is measured with about so many
+    double outline_notch = 60.0 * degrees; // turning more into the piece is kept exactly
 
     // Removal.
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
@@ -91,9 +91,9 @@ struct Tuning {
     double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
     double small_patch = 0.1; // smaller ones are joined to others with darts in their
                               // place; a fifth of it on the model
-    int tooth_rounds = 12;     // of taking teeth away
-    int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
-    double path_worth = 0.97;  // of its cost: what a new path must save
+    int tooth_rounds = 12;    // of taking teeth away
+    int corridor_rings = 3;   // of vertices beside a segment: where it is made straight
+    double path_worth = 0.97; // of its cost: what a new path must save
     // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
     Window join_windows[15] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85}, {0.15, 0.85}, {0.35, 1.0},
                                {0.0, 0.65}, {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65},
@@ -114,9 +114,9 @@ struct Tuning {
     double own_margin = 0.95;
     double own_strain = 0.9;
     double tighter = 0.88;
-    double least_share = 0.3;   // cuts that less does not ask for help little
-    int second_thoughts = 1;    // rounds of cutting on the working surface what fails on the model
-    int most_cuts = 8;          // that mend a patch
+    double least_share = 0.3; // cuts that less does not ask for help little
+    int second_thoughts = 1;  // rounds of cutting on the working surface what fails on the model
+    int most_cuts = 8;        // that mend a patch
 
     // Acute corners. Shares of the root of the surface.
     double corner_reach = 0.033; // of seams beside a corner

@@ -32,9 +32,18 @@ TEST(Narrowness, IsNoneOfRoundSquareAndPointedPieces) {
 
 TEST(Narrowness, CountsNecksOnce) {
     // Two squares with a bridge between them.
-    const std::vector<Vec2> dumbbell =
-        dense({{0, 0}, {1, 0}, {1, 0.45}, {1.3, 0.45}, {1.3, 0}, {2.3, 0},
-               {2.3, 1}, {1.3, 1}, {1.3, 0.55}, {1, 0.55}, {1, 1}, {0, 1}});
+    const std::vector<Vec2> dumbbell = dense({{0, 0},
+                                              {1, 0},
+                                              {1, 0.45},
+                                              {1.3, 0.45},
+                                              {1.3, 0},
+                                              {2.3, 0},
+                                              {2.3, 1},
+                                              {1.3, 1},
+                                              {1.3, 0.55},
+                                              {1, 0.55},
+                                              {1, 1},
+                                              {0, 1}});
     const std::vector<Neck> necks = find_necks(dumbbell, 0.6);
     ASSERT_EQ(necks.size(), 1U);
     EXPECT_NEAR(necks[0].lacking, 0.6 - 0.1, 0.03);
