@@ -87,7 +87,8 @@ private:
                 continue; // the patch that it was cut from
             ways.push_back(marks);
             mark_both(s_.surface, border, 0, ways.back());
-            for (const Line& joined : patches_of(mesh_, ways.back(), {smaller.front()}))
+            for (const Line& joined :
+                 patches_beside(mesh_, ways.back(), with_image(s_.surface, {border})))
                 open_what_floats(mesh_, s_.hard, joined, ways.back());
         }
         return ways;
