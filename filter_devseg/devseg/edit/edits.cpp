@@ -21,6 +21,7 @@ namespace devseg::edit {
 
 using atlas::ChartMap;
 using judge::TrialMap;
+using judge::WholeEffort;
 
 namespace {
 
@@ -56,14 +57,14 @@ double worst_l2(const std::vector<TrialMap>& maps) {
     return worst;
 }
 
-// Of charts that may be cut apart; with a bound, of charts that must stay in one piece.
+// Of charts that may be cut apart; with an effort, of charts that are to stay in one piece.
 std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
-                              const std::vector<Index>& which, const double* most_l2,
+                              const std::vector<Index>& which, const WholeEffort* effort,
                               Progress& progress) {
     try {
         const std::vector<std::vector<Index>> faces = faces_of(charts, which);
-        return most_l2 != nullptr ? judge::whole_maps(mesh, faces, charts.seam, *most_l2, progress)
-                                  : judge::final_maps(mesh, faces, charts.seam, progress);
+        return effort != nullptr ? judge::whole_maps(mesh, faces, charts.seam, *effort, progress)
+                                 : judge::final_maps(mesh, faces, charts.seam, progress);
     } catch (const NumericalFailure& error) {
         refuse(std::string("the chart cannot be flattened: ") + error.what());
     }
@@ -71,7 +72,7 @@ std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
 
 // Cuts the charts open where they are no disks, flattens and measures them.
 std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
-                             const double* most_l2, Edit& edit, Progress& progress) {
+                             const WholeEffort* effort, Edit& edit, Progress& progress) {
     for (const std::vector<Index>& faces : faces_of(edit.charts, which)) {
         atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, edit.charts.seam);
         if (!surface.is_disk())
@@ -79,9 +80,10 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
                                &edit.cut_length);
     }
     auto judging = progress.part("flattening what has changed", progress.left());
-    std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, most_l2, judging);
+    std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, effort, judging);
     edit.changed = static_cast<Index>(which.size());
     edit.l2_stretch = worst_l2(maps);
+    edit.linf_stretch = 1.0;
     for (const TrialMap& map : maps)
         edit.linf_stretch = std::max(edit.linf_stretch, map.linf);
     return maps;
@@ -170,8 +172,8 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
             changed.push_back(edit.charts.chart[face_of(h)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    const double* most = bounds.force ? nullptr : &bounds.max_chart_l2_stretch;
-    check_joined(finish(mesh, changed, most, edit, progress), bounds);
+    const WholeEffort effort{bounds.max_chart_l2_stretch};
+    check_joined(finish(mesh, changed, bounds.force ? nullptr : &effort, edit, progress), bounds);
     return edit;
 }
 
@@ -237,7 +239,11 @@ Edit split_charts(const Mesh& mesh, const ChartMap& charts, const std::vector<In
             changed.push_back(edit.charts.chart[at(f)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress);
+    // Whether parts lie on themselves is no reason to refuse: nothing needs to be pushed or cut.
+    const WholeEffort effort{0.0, false};
+    std::vector<TrialMap> maps = finish(mesh, changed, &effort, edit, progress);
+    if (!std::isfinite(edit.l2_stretch)) // some part has no map in one piece
+        maps = finish(mesh, changed, nullptr, edit, progress);
     for (const TrialMap& map : maps)
         if (!bounds.force && map.area < tuning.least_part * mesh.total_area)
             refuse("a part would be a sliver, of " + text_of(100.0 * map.area / mesh.total_area) +

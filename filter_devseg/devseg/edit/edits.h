@@ -44,7 +44,8 @@ Edit join_charts(const Mesh& mesh, const atlas::ChartMap& charts, const std::vec
 
 /// Splits each of the charts along these cuts (3 #F, symmetric), which are completed (see
 /// given_charts.h); or, where they do not divide it, the best way in two: as D-Charts splits what
-/// is above its bound. Refused where a part would be a sliver.
+/// is above its bound. Refused where a part would be a sliver. The stretch of a part that lies on
+/// itself is the one before flattening cuts it apart.
 Edit split_charts(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<Index>& which,
                   const std::vector<std::uint8_t>& cuts, const EditBounds& bounds,
                   Progress& progress);

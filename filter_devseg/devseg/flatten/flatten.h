@@ -53,6 +53,7 @@ struct WholeChart {
     /// Maps whose symmetric Dirichlet energy clearly stays above are not finished, unless they are
     /// good.
     double give_up_energy = infinite;
+    bool push_apart = true; // parts that overlap
 };
 
 /// The same without cutting anything apart: where that would be done, the chart is `torn`, and its

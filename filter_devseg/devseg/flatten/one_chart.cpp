@@ -351,7 +351,7 @@ private:
     bool may_push(const Pairs& pairs) const {
         return !pairs.empty() && (method_ == FlattenMethod::symmetric_dirichlet || chart_.mended) &&
                surface_.face_count() <= tuning.most_polished_faces &&
-               flattening_.is_good(chart_.uv);
+               (whole_ == nullptr || whole_->push_apart) && flattening_.is_good(chart_.uv);
     }
 
     // What still overlaps.

@@ -128,21 +128,23 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
 }
 
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam, double most_l2,
+                                 const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
                                  Progress& progress) {
     if (charts.empty())
         return {};
     const Extract part = extract(mesh, charts, seam);
     const atlas::ChartMap disks = disks_of(part, progress);
     auto flattening = progress.part("measuring final maps", 0.9);
+    const double most = effort.most_l2 * effort.most_l2;
     flatten::WholeChart asked;
     asked.is_good = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
         TrialMap map;
         measure_stretch(problem, uv, map);
-        return most_l2 <= 0.0 || map.l2_squared <= most_l2 * most_l2;
+        return most <= 0.0 || map.l2_squared <= most;
     };
-    if (most_l2 > 0.0) // l2² − 1 is 1.5 times the excess of the energy, or more
-        asked.give_up_energy = most_l2 * most_l2;
+    if (most > 0.0) // l2² − 1 is 1.5 times the excess of the energy, or more
+        asked.give_up_energy = most;
+    asked.push_apart = effort.push_apart;
     const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
         part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, asked, flattening);
     Measures measures(part, charts);

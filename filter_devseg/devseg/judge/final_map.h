@@ -22,12 +22,16 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
                                  const std::vector<std::uint8_t>& seam, Progress& progress,
                                  MapFor purpose = MapFor::texture);
 
+struct WholeEffort {
+    double most_l2 = 0.0;   // maps that stretch by more are not finished; 0: all are
+    bool push_apart = true; // parts that overlap
+};
+
 /// The same for charts that must stay in one piece, sooner: one that would be cut apart is not, and
 /// its stretch is that of the map that lies on itself; infinite where there is none without flips.
-/// Nor are its parts pushed apart where it stretches by more than `most_l2` before (0: always);
-/// such a map is not finished, and its stretch may be a little too large.
+/// The stretch of a map that is not finished may be a little too large.
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam, double most_l2,
+                                 const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
                                  Progress& progress);
 
 /// Whether the final map's L2 stretch is at most `l2` beyond doubt, from a bound that costs one
