@@ -120,20 +120,28 @@ StretchBounds ClosingTrials::bounds_of(const Pair& pair) const {
     return limit;
 }
 
-// Overlaps before the final map: it takes longer.
+// Final maps push overlapping parts apart themselves: before them it is looked at on the coarse
+// surface alone, where there is one, whether that will do.
 void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& progress) const {
     TrialEffort apart;
     apart.wanted_l2 = bounds_of(closing.charts).l2;
     apart.push_apart = !options_.keep_corners;
+    const bool was_overlapping = verdict.map.overlaps;
     const double expected = verdict.added - verdict.hidden;
-    if (verdict.map.flat && (verdict.is_coarse || verdict.map.overlaps)) {
+    if (verdict.is_coarse && was_overlapping && options_.confirm) {
+        apart.wanted_l2 = coarse_bound(apart.wanted_l2);
+        try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
+        verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
+    } else if (verdict.map.flat && (verdict.is_coarse || was_overlapping)) {
         apart.give_up = verdict.is_coarse;
+        apart.push_apart = apart.push_apart && (!verdict.is_coarse || !options_.confirm);
         TrialMap map = try_fine(
             closing, apart, verdict.is_coarse ? std::vector<Vec2>() : verdict.map.turns, progress);
-        map.flat = map.flat && !map.overlaps;
+        map.flat = map.flat && (!map.overlaps || (verdict.is_coarse && options_.confirm));
         assess(closing, std::move(map), verdict);
     }
-    if (options_.confirm && verdict.map.flat && bounds_of(closing.charts).hold(verdict.map)) {
+    if (options_.confirm && verdict.map.flat &&
+        (was_overlapping || bounds_of(closing.charts).hold(verdict.map))) {
         auto judging = progress.part(0.0);
         const std::vector<std::vector<Index>> chart{united_faces(draft_, closing.charts)};
         const std::vector<std::uint8_t> seam = seam_without(closing);
