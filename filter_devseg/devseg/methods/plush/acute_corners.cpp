@@ -189,21 +189,26 @@ private:
         return border == a.size() + b.size() + path.size();
     }
 
+    std::size_t count_corners(const SeamMarks& seam) const {
+        return find_acute_corners(mesh_, seam, s_.hard, reach_, tuning.acute).size();
+    }
+
     // Opens one line and closes another where that helps and patches keep their limits, with a few
     // darts if it may.
     bool replace(const Line& opened, const Line& closed, bool may_mend) {
         if (any_marked(s_.hard, opened))
             return false;
         SeamMarks marks = seam_;
-        mark_both(s_.surface, opened, 0, marks);
-        mark_both(s_.surface, closed, 1, marks);
-        if (count_acute_corners(s_, marks) >= count_acute_corners(s_, seam_))
+        mark(mesh_, opened, 0, marks);
+        mark(mesh_, closed, 1, marks);
+        const std::size_t before = count_corners(seam_);
+        if (count_corners(marks) >= before)
             return false;
         ++tried_;
         progress_.check();
-        const auto patches = patches_beside(mesh_, marks, with_image(s_.surface, {opened, closed}));
-        if ((may_mend && !mend(patches, marks)) ||
-            !(saved_cost(s_, seam_, marks, s_.tester, progress_) > 0.0))
+        const auto patches = patches_beside(mesh_, marks, {opened, closed});
+        if (may_mend ? !mend(patches, marks) || count_corners(marks) >= before
+                     : !s_.tester.accepts_all(patches, marks, progress_))
             return false;
         seam_ = std::move(marks);
         return true;
@@ -216,7 +221,7 @@ private:
                                          s_.tester.limits(), progress_);
             if (!cuts)
                 return false;
-            mark_both(s_.surface, *cuts, 1, marks);
+            mark(mesh_, *cuts, 1, marks);
             if (patches_of(mesh_, marks, patch).size() > 1)
                 return false;
         }
@@ -236,11 +241,6 @@ private:
 std::vector<AcuteCorner> find_acute_corners(const Mesh& mesh, const SeamMarks& seam,
                                             const SeamMarks& hard, double reach, double max_angle) {
     return corners_between(mesh, find_arms(mesh, seam, hard, reach), max_angle);
-}
-
-std::size_t count_acute_corners(const SeamSetting& setting, const SeamMarks& seam) {
-    const double reach = tuning.corner_reach * std::sqrt(setting.mesh().total_area);
-    return find_acute_corners(setting.mesh(), seam, setting.hard, reach, tuning.acute).size();
 }
 
 Index blunt_acute_corners(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {

@@ -6,7 +6,6 @@
 
 #include "devseg/atlas/disks.h"
 #include "devseg/base/parallel.h"
-#include "devseg/methods/plush/mend_patches.h"
 #include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
@@ -96,13 +95,40 @@ public:
     Line path_through(const judge::ClothTrial& trial, const SeamSetting& setting,
                       const Progress& progress) const {
         const atlas::ChartSurface surface = atlas::extract_surface(mesh_, trial.face, seam_);
-        const Vertex tip = worst_inner_vertex(trial, border_vertices(mesh_, seam_));
+        const std::vector<Index>& loop = surface.loops.front();
+        const auto vertex = [&](std::size_t i) { return surface.vertex[surface.origin(loop[i])]; };
+        std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
+        for (const Vertex v : surface.vertex)
+            may_enter[v] = 1;
+        std::vector<std::uint8_t> on_border(mesh_.points.size(), 0);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            on_border[vertex(i)] = 1;
+        const Vertex tip = worst_inner_vertex(trial, on_border);
         if (tip < 0)
             return {};
-        CutThrough cut =
-            cut_through(mesh_, setting.graph, setting.cut_cost, surface, tip, progress);
-        Line cuts = std::move(cut.dart);
-        cuts.insert(cuts.end(), cut.rest.begin(), cut.rest.end());
+        const PathTree tree =
+            shortest_paths(setting.graph, setting.cut_cost, {tip}, progress, may_enter, on_border);
+        const auto usable = [&](Vertex v) {
+            return is_inside(tree.half_edge[v], trial) && std::isfinite(tree.distance[v]);
+        };
+        std::size_t near = loop.size();
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            if (usable(vertex(i)) &&
+                (near == loop.size() || tree.distance[vertex(i)] < tree.distance[vertex(near)]))
+                near = i;
+        if (near == loop.size())
+            return {};
+        Line cuts = trace_path(mesh_, tree, vertex(near));
+        Vertex far;
+        for (std::size_t k = loop.size() / 4; k <= loop.size() - loop.size() / 4; ++k) {
+            const Vertex v = vertex((near + k) % loop.size());
+            if (usable(v) && v != vertex(near) &&
+                (far < 0 || tree.distance[v] < tree.distance[far]))
+                far = v;
+        }
+        if (far >= 0)
+            for (const HalfEdge h : trace_path(mesh_, tree, far))
+                cuts.push_back(h);
         const auto is_seam = [&](HalfEdge h) { return seam_[h] != 0; };
         cuts.erase(std::remove_if(cuts.begin(), cuts.end(), is_seam), cuts.end());
         return cuts;
@@ -154,6 +180,14 @@ private:
                 if (other > same)
                     state[f] = state[f] == 1 ? 2 : 1;
             }
+    }
+
+    bool is_inside(HalfEdge h, const judge::ClothTrial& trial) const {
+        const auto has = [&](HalfEdge side) {
+            return side >= 0 &&
+                   std::binary_search(trial.face.begin(), trial.face.end(), face_of(side));
+        };
+        return h >= 0 && (has(h) || has(mesh_.twin[h]));
     }
 
     Vertex worst_inner_vertex(const judge::ClothTrial& trial,

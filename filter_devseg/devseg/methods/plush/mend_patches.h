@@ -10,15 +10,6 @@
 
 namespace devseg::plush {
 
-/// From a vertex inside a disk to the nearest place on its border, and to the nearest one on the
-/// far side of the border, half-edges of the mesh; empty where no path leads. `cost`: 3 #F.
-struct CutThrough {
-    std::vector<Index> dart;
-    std::vector<Index> rest;
-};
-CutThrough cut_through(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
-                       const atlas::ChartSurface& surface, Vertex tip, const Progress& progress);
-
 /// Cuts that make a patch keep the limits: half-edges, none where it keeps them already. While its
 /// map lies on itself, it is cut in two between the sheets; else it gets darts, each from the
 /// vertex that a conformal map shrinks most, where curvature gathers, to the nearest seam, so that
@@ -30,16 +21,6 @@ std::optional<std::vector<Index>> mend_patch(const Mesh& mesh, const VertexGraph
                                              const judge::ClothLimits& limits,
                                              const Progress& progress);
 
-/// Removes darts of the patch that ended on a border that is open now, from one side or the other.
-void open_what_floats(const Mesh& mesh, const SeamMarks& hard, const std::vector<Index>& faces,
-                      SeamMarks& marks);
-
-/// The common borders of a patch with its neighbours, the longest first, without those that must
-/// stay.
-std::vector<std::vector<Index>> common_borders(const Mesh& mesh, const SeamMarks& seam,
-                                               const SeamMarks& hard,
-                                               const std::vector<Index>& patch);
-
 /// A part of a surface where seams are still to be decided.
 struct OpenPart {
     std::vector<std::uint8_t> faces; // #F: 1 where they are open; empty: everywhere
@@ -47,6 +28,8 @@ struct OpenPart {
 
     bool is_open(Face f) const { return faces.empty() || faces[f] != 0; }
     bool has_open_faces() const;
+    /// Whether both faces of the edge are open.
+    bool is_inside(const Mesh& mesh, HalfEdge h) const;
 };
 
 /// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the
@@ -54,17 +37,8 @@ struct OpenPart {
 OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
                       SeamMarks seam, const judge::ClothLimits& limits, Progress& progress);
 
-/// The patches that do not pass the tester of the mesh.
-OpenPart failing_part(const Mesh& mesh, SeamMarks seam, PatchTester& tester, Progress& progress);
-
-/// Gives each open patch of the surface, and its mirror image, cuts with which it keeps the limits,
-/// or smaller ones where it keeps them as it is. `cost`: of paths, 3 #F.
-void mend_part(const WorkingSurface& surface, const VertexGraph& graph,
-               const std::vector<double>& cost, const OpenPart& part,
-               const judge::ClothLimits& limits, SeamMarks& seam, const Progress& progress);
-
-/// Specks between seams that run side by side, smaller than `tuning.fragment`, go to neighbours.
-SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam);
+/// Seams that are not inside the open part.
+SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 
 /// The patches of the working surface most of which lie on an open part of the model, and their
 /// mirror images.

@@ -5,8 +5,8 @@
 
 namespace devseg::plush {
 
-Verdict PatchTester::judge(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
-                           const Progress& progress) {
+bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
+                          const Progress& progress) {
     std::vector<Index> patch = faces;
     std::sort(patch.begin(), patch.end());
     if (surface_.is_symmetric()) {
@@ -25,18 +25,11 @@ Verdict PatchTester::judge(const std::vector<Index>& faces, const std::vector<st
         if (found != known_.end())
             return found->second;
     }
-    const judge::ClothTrial trial =
-        judge::try_cloth(surface_.mesh, patch, seam, limits_, false, progress);
-    const Verdict verdict{
-        trial.accepted, trial.outline.empty() ? 0.0 : narrowness(trial.outline, cost_.wide_enough)};
+    const bool accepted =
+        judge::try_cloth(surface_.mesh, patch, seam, limits_, false, progress).accepted;
     const std::lock_guard<std::mutex> lock(mutex_);
-    known_.emplace(std::move(key), verdict);
-    return verdict;
-}
-
-bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
-                          const Progress& progress) {
-    return judge(faces, seam, progress).accepted;
+    known_.emplace(std::move(key), accepted);
+    return accepted;
 }
 
 bool PatchTester::accepts_all(const std::vector<std::vector<Index>>& patches,

@@ -102,8 +102,7 @@ PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
     if (options.max_strain > 0.0) {
         const std::vector<double> cost =
             natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
-        return {cost, natural_lengths(evidence.surface.mesh, evidence.weights.stray,
-                                      tuning.natural_straight)};
+        return {cost, cost};
     }
     const std::vector<double>& weight = evidence.weights.weight;
     std::vector<double> straight = edge_lengths(evidence.surface.mesh);
@@ -121,13 +120,14 @@ std::vector<double> transfer_factors(const Evidence& evidence, const PlushOption
     return factors;
 }
 
-// Extrema; those on the mirror image are left to it.
-std::vector<Index> limb_tips(const Evidence& evidence) {
+// Extrema in the open part; those on the mirror image are left to it.
+std::vector<Index> limb_tips(const Evidence& evidence, const OpenPart& open) {
     const WorkingSurface& surface = evidence.surface;
     const Mesh& mesh = surface.mesh;
     std::vector<std::uint8_t> is_left_out(mesh.points.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
-        if (surface.is_symmetric() && surface.image[h] < h && !surface.starts_on_plane(h))
+        if (!open.is_open(face_of(h)) ||
+            (surface.is_symmetric() && surface.image[h] < h && !surface.starts_on_plane(h)))
             is_left_out[mesh.origin(h)] = 1;
     std::vector<Index> tips = evidence.extrema;
     tips.erase(
@@ -143,7 +143,8 @@ void mark_plane(const WorkingSurface& surface, SeamMarks& seam) {
 }
 
 // Patches without teeth, the same on both sides; seams inside patches go.
-void clean_patches(const WorkingSurface& surface, const SeamMarks& hard, SeamMarks& seam) {
+void clean_patches(const WorkingSurface& surface, const OpenPart& open, const SeamMarks& hard,
+                   SeamMarks& seam) {
     const Mesh& mesh = surface.mesh;
     mirror_marks(surface, seam);
     std::vector<Index> label =
@@ -151,19 +152,19 @@ void clean_patches(const WorkingSurface& surface, const SeamMarks& hard, SeamMar
     remove_teeth(mesh, label);
     seam = atlas::make_chart_map(mesh, label, {}, false).seam;
     for (const HalfEdge h : mesh.all_half_edges())
-        if (is_marked(hard, h))
-            seam[h] = 1;
+        if (!hard.empty() && (hard[h] != 0 || !open.is_inside(mesh, h)))
+            seam[h] = hard[h];
     mark_plane(surface, seam);
     mirror_marks(surface, seam);
 }
 
 // Seams along the plane, around limbs and between extrema.
-void lay_candidates(Evidence& evidence, const SeamMarks& hard, PlushSeams& result, SeamMarks& seam,
-                    Progress& progress) {
+void lay_candidates(Evidence& evidence, const OpenPart& open, const SeamMarks& hard,
+                    PlushSeams& result, SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = evidence.surface.mesh;
     mark_plane(evidence.surface, seam);
     const std::vector<Limb> limbs =
-        find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence), progress);
+        find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence, open), progress);
     result.limbs = std::max(result.limbs, static_cast<Index>(limbs.size()));
     for (const Limb& limb : limbs)
         for (const HalfEdge h : limb_border(mesh, limb)) {
@@ -173,7 +174,7 @@ void lay_candidates(Evidence& evidence, const SeamMarks& hard, PlushSeams& resul
     mirror_marks(evidence.surface, evidence.limb_borders);
     add_structural_seams(mesh, evidence.graph, evidence.weights.weight, evidence.extrema, seam,
                          progress);
-    clean_patches(evidence.surface, hard, seam);
+    clean_patches(evidence.surface, open, hard, seam);
 }
 
 // One pass over the seams of a surface; returns how many trials it took.
@@ -197,8 +198,8 @@ judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_
     return {share * options.max_area_change, share * options.max_strain, is_search};
 }
 
-// `share`: of the limits, that the patches keep.
-SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
+// Seams of the open part. `hard` has all seams that are not inside of it; or is empty.
+SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
                  const PlushOptions& options, PlushSeams& result, Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
@@ -210,15 +211,18 @@ SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
                               costs.cut, costs.straight, options.max_iterations};
     RemovalOptions any_patch;
     any_patch.random_seed = options.random_seed;
+    RemovalOptions small_patches = any_patch;
+    small_patches.most_area = tuning.small_patch;
+    small_patches.least_neck = tuning.narrow_neck;
     const std::vector<Pass> passes{
         {"laying seams", 0.04,
          [&](SeamMarks& seam, Progress& part) {
-             lay_candidates(evidence, hard, result, seam, part);
+             lay_candidates(evidence, open, hard, result, seam, part);
              return 0;
          }},
         {"cutting patches", 0.03,
          [&](SeamMarks& seam, Progress& part) {
-             add_local_seams(setting, {}, seam, part);
+             add_local_seams(setting, open.faces, seam, part);
              result.candidates +=
                  static_cast<Index>(find_segments(surface.mesh, seam, hard).size());
              return 0;
@@ -232,44 +236,51 @@ SeamMarks decide(Evidence& evidence, const SeamMarks& hard, double share,
              straighten_seams(setting, seam, part);
              return 0;
          }},
-        {"cutting necks", 0.03,
-         [&](auto& seam, auto& part) { return cut_necks(setting, seam, part); }},
-        {"joining patches", 0.05,
-         [&](auto& seam, auto& part) { return join_patches(setting, any_patch, seam, part); }},
-        {"absorbing remnants", 0.05,
-         [&](auto& seam, auto& part) {
-             return absorb_remnants(setting, costs.cut, tuning.small_patch, seam, part);
-         }},
-        {"blunting corners", 0.05,
-         [&](auto& seam, auto& part) { return blunt_acute_corners(setting, seam, part); }},
-        {"cutting necks", 0.02,
-         [&](auto& seam, auto& part) { return cut_necks(setting, seam, part); }},
-        {"shortening darts", 0.05,
+        {"joining patches", 0.03,
+         [&](auto& seam, auto& part) { return join_patches(setting, small_patches, seam, part); }},
+        {"shortening darts", 0.08,
          [&](auto& seam, auto& part) { return shorten_darts(setting, seam, part); }}};
-    return run(passes, SeamMarks(surface.mesh.twin.size(), 0), result, progress);
+    SeamMarks seam = open.seam;
+    seam.resize(surface.mesh.twin.size(), 0);
+    return run(passes, std::move(seam), result, progress);
 }
 
-// What still fails on the model, and what became too small or too acute on the way to it, is mended
-// there.
-SeamMarks without_remnants(const Evidence& on_model, SeamMarks seam, const PlushOptions& options,
-                           PlushSeams& result, Progress& progress) {
-    const WorkingSurface& surface = on_model.surface;
-    const std::vector<double> cost =
-        natural_lengths(surface.mesh, on_model.weights.stray, tuning.natural_dart);
+// The seams of the model, with small patches and thin tongues given to neighbours.
+SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
+                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
+    const WorkingSurface& surface = evidence.surface;
+    const std::vector<double>& weight = evidence.weights.weight;
     PatchTester tester(surface, limits_of(options, 1.0, false));
-    const SeamMarks hard;
-    const SeamSetting setting{surface, on_model.graph, hard, on_model.weights.weight, tester,
-                              tester,  cost,           cost, options.max_iterations};
-    seam =
-        mend_patches(surface.mesh, on_model.graph, cost, std::move(seam), tester.limits(), progress)
-            .seam;
-    result.trials += absorb_remnants(setting, cost, tuning.small_patch / 5.0, seam, progress);
-    result.trials += blunt_acute_corners(setting, seam, progress);
-    return seam;
+    PatchTester search(surface, limits_of(options, 1.0, true));
+    const std::vector<double> cost =
+        natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
+    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
+                              cost,    options.max_iterations};
+    const SeamSetting searching{surface, evidence.graph,        hard, weight, search, search, cost,
+                                cost,    options.max_iterations};
+    RemovalOptions remnants;
+    remnants.random_seed = options.random_seed;
+    remnants.most_area = tuning.small_patch / 5.0;
+    remnants.least_neck = tuning.narrow_neck;
+    const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
+                                  tuning.least_thin * mean_edge_length(surface.mesh));
+    const std::vector<Pass> passes{
+        {"giving tongues away", 0.35,
+         [&](auto& seams, auto& part) { return give_tongues_away(searching, width, seams, part); }},
+        {"joining patches", 0.2,
+         [&](auto& seams, auto& part) { return join_patches(setting, remnants, seams, part); }},
+        {"absorbing remnants", 0.25,
+         [&](auto& seams, auto& part) {
+             return absorb_remnants(setting, cost, tuning.small_patch / 10.0, seams, part);
+         }},
+        {"blunting corners", 0.2,
+         [&](auto& seams, auto& part) { return blunt_acute_corners(setting, seams, part); }}};
+    return run(passes, std::move(seam), result, progress);
 }
 
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
-// not developable on the model, they get further cuts on the working surface, in pairs.
+// not developable on it and cannot be mended, seams are decided again: with a smaller bound on the
+// working surface, and in the end on the model itself.
 SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
                            const PlushOptions& options, PlushSeams& result, Progress& progress) {
     auto weighing = progress.part("finding the skeleton", 0.02);
@@ -282,29 +293,37 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
     auto deciding = progress.part(0.5);
-    SeamMarks seam = decide(working, {}, share, options, result, deciding);
-    // The two halves of a model stay alike as long as what the model needs is decided on both.
-    const judge::ClothLimits limits = limits_of(options, 1.0, false);
-    PatchTester on_itself(model, limits);
-    const std::vector<double> cost =
-        natural_lengths(surface.mesh, working.weights.stray, tuning.natural_dart);
+    SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
+    // Where the model has two halves, they stay alike only as long as seams are decided on both.
+    // By strain, darts and cuts on the model do better.
+    const int most_rounds =
+        by_strain ? 0 : tuning.second_thoughts + (surface.is_symmetric() ? 1 : 0);
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part = failing_part(
-            model.mesh,
-            absorb_specks(model.mesh,
-                          transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                         transfer_factors(on_model, options), transferring)),
-            on_itself, transferring);
-        if (!part.has_open_faces() || round == tuning.second_thoughts)
+        part =
+            mend_patches(model.mesh, on_model.graph,
+                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
+                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                        transfer_factors(on_model, options), transferring),
+                         limits_of(options, 1.0, false), transferring);
+        if (!part.has_open_faces() || round == most_rounds)
+            break;
+        const OpenPart again = same_part(surface, seam, model.mesh, part);
+        if (!again.has_open_faces())
             break;
         share *= tuning.tighter;
-        mend_part(surface, working.graph, cost, same_part(surface, seam, model.mesh, part),
-                  limits_of(options, share, true), seam, transferring);
+        auto deciding_again = progress.part(0.4 * progress.left());
+        seam = decide(working, again, fixed_seams(surface.mesh, again), share, options, result,
+                      deciding_again);
     }
-    auto cleaning = progress.part("absorbing remnants", progress.left());
-    return without_remnants(on_model, std::move(part.seam), options, result, cleaning);
+    if (part.has_open_faces()) {
+        auto deciding_on_model = progress.part(0.6 * progress.left());
+        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
+                           deciding_on_model);
+    }
+    auto cleaning = progress.part(progress.left());
+    return without_remnants(on_model, std::move(part.seam), {}, options, result, cleaning);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are
@@ -339,7 +358,6 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress)
             .weight;
-    // Where seams look natural is not known exactly enough here.
     OpenPart part = mend_patches(mesh, graph, weight, std::move(seam), tester.limits(), progress);
     result.all_developable =
         add_local_seams({surface, graph, {}, weight, tester, tester, weight, weight},
@@ -392,7 +410,10 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
     auto deciding = progress.part(0.8);
     SeamMarks seam;
     if (!hard.empty()) {
-        seam = decide(working, hard, 1.0, options, result, deciding);
+        auto first = deciding.part(0.8);
+        seam = decide(working, {}, hard, 1.0, options, result, first);
+        auto cleaning = deciding.part(0.2);
+        seam = without_remnants(working, std::move(seam), hard, options, result, cleaning);
     } else {
         seam = decide_for_any(working, framed, options, result, deciding);
     }

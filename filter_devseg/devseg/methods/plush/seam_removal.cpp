@@ -236,7 +236,7 @@ private:
                     if (removal.taken < choice.index)
                         return;
                 }
-                if (!saves(network, removal, removal.choices[choice.index]))
+                if (!works(network, removal, removal.choices[choice.index]))
                     return;
                 const std::lock_guard<std::mutex> lock(mutex);
                 removal.taken = std::min(removal.taken, choice.index);
@@ -247,14 +247,18 @@ private:
     }
 
     // Whether the patches that there are with other marks, in place of the removal's, are
-    // developable, and the whole costs less than before.
-    bool saves(const Network& network, const Removal& removal,
+    // developable.
+    bool works(const Network& network, const Removal& removal,
                const std::vector<Index>& edges) const {
         PatchTester& tester =
             network.is_large_together(removal.segment, options_) ? s_.strict_tester : s_.tester;
         SeamMarks marks = seam_;
         mark(mesh_, edges, 0, marks);
-        return saved_cost(s_, seam_, marks, tester, progress_) > 0.0;
+        std::vector<Index> open;
+        for (const Index p : removal.patches)
+            open.insert(open.end(), network.faces[p].begin(), network.faces[p].end());
+        std::sort(open.begin(), open.end());
+        return tester.accepts_all(patches_of(mesh_, marks, open), marks, progress_);
     }
 
     bool apply(const Network& network, const Removal& removal) {
@@ -291,7 +295,7 @@ double jitter(const Network& network, std::size_t i, int random_seed) {
 // The least natural segments first, those of small patches before others.
 double unnatural_first(const Network& network, std::size_t i, const RemovalOptions& options) {
     return jitter(network, i, options.random_seed) *
-           std::pow(network.segments[i].weight, options.weight_power) * network.segments[i].length *
+           std::pow(network.segments[i].weight, options.weight_power) *
            std::pow(network.size(i), -options.size_power);
 }
 
@@ -311,20 +315,20 @@ Index join_patches(const SeamSetting& setting, const RemovalOptions& options, Se
     const auto windows = [&](const Network& network, std::size_t i) {
         if (network.is_large_together(i, options))
             return std::vector<Window>{Window{}}; // nearly flat patches need no darts
-        // A neck is no wider than the part of the seam that goes.
-        const SeamCost& cost = setting.tester.cost();
         const double least =
-            (cost.per_narrow * cost.wide_enough * std::sqrt(network.smaller_area(i)) -
-             2.0 * cost.per_patch) /
-            (cost.per_narrow + 1.0) / network.segments[i].length;
+            options.least_neck * std::sqrt(network.smaller_area(i)) / network.segments[i].length;
         std::vector<Window> result;
         for (const Window& w : tuning.join_windows)
-            if (w.to - w.from >= least && (!network.is_crossing(i) || w.from == 1.0 - w.to))
+            if (w.to - w.from == 1.0 ||
+                (w.to - w.from >= least && (!network.is_crossing(i) || w.from == 1.0 - w.to)))
                 result.push_back(w);
         return result;
     };
     const Policy joins{
-        [](const Network& network, std::size_t i) { return network.is_longest_between(i); },
+        [&](const Network& network, std::size_t i) {
+            return network.smaller_area(i) <= options.most_area * network.mesh.total_area &&
+                   network.is_longest_between(i);
+        },
         [](const Network& network, std::size_t i) {
             const SeamSegment& segment = network.segments[i];
             return segment.length * segment.weight / std::max(network.size(i), tuning.tiny);

@@ -1,9 +1,25 @@
 // Taking seams away that are not needed, by trial flattenings.
 #pragma once
 
-#include "devseg/methods/plush/seam_setting.h"
+#include "devseg/methods/plush/patch_tester.h"
+#include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
+
+/// What seams are judged by.
+struct SeamSetting {
+    const WorkingSurface& surface;
+    const VertexGraph& graph;          // of the surface
+    const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
+    const std::vector<double>& weight; // 3 #F
+    PatchTester& tester;
+    PatchTester& strict_tester;               // for large patches
+    const std::vector<double>& cut_cost;      // 3 #F: of paths that cut patches
+    const std::vector<double>& straight_cost; // 3 #F: of paths in place of seams
+    int max_rounds = 10000;                   // of trials side by side
+
+    const Mesh& mesh() const { return surface.mesh; }
+};
 
 struct RemovalOptions {
     // What goes first: powers of the mean weight of a segment's edges [Plush: 1] and of the
@@ -12,6 +28,10 @@ struct RemovalOptions {
     double size_power = 0.5;
     int random_seed = 0;        // other numbers than 0 change the order a little
     double most_together = 0.2; // of the surface: larger patches must pass the strict tester
+    // Of joins: only patches up to this share of the surface are joined to a neighbour, along at
+    // least so much of the root of their area.
+    double most_area = 1.0;
+    double least_neck = 0.3;
 };
 
 /// Removes segments, the least natural first, together with their mirror images, as long as all

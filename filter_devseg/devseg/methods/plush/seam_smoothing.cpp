@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "devseg/base/parallel.h"
 #include "devseg/methods/plush/seam_guides.h"
 #include "devseg/methods/plush/tuning.h"
 
@@ -30,9 +31,8 @@ public:
     }
 
     void run() {
-        // Anywhere between the two patches first. Loops have other ends the second time.
+        // Loops have other ends the second time.
         for (const int turn : {0, 1}) {
-            rings_ = turn == 0 ? mesh_.face_count() : tuning.corridor_rings;
             const std::vector<Line> lines = find_lines(turn);
             for (std::size_t i = 0; i < lines.size(); ++i) {
                 progress_.update(0.5 * turn +
@@ -101,7 +101,7 @@ private:
                 }
         const std::uint8_t side =
             s_.surface.is_symmetric() && s_.surface.image[line.front()] < line.front();
-        for (int k = 0; k < rings_ && !ring.empty(); ++k) {
+        for (int k = 0; k < tuning.corridor_rings; ++k) {
             std::vector<Index> next;
             for (const Vertex v : ring)
                 for (Index i = s_.graph.begin[v]; i < s_.graph.begin[at(v) + 1]; ++i) {
@@ -167,15 +167,29 @@ private:
         if (!is_free(line, path, marks))
             return;
         mark_both(s_.surface, path, 1, marks);
-        if (saved_cost(s_, seam_, marks, s_.tester, progress_) > 0.0)
+        if (keeps_patches(line, path, marks))
             seam_ = std::move(marks);
+    }
+
+    bool keeps_patches(const std::vector<Index>& line, const std::vector<Index>& path,
+                       const SeamMarks& marks) const {
+        // As they would be.
+        const auto parts = patches_beside(mesh_, marks, {line, path});
+        std::vector<std::uint8_t> fits(parts.size(), 0);
+        parallel_for(
+            static_cast<int>(parts.size()),
+            [&](int i) {
+                const auto k = static_cast<std::size_t>(i);
+                fits[k] = s_.tester.accepts(parts[k], marks, progress_) ? 1 : 0;
+            },
+            progress_);
+        return std::find(fits.begin(), fits.end(), 0) == fits.end();
     }
 
     const SeamSetting& s_;
     const Mesh& mesh_;
     SeamMarks& seam_;
     Progress& progress_;
-    Index rings_ = 0;                    // of vertices beside a segment, for its path
     std::vector<double> cost_;           // 3 #F
     std::vector<std::uint8_t> side_;     // #V: 1 on the mirror image
     std::vector<std::uint8_t> on_plane_; // #V

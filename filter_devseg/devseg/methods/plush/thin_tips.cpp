@@ -4,8 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "devseg/atlas/charts.h"
-#include "devseg/methods/plush/mend_patches.h"
+#include "devseg/base/parallel.h"
+#include "devseg/graph/shortest_paths.h"
+#include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
@@ -13,115 +14,229 @@ namespace {
 
 using Line = std::vector<Index>; // half-edges
 
-class NeckCutter {
-public:
-    NeckCutter(const SeamSetting& setting, SeamMarks& seam, const Progress& progress)
-        : s_(setting), mesh_(setting.mesh()), seam_(seam), progress_(progress) {}
-
-    Index run() {
-        std::vector<std::uint8_t> is_changed(mesh_.faces.size(), 0);
-        for (const Line& patch : patches_of(mesh_, seam_)) {
-            const auto changed = [&](Face f) { return is_changed[f] != 0; };
-            if (std::any_of(patch.begin(), patch.end(), changed) ||
-                s_.tester.judge(patch, seam_, progress_).narrow == 0.0)
-                continue;
-            const SeamMarks before = seam_;
-            cut(patch);
-            for (const HalfEdge h : mesh_.all_half_edges())
-                if (before[h] != seam_[h])
-                    for (const Face f : patches_of(mesh_, before, {face_of(h)}).front())
-                        is_changed[f] = 1;
-        }
-        return tried_;
-    }
-
-private:
-    // At the first neck where that pays.
-    void cut(const Line& patch) {
-        const atlas::ChartSurface surface = atlas::extract_surface(mesh_, patch, seam_);
-        const judge::ClothTrial trial =
-            judge::try_cloth(mesh_, patch, seam_, s_.tester.limits(), false, progress_);
-        const auto vertex = [&](std::size_t i) {
-            return surface.vertex[surface.origin(surface.loops.front()[i])];
-        };
-        for (const Neck& neck : find_necks(trial.outline, s_.tester.cost().wide_enough)) {
-            const Line path = path_between(surface, vertex(neck.first), vertex(neck.last));
-            if (!path.empty() && take_best(ways_of_cutting(path)))
-                return;
-        }
-    }
-
-    // Inside the patch; empty where there is none.
-    Line path_between(const atlas::ChartSurface& surface, Vertex start, Vertex end) const {
-        if (start == end)
-            return {};
-        std::vector<std::uint8_t> may_enter(mesh_.points.size(), 0);
-        for (const Vertex v : surface.vertex)
-            may_enter[v] = 1;
-        for (const HalfEdge h : surface.loops.front())
-            may_enter[surface.vertex[surface.origin(h)]] = 0;
-        may_enter[start] = may_enter[end] = 1;
-        const PathTree tree =
-            shortest_paths(s_.graph, edge_lengths(mesh_), {start}, progress_, may_enter);
-        if (!std::isfinite(tree.distance[end]))
-            return {};
-        Line path = trace_path(mesh_, tree, end);
-        return any_marked(seam_, path) ? Line{} : path;
-    }
-
-    // The part beyond the neck as a patch of its own, and as a part of each patch beside it.
-    std::vector<SeamMarks> ways_of_cutting(const Line& path) const {
-        SeamMarks marks = seam_;
-        mark_both(s_.surface, path, 1, marks);
-        std::vector<SeamMarks> ways{marks};
-        std::vector<Line> parts = patches_beside(mesh_, marks, {path});
-        if (parts.size() != 2)
-            return ways;
-        const auto area = [&](const Line& part) {
-            return atlas::area_of(mesh_, atlas::extract_surface(mesh_, part, marks));
-        };
-        const Line& smaller = area(parts[0]) < area(parts[1]) ? parts[0] : parts[1];
-        for (const Line& border : common_borders(mesh_, marks, s_.hard, smaller)) {
-            if (std::find_first_of(border.begin(), border.end(), path.begin(), path.end()) !=
-                border.end())
-                continue; // the patch that it was cut from
-            ways.push_back(marks);
-            mark_both(s_.surface, border, 0, ways.back());
-            for (const Line& joined :
-                 patches_beside(mesh_, ways.back(), with_image(s_.surface, {border})))
-                open_what_floats(mesh_, s_.hard, joined, ways.back());
-        }
-        return ways;
-    }
-
-    bool take_best(const std::vector<SeamMarks>& ways) {
-        double most = 0.0;
-        const SeamMarks* best = nullptr;
-        for (const SeamMarks& marks : ways) {
-            ++tried_;
-            progress_.check();
-            const double saved = saved_cost(s_, seam_, marks, s_.tester, progress_);
-            if (saved > most) {
-                most = saved;
-                best = &marks;
-            }
-        }
-        if (best != nullptr)
-            seam_ = *best;
-        return best != nullptr;
-    }
-
-    const SeamSetting& s_;
-    const Mesh& mesh_;
-    SeamMarks& seam_;
-    const Progress& progress_;
-    Index tried_ = 0;
+struct Tongue {
+    std::vector<Index> faces;
+    double reach = 0.0; // of its tip from its root
 };
+
+// The border of a tongue with one patch.
+struct Side {
+    Index beyond = 0; // the patch; −1 the tongue's own body, −2 nobody
+    Line edges;
+};
+
+// A seam beside a tongue that would go, and the one across its root that would come.
+struct Change {
+    Line opened;
+    Line closed;
+
+    void apply(const Mesh& mesh, SeamMarks& marks) const {
+        mark(mesh, closed, 1, marks);
+        mark(mesh, opened, 0, marks);
+    }
+};
+
+// Distances (#F) over faces from the sources, inside patches.
+template <class IsSource>
+std::vector<double> distances_from(const Mesh& mesh, const SeamMarks& seam, IsSource is_source,
+                                   const Progress& progress) {
+    graph::ShortestPaths<> paths(mesh.faces.size());
+    for (const Face f : mesh.all_faces())
+        if (is_source(f))
+            paths.add_source(f);
+    paths.run(
+        [&](Face f, double distance) {
+            for (const HalfEdge h : half_edges_of(f))
+                if (!is_border(mesh, seam, h)) {
+                    const Face g = face_of(mesh.twin[h]);
+                    paths.reach(g, distance + (mesh.face_centers[f] - mesh.face_centers[g]).norm());
+                }
+        },
+        progress);
+    return std::move(paths.distance);
+}
+
+// What is left of the patches when disks of the radius have rolled over them, in components.
+std::vector<Tongue> find_tongues(const Mesh& mesh, const SeamMarks& seam, double radius,
+                                 const Progress& progress) {
+    const std::vector<std::uint8_t> on_seam = border_vertices(mesh, seam);
+    const std::vector<double> to_seam = distances_from(
+        mesh, seam,
+        [&](Face f) {
+            const Triangle& t = mesh.faces[f];
+            return std::any_of(t.begin(), t.end(), [&](Vertex v) { return on_seam[v] != 0; });
+        },
+        progress);
+    const std::vector<double> to_body = distances_from(
+        mesh, seam, [&](Face f) { return to_seam[f] > radius; }, progress);
+    const double body = tuning.tongue_slack * radius;
+    const mesh::FaceComponents parts = mesh::face_components(mesh, [&](HalfEdge h) {
+        return seam[h] == 0 && to_body[face_of(h)] > body && to_body[face_of(mesh.twin[h])] > body;
+    });
+    std::vector<Tongue> tongues(at(parts.count));
+    for (const Face f : mesh.all_faces()) {
+        Tongue& tongue = tongues[parts.label[f]];
+        tongue.faces.push_back(f);
+        tongue.reach = std::max(tongue.reach, to_body[f] - body);
+    }
+    // Patches that are thin everywhere have no body.
+    const auto is_none = [&](const Tongue& tongue) {
+        return tongue.reach < tuning.tongue_reach * radius || tongue.reach == infinite;
+    };
+    tongues.erase(std::remove_if(tongues.begin(), tongues.end(), is_none), tongues.end());
+    std::stable_sort(tongues.begin(), tongues.end(),
+                     [](const Tongue& a, const Tongue& b) { return a.reach > b.reach; });
+    return tongues;
+}
+
+// The sides of a tongue, the longest first; none where it is no disk, or an island.
+std::vector<Side> sides_of(const SeamSetting& setting, const SeamMarks& seam,
+                           const std::vector<Index>& label, const Tongue& tongue) {
+    const Mesh& mesh = setting.mesh();
+    const atlas::ChartSurface surface =
+        atlas::extract_surface(mesh, tongue.faces, atlas::enclose(mesh, tongue.faces, seam));
+    if (!surface.is_disk())
+        return {};
+    const auto beyond = [&](HalfEdge h) -> Index {
+        if (mesh.twin[h] < 0 || is_marked(setting.hard, h))
+            return -2;
+        return seam[h] == 0 ? -1 : label[face_of(mesh.twin[h])];
+    };
+    Line loop;
+    for (const HalfEdge h : surface.loops.front())
+        loop.push_back(surface.mesh_half_edge(h));
+    std::size_t first = 0; // a place where a side begins
+    const std::size_t count = loop.size();
+    while (first < count && beyond(loop[first]) == beyond(loop[(first + count - 1) % count]))
+        ++first;
+    std::vector<Side> sides;
+    for (std::size_t k = 0; k < count && first < count; ++k) {
+        const HalfEdge h = loop[(first + k) % count];
+        if (sides.empty() || sides.back().beyond != beyond(h))
+            sides.push_back({beyond(h), {}});
+        sides.back().edges.push_back(h);
+    }
+    std::stable_sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+        return length_of(mesh, a.edges) > length_of(mesh, b.edges);
+    });
+    return sides;
+}
+
+std::vector<Change> find_changes(const SeamSetting& setting, double radius, const SeamMarks& seam,
+                                 const Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    const std::vector<Index> label = find_patches(mesh, seam).label;
+    const auto is_root = [](const Side& side) { return side.beyond == -1; };
+    const auto is_seam = [](const Side& side) { return side.beyond >= 0; };
+    std::vector<Change> changes;
+    for (const Tongue& tongue : find_tongues(mesh, seam, radius, progress)) {
+        const std::vector<Side> sides = sides_of(setting, seam, label, tongue);
+        const auto root = std::find_if(sides.begin(), sides.end(), is_root);
+        const auto longest = std::find_if(sides.begin(), sides.end(), is_seam);
+        if (std::count_if(sides.begin(), sides.end(), is_root) == 1 && longest != sides.end() &&
+            length_of(mesh, longest->edges) > length_of(mesh, root->edges))
+            changes.push_back({longest->edges, root->edges});
+    }
+    return changes;
+}
+
+// The changes that share no edge with one before.
+std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Change>& changes) {
+    std::vector<Change> group;
+    SeamMarks is_used(mesh.twin.size(), 0);
+    for (const Change& change : changes) {
+        Line edges = change.opened;
+        edges.insert(edges.end(), change.closed.begin(), change.closed.end());
+        if (any_marked(is_used, edges))
+            continue;
+        mark(mesh, edges, 1, is_used);
+        group.push_back(change);
+    }
+    return group;
+}
+
+// All at once; those beside patches that are not accepted are left out.
+bool apply_together(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
+                    Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    std::vector<Change> group = without_shared_edges(mesh, changes);
+    while (!group.empty()) {
+        SeamMarks marks = seam;
+        std::vector<Line> closed;
+        for (const Change& change : group) {
+            change.apply(mesh, marks);
+            closed.push_back(change.closed);
+        }
+        const std::vector<std::vector<Index>> patches = patches_beside(mesh, marks, closed);
+        std::vector<std::uint8_t> fails(mesh.faces.size(), 0);
+        parallel_for(
+            static_cast<int>(patches.size()),
+            [&](int i) {
+                const auto& patch = patches[static_cast<std::size_t>(i)];
+                if (!setting.tester.accepts(patch, marks, progress))
+                    for (const Face f : patch)
+                        fails[f] = 1;
+            },
+            progress);
+        const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change& change) {
+            const HalfEdge h = change.closed.front();
+            return fails[face_of(h)] != 0 || fails[face_of(mesh.twin[h])] != 0;
+        });
+        if (kept == group.end()) {
+            seam = std::move(marks);
+            return true;
+        }
+        group.erase(kept, group.end());
+    }
+    return false;
+}
+
+// Each by itself, of each patch one.
+void apply_each(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
+                Progress& progress) {
+    const Mesh& mesh = setting.mesh();
+    std::vector<std::uint8_t> is_accepted(changes.size(), 0);
+    std::vector<std::vector<std::vector<Index>>> patches(changes.size());
+    parallel_for(
+        static_cast<int>(changes.size()),
+        [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            SeamMarks marks = seam;
+            changes[k].apply(mesh, marks);
+            patches[k] = patches_beside(mesh, marks, {changes[k].closed});
+            is_accepted[k] = setting.tester.accepts_all(patches[k], marks, progress) ? 1 : 0;
+        },
+        progress);
+    std::vector<std::uint8_t> is_changed(mesh.faces.size(), 0);
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+        bool is_free = is_accepted[k] != 0;
+        for (const auto& patch : patches[k])
+            for (const Face f : patch)
+                is_free = is_free && is_changed[f] == 0;
+        if (!is_free)
+            continue;
+        changes[k].apply(mesh, seam);
+        for (const auto& patch : patches[k])
+            for (const Face f : patch)
+                is_changed[f] = 1;
+    }
+}
 
 } // namespace
 
-Index cut_necks(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
-    return NeckCutter(setting, seam, progress).run();
+Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
+                        Progress& progress) {
+    const double radius = 0.5 * width;
+    std::vector<Change> changes = find_changes(setting, radius, seam, progress);
+    auto tried = static_cast<Index>(changes.size());
+    progress.update(0.1);
+    if (apply_together(setting, changes, seam, progress)) {
+        changes = find_changes(setting, radius, seam, progress);
+        tried += static_cast<Index>(changes.size());
+    }
+    progress.update(0.6);
+    apply_each(setting, changes, seam, progress);
+    return tried;
 }
 
 } // namespace devseg::plush

@@ -1,13 +1,16 @@
-// Necks of patches, and acute corners where seams meet.
+// Thin tips and tongues of patches, and acute corners where seams meet.
 #pragma once
 
-#include "devseg/methods/plush/seam_setting.h"
+#include "devseg/methods/plush/seam_removal.h"
 
 namespace devseg::plush {
 
-/// Cuts pieces at their necks where that pays: what lies beyond becomes a patch of its own, or goes
-/// to a patch beside it, as tongues, hooks and strips do. Returns how many changes were tried.
-Index cut_necks(const SeamSetting& setting, SeamMarks& seam, Progress& progress);
+/// Gives what hangs on a patch and is narrower than `width` (internal units), the acute corners
+/// where seams meet, teeth and strips, to the patch beside it, where both stay developable disks:
+/// a seam across the tongue takes the place of a longer one along it. Returns how many changes were
+/// tried.
+Index give_tongues_away(const SeamSetting& setting, double width, SeamMarks& seam,
+                        Progress& progress);
 
 /// Two seams that leave one place nearly side by side, with nothing but a thin tip of a patch
 /// between them: there cloth bunches up, and a small change of the boundary moves the map much.
@@ -21,9 +24,6 @@ struct AcuteCorner {
 /// most acute one first. `hard` (3 #F or empty) parts segments.
 std::vector<AcuteCorner> find_acute_corners(const Mesh& mesh, const SeamMarks& seam,
                                             const SeamMarks& hard, double reach, double max_angle);
-
-/// How many there are by the limits of this method.
-std::size_t count_acute_corners(const SeamSetting& setting, const SeamMarks& seam);
 
 /// Lets junctions slide along one of their seams: the tip goes to the patch beyond the other seam,
 /// as little of it as makes the corner blunt, where both patches stay developable disks and no

@@ -81,19 +81,16 @@ struct Tuning {
     int patient_rounds = 15;   // after them, what is left is cut in halves
     int isoline_rounds = 4;    // of smoothing
 
-    // Shapes of pieces.
-    double outline_corners = 100.0;        // an outline is measured with about so many
-    double outline_notch = 60.0 * degrees; // turning more into the piece is kept exactly
-
     // Removal.
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
     int most_passes = 2;      // over all segments
     double nearly_flat = 0.3; // of the bound: what large patches change their areas at most
-    double small_patch = 0.1; // smaller ones are joined to others with darts in their
-                              // place; a fifth of it on the model
-    int tooth_rounds = 12;    // of taking teeth away
-    int corridor_rings = 3;   // of vertices beside a segment: where it is made straight
-    double path_worth = 0.97; // of its cost: what a new path must save
+    double small_patch = 0.1; // smaller ones are joined along narrow necks once seams are straight;
+                              // a fifth of it on the model, and a tenth with darts
+    double narrow_neck = 0.15; // of the root of the smaller patch
+    int tooth_rounds = 12;     // of taking teeth away
+    int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
+    double path_worth = 0.97;  // of its cost: what a new path must save
     // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.
     Window join_windows[15] = {{0.0, 1.0},  {0.15, 1.0},  {0.0, 0.85}, {0.15, 0.85}, {0.35, 1.0},
                                {0.0, 0.65}, {0.25, 0.75}, {0.55, 1.0}, {0.0, 0.45},  {0.35, 0.65},
@@ -110,15 +107,19 @@ struct Tuning {
     // Of the bound: what is used of it on another surface than the model, on the model before seams
     // are smoothed, by areas and by strain, and in each round of deciding again.
     double far_margin = 0.75;
-    double far_strain = 0.8;
+    double far_strain = 0.65;
     double own_margin = 0.95;
     double own_strain = 0.9;
     double tighter = 0.88;
-    double least_share = 0.3; // cuts that less does not ask for help little
-    int second_thoughts = 1;  // rounds of cutting on the working surface what fails on the model
-    int most_cuts = 8;        // that mend a patch
+    int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
+    int most_cuts = 4;          // that mend a patch
+    double longest_darts = 1.5; // over the border of a remnant that goes: an island is worse
 
-    // Acute corners. Shares of the root of the surface.
+    // Thin tips. Shares of the root of the surface.
+    double thin = 0.03;          // tongues that are narrower go
+    double least_thin = 2.4;     // mean edges: at least so narrow
+    double tongue_slack = 1.3;   // paths over faces are longer than straight lines
+    double tongue_reach = 0.8;   // of half the width: how far a tongue sticks out at least
     double corner_reach = 0.033; // of seams beside a corner
     double acute = 40.0 * degrees;
     // Over the reach: how far along both seams a junction may slide.

@@ -168,7 +168,7 @@ struct Trials {
     PatchTester tester{surface, {0.15, 0.0, false}};
 };
 
-TEST(Necks, TonguesGoToThePatchBesideThem) {
+TEST(Tongues, GoToThePatchBesideThem) {
     // A plate in two halves; a strip of the left one reaches far into the right one.
     Trials plate(shapes::grid(40, 40));
     const Mesh& mesh = plate.mesh();
@@ -178,7 +178,7 @@ TEST(Necks, TonguesGoToThePatchBesideThem) {
     });
     const double before = seam_length(mesh, seam);
     Progress progress;
-    EXPECT_GE(cut_necks(plate.setting(), seam, progress), 1);
+    EXPECT_GE(give_tongues_away(plate.setting(), 0.12 * unit, seam, progress), 1);
     EXPECT_EQ(find_patches(mesh, seam).count, 2);
     EXPECT_LT(seam_length(mesh, seam), before - 0.3 * unit);
     EXPECT_NEAR(seam_length(mesh, seam), unit, 0.25 * unit);
@@ -187,7 +187,7 @@ TEST(Necks, TonguesGoToThePatchBesideThem) {
         return c.x() < 0.0 || (c.x() < 0.3 * unit && std::abs(c.y()) < 0.2 * unit);
     });
     const SeamMarks wide = seam;
-    cut_necks(plate.setting(), seam, progress);
+    give_tongues_away(plate.setting(), 0.12 * unit, seam, progress);
     EXPECT_EQ(seam, wide);
 }
 
