@@ -89,7 +89,7 @@ void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Bucket
             number.push_back(c);
         }
     const std::vector<judge::TrialMap> maps =
-        judge::whole_maps(mesh, tried, charts.seam, bound, progress);
+        judge::whole_maps(mesh, tried, charts.seam, {bound, true}, progress);
     for (std::size_t i = 0; i < maps.size(); ++i)
         if (!maps[i].flat || maps[i].l2_squared > bound * bound)
             above[number[i]] = {true, {}}; // stretch is not to be had at one place

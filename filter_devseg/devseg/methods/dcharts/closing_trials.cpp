@@ -145,11 +145,11 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
         auto judging = progress.part(0.0);
         const std::vector<std::vector<Index>> chart{united_faces(draft_, closing.charts)};
         const std::vector<std::uint8_t> seam = seam_without(closing);
-        TrialMap map =
-            (options_.purpose == judge::MapFor::cloth
-                 ? judge::final_maps(mesh_, chart, seam, judging, options_.purpose)
-                 : judge::whole_maps(mesh_, chart, seam, bounds_of(closing.charts).l2, judging))
-                .front();
+        TrialMap map = (options_.purpose == judge::MapFor::cloth
+                            ? judge::final_maps(mesh_, chart, seam, judging, options_.purpose)
+                            : judge::whole_maps(mesh_, chart, seam,
+                                                {bounds_of(closing.charts).l2, true}, judging))
+                           .front();
         map.cut_length = verdict.map.cut_length;
         assess(closing, std::move(map), verdict);
         verdict.refused = !verdict.map.flat || !bounds_of(closing.charts).hold(verdict.map);
