@@ -382,10 +382,11 @@ def test_host_makes_smooth_seams_of_a_selection(ball: Any) -> None:
     made = ball.compute_charts_from_selected_edges_per_face(smooth=True)
     mesh = ball.current_mesh()
     assert mesh.face_number() > faces
-    assert made["charts_number"] == plain["charts_number"] == 2
+    assert made["charts_number"] == plain["charts_number"] > 1
     assert made["seam_length"] < plain["seam_length"]
     chart, color = mesh.face_custom_scalar_attribute_array("chart_id"), mesh.face_color_matrix()
-    assert len(np.unique(color[chart == 0], axis=0)) == len(np.unique(color[chart == 1], axis=0))
+    pairs = np.unique(np.column_stack([chart, color]), axis=0)
+    assert len(pairs) == len(np.unique(chart)) == made["charts_number"]
     ball.compute_texcoord_parametrization_charts_per_wedge()
     flat = ball.get_parametrization_measures()
     assert flat["flipped_faces_number"] == flat["overlapping_faces_number"] == 0
