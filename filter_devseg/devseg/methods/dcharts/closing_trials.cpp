@@ -30,7 +30,7 @@ double length_of(const Mesh& mesh, const std::vector<Index>& edges) {
 }
 
 void ClosingTrials::prepare(const std::vector<std::uint8_t>& fixed, Progress& progress) {
-    if (!coarse_ && CoarseTrials::pay(mesh_, draft_))
+    if (options_.coarse_trials && !coarse_ && CoarseTrials::pay(mesh_, draft_))
         coarse_.emplace(mesh_, draft_, fixed, options_.chart.l2, progress);
 }
 

@@ -143,6 +143,7 @@ MergeOptions merge_options(const SegmentationPlan& plan, const Aim& aim) {
     merging.parts_above = plan.creased ? 0 : options.charts_number;
     merging.keep_corners = plan.creased;
     merging.exchange_cuts = aim.few && !plan.creased;
+    merging.coarse_trials = !aim.few;
     merging.chart = aim.chart;
     if (options.max_chart_l2_stretch > 0.0) {
         merging.chart.hard_l2 = std::sqrt(

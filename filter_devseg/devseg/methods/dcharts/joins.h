@@ -26,6 +26,9 @@ struct MergeOptions {
     bool keep_corners = false;
     // In the end cuts inside charts are tried in other places, where they are shorter.
     bool exchange_cuts = false;
+    // Trials on a coarse surface take less time. They do not tell well which of two closings is the
+    // better one, where the fewest charts and the shortest seams are wanted.
+    bool coarse_trials = true;
     // A join counts only if the final map of the joined chart keeps the bounds: for the surface
     // itself. Else trials decide.
     bool confirm = false;
