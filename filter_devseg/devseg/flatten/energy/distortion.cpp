@@ -29,6 +29,8 @@ struct Tuning {
     double smallest_step = 1e-12;
     // Rigid motions do not change the energy: this share of the mean diagonal keeps H definite.
     double shift_share = 1e-10;
+    double shift_growth = 30.0;
+    double largest_shift = 1e-6;
     double locked_share = 1e10; // of the mean diagonal: the step of a vertex that stays vanishes
 };
 constexpr Tuning tuning;
@@ -259,6 +261,26 @@ bool line_search(const FlatteningProblem& problem,
     return false;
 }
 
+namespace {
+
+// A stiff boundary rounds more off than the usual shift is: then shifts grow until they outweigh
+// it.
+void factorize_shifted(Eigen::SparseMatrix<double>& matrix, BlockCholesky& solver) {
+    if (solver.factorize(matrix))
+        return;
+    const double mean = matrix.diagonal().mean();
+    for (double share = tuning.shift_share; share <= tuning.largest_shift;
+         share *= tuning.shift_growth) {
+        for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+            matrix.coeffRef(i, i) += share * mean;
+        if (solver.factorize(matrix))
+            return;
+    }
+    throw NumericalFailure("expected a positive definite Hessian, found one that is not");
+}
+
+} // namespace
+
 struct ProjectedNewton::State {
     const FlatteningProblem& problem;
     std::vector<std::uint8_t> fixed;
@@ -322,8 +344,7 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
     }
     if (hessian.finish())
         state_->solver.analyze(hessian.matrix);
-    if (!state_->solver.factorize(hessian.matrix))
-        throw NumericalFailure("expected a positive definite Hessian, found one that is not");
+    factorize_shifted(hessian.matrix, state_->solver);
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>; // x, y, x, y …
     const Rows descent = -gradient;
     const Eigen::Map<const Eigen::VectorXd> rhs(descent.data(), unknowns);
