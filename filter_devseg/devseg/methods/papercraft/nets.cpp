@@ -167,6 +167,9 @@ std::vector<Hinge> hinges_between(const Mesh& mesh, const mesh::FaceComponents& 
     for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.twin[h] > h && regions.label[face_of(h)] != regions.label[mesh.across(h)])
             hinges.push_back({h, mesh.edge_length(h)});
+    // So that what is drawn for each does not depend on the order of the faces.
+    std::stable_sort(hinges.begin(), hinges.end(),
+                     [](const Hinge& a, const Hinge& b) { return a.length > b.length; });
     return hinges;
 }
 
