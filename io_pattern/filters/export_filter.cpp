@@ -69,10 +69,10 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears.")
-        .real(&O::alike_mm, {"alike_mm", -1.0, 1e3}, "Make pieces alike within (mm)",
+        .real(&O::alike_mm, "Make pieces alike within (mm)",
               "Pieces whose outlines differ by less than this, in millimetres, as they are or "
               "mirrored, all get the mean of their outlines, so that one template serves for them. "
-              "0 = none, -1 = 2 mm with the preset Sewing.")
+              "0 = none.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")

@@ -15,7 +15,6 @@ namespace {
 
 // What books on sewing give where a pattern says nothing.
 constexpr double usual_allowance = 7.0; // mm
-constexpr double usual_alike = 2.0;     // mm: cloth takes more than that
 
 void check(const char* name, double value, double least, const char* expected) {
     if (value >= least && std::isfinite(value))
@@ -156,10 +155,7 @@ ExportOptions resolved(const ExportOptions& given) {
     check("sewing_mm_per_minute", options.sewing_mm_per_minute, 1.0, "a rate of 1 mm or more");
     check("stuffing_g_per_litre", options.stuffing_g_per_litre, 0.0, "a density of 0 g or more");
     check("kerf_mm", options.kerf_mm, -1.0, "a width of 0 mm or more, or -1 for the material's");
-    check("alike_mm", options.alike_mm, -1.0, "a distance of 0 mm or more, or -1");
     options.edge_numbers = options.edge_numbers || options.step_numbers;
-    if (options.alike_mm < 0.0)
-        options.alike_mm = options.preset == PatternPreset::sewing ? usual_alike : 0.0;
     take_material(options);
     switch (options.preset) {
     case PatternPreset::plain:

@@ -29,10 +29,7 @@ enum class SurfacePrint { none, automatic };
 enum class FoldMarks { lines, outside, none };
 
 struct ExportOptions : pattern::PatternOptions {
-    ExportOptions() {
-        notch_spacing_mm = 0.0;
-        alike_mm = -1.0;
-    }
+    ExportOptions() { notch_spacing_mm = 0.0; }
 
     std::string output_file;
     PatternPreset preset = PatternPreset::plain;

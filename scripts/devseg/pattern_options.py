@@ -71,8 +71,7 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
         "--alike-mm",
         type=float,
         metavar="MM",
-        help="pieces that differ by less get one outline, mirrored or not; "
-        "default: 2 for sewing, else 0, none",
+        help="pieces that differ by less get one outline, mirrored or not; default: 0, none",
     )
     group.add_argument(
         "--notch-spacing-mm",

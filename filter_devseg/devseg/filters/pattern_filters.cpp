@@ -80,7 +80,7 @@ Declare<O> with_seams(Declare<O> filter) {
                  "sewing bears, by changing the angles of the outlines as little as possible.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
-        .real(&O::alike_mm, {"alike_mm", 0.0, 1e3}, "Make pieces alike within (mm)",
+        .real(&O::alike_mm, "Make pieces alike within (mm)",
               "Pieces whose outlines differ by less than this, in millimetres (and 3 % of their "
               "size), as they are or mirrored, all get the mean of their outlines; so does a piece "
               "that is so near to its own mirror image. 0 = none.")

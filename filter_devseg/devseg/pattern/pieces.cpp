@@ -282,7 +282,7 @@ OptionRanges<PatternOptions> PatternOptions::ranges() {
             {&O::max_width_mm, {"max_width_mm", 0.0, 1e9}},
             {&O::simplify_mm, {"simplify_mm", 0.0, 1e6}},
             {&O::notch_spacing_mm, {"notch_spacing_mm", 0.0, 1e6}},
-            {&O::alike_mm, {"alike_mm", -1.0, 1e3}},
+            {&O::alike_mm, {"alike_mm", 0.0, 1e3}},
             {&O::pair_tolerance_mm, {"pair_tolerance_mm", 0.0, 1e6}},
             {&O::curve_mm, {"curve_mm", 0.0, 1e3}},
             {&O::corner_angle, {"corner_angle", 0.0, 180.0}},

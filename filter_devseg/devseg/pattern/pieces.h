@@ -29,7 +29,7 @@ struct PatternOptions {
     double fold_angle = 3.0;        // degrees: flatter edges are no folds
     double max_piece_mm = 0.0;      // longest side of a piece; larger ones are cut; 0 = no limit
     double max_width_mm = 0.0;      // the same of the shorter side of the least box around it
-    double alike_mm = 0.0;          // pieces whose outlines differ by less become alike; to 0: none
+    double alike_mm = 0.0;          // pieces whose outlines differ by less become alike; 0: none
     double pair_tolerance_mm = 0.5; // pieces whose outlines differ by less have the same shape
     GrainDirection grain = GrainDirection::best;
     double grain_angle = 0.0;     // degrees from the texture's v, counterclockwise

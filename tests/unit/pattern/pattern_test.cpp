@@ -465,7 +465,7 @@ TEST(Shapes, OptionsOutOfRangeAreRefused) {
          {&PatternOptions::simplify_mm, &PatternOptions::corner_angle, &PatternOptions::curve_mm,
           &PatternOptions::notch_spacing_mm, &PatternOptions::fold_angle,
           &PatternOptions::max_piece_mm, &PatternOptions::max_width_mm,
-          &PatternOptions::pair_tolerance_mm})
+          &PatternOptions::pair_tolerance_mm, &PatternOptions::alike_mm})
         for (const double bad : {-1.0, std::nan("")}) {
             PatternOptions options;
             options.*field = bad;
