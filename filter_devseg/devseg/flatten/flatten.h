@@ -50,9 +50,6 @@ FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, Fl
 struct WholeChart {
     /// Whether a map is good enough but for parts that overlap, which are pushed apart then.
     std::function<bool(const FlatteningProblem&, const std::vector<Vec2>& uv)> is_good;
-    /// Maps whose symmetric Dirichlet energy clearly stays above are not finished, unless they are
-    /// good.
-    double give_up_energy = infinite;
     bool push_apart = true; // parts that overlap
 };
 

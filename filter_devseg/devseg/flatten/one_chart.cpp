@@ -140,31 +140,14 @@ private:
         } else {
             return std::nullopt;
         }
-        if (!refined || !is_large)
-            map = polish(map.uv);
+        if (!refined || !is_large) {
+            SymmetricDirichletResult result =
+                minimise_symmetric_dirichlet(problem_, map.uv, {}, progress_);
+            map = {std::move(result.uv), result.converged};
+        }
         relieve_peaks(problem_, false, map.uv, progress_);
         scale_to_area(problem_, map.uv);
         return map;
-    }
-
-    Map polish(const std::vector<Vec2>& start) const {
-        SymmetricDirichletOptions options;
-        if (whole_ != nullptr)
-            options.give_up_energy = whole_->give_up_energy;
-        const auto minimise = [&](const std::vector<Vec2>& from) {
-            return minimise_symmetric_dirichlet(problem_, from, options, progress_);
-        };
-        SymmetricDirichletResult result = minimise(start);
-        if (result.energy > options.give_up_energy && is_good_at_scale(result.uv)) {
-            options.give_up_energy = infinite;
-            result = minimise(result.uv);
-        }
-        return {std::move(result.uv), result.converged};
-    }
-
-    bool is_good_at_scale(std::vector<Vec2> uv) const {
-        scale_to_area(problem_, uv);
-        return is_good(uv);
     }
 
     Map single_face() const {

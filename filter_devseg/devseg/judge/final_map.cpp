@@ -142,8 +142,6 @@ std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector
         measure_stretch(problem, uv, map);
         return most <= 0.0 || map.l2_squared <= most;
     };
-    if (most > 0.0) // l2² − 1 is 1.5 times the excess of the energy, or more
-        asked.give_up_energy = most;
     asked.push_apart = effort.push_apart;
     const std::vector<flatten::FlatChart> whole = flatten::flatten_whole(
         part.mesh, disks, flatten::FlattenMethod::symmetric_dirichlet, asked, flattening);

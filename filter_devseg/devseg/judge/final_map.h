@@ -23,13 +23,12 @@ std::vector<TrialMap> final_maps(const Mesh& mesh, const std::vector<std::vector
                                  MapFor purpose = MapFor::texture);
 
 struct WholeEffort {
-    double most_l2 = 0.0;   // maps that stretch by more are not finished; 0: all are
+    double most_l2 = 0.0;   // parts that overlap in maps that stretch by more stay so; 0: none
     bool push_apart = true; // parts that overlap
 };
 
 /// The same for charts that must stay in one piece, sooner: one that would be cut apart is not, and
 /// its stretch is that of the map that lies on itself; infinite where there is none without flips.
-/// The stretch of a map that is not finished may be a little too large.
 std::vector<TrialMap> whole_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
                                  Progress& progress);

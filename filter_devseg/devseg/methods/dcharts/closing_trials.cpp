@@ -147,7 +147,8 @@ void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& 
         const std::vector<std::uint8_t> seam = seam_without(closing);
         TrialMap map = (options_.purpose == judge::MapFor::cloth
                             ? judge::final_maps(mesh_, chart, seam, judging, options_.purpose)
-                            : judge::whole_maps(mesh_, chart, seam, {}, judging))
+                            : judge::whole_maps(mesh_, chart, seam,
+                                                {bounds_of(closing.charts).l2, true}, judging))
                            .front();
         map.cut_length = verdict.map.cut_length;
         assess(closing, std::move(map), verdict);
