@@ -253,7 +253,7 @@ def test_same_bytes_again(flattened: Any, export: Callable) -> None:
 @pytest.mark.parametrize(
     ("name", "parameters", "message"),
     [
-        ("x.png", {}, "output_file: expected .* found '.*x.png'"),
+        ("x.bmp", {}, "output_file: expected .* found '.*x.bmp'"),
         ("x", {}, "output_file"),
         ("missing/x.svg", {}, "expected to write the file"),
         ("x.svg", {"mm_per_unit": 0.0}, "mm_per_unit: expected"),
