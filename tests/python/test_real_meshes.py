@@ -17,6 +17,13 @@ import gltf_files
 import meshes
 from conftest import ROOT
 
+
+@pytest.fixture(autouse=True)
+def _own_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The job names copies of the plugins by the environment: other tests have their own."""
+    monkeypatch.setenv("DEVSEG_PLUGIN_DIR", os.environ.get("DEVSEG_PLUGIN_DIR", ""))
+
+
 FORMATS = ("obj", "ply", "stl", "off", "glb")
 
 SHAPES: dict[str, meshes.Mesh] = {
