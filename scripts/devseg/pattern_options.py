@@ -69,7 +69,7 @@ def add_pattern_options(parser: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--alike-mm",
-        type=float,
+        type=millimetres(),
         metavar="MM",
         help="pieces that differ by less get one outline, mirrored or not; default: 0, none",
     )
