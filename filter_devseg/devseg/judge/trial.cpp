@@ -150,6 +150,8 @@ TrialMap try_chart(const Mesh& mesh, const std::vector<Index>& faces,
     std::vector<std::uint8_t> marks = atlas::enclose(mesh, faces, seam);
     const atlas::ChartSurface surface = atlas::cut_to_disk(
         mesh, atlas::extract_surface(mesh, faces, marks), marks, progress, &map.cut_length);
+    if (map.cut_length > effort.most_cut_length)
+        return map;
     const flatten::FlatteningProblem problem = flatten::make_flattening_problem(mesh, surface);
     std::vector<Vec2> uv;
     auto development = flatten::unfold(problem);

@@ -37,6 +37,8 @@ struct TrialEffort {
     bool give_up = false;    // stop early if it will be above; what is measured then is too much
     bool push_apart = false; // try to push overlapping parts apart
     bool only_near = false;  // not flat where `turns` do not nearly fit together
+    // Not flat, and not looked at further, where the cuts that make it a disk are longer.
+    double most_cut_length = infinite; // internal units
     bool only_apart = false; // not flat where parts overlap deeply in a map near to the best one
 };
 

@@ -47,6 +47,12 @@ void ClosingTrials::attempt(const Closing& closing, Verdict& verdict,
     effort.only_apart = options_.keep_corners;
     verdict.is_coarse = coarse_ && closing.opened.empty();
     verdict.coarse = {};
+    // What saves no seam is not looked at.
+    const auto [first, second] = closing.charts;
+    effort.most_cut_length =
+        (verdict.is_coarse ? saved_by(closing, 0.0, coarse_->map(first), coarse_->map(second))
+                           : saved_by(closing, 0.0, draft_.map[first], draft_.map[second])) -
+        tuning.negligible * std::sqrt(mesh_.total_area);
     if (verdict.is_coarse)
         effort.wanted_l2 = coarse_bound(effort.wanted_l2);
     if (verdict.is_coarse)
@@ -83,11 +89,17 @@ void ClosingTrials::assess(const Closing& closing, TrialMap map, const TrialMap&
                            const TrialMap& b, Verdict& verdict) const {
     const bool is_join = closing.charts.first != closing.charts.second;
     verdict.added = map.excess() - a.excess() - (is_join ? b.excess() : 0.0);
-    verdict.saved = length_of(mesh_, closing.edges) - length_of(mesh_, closing.opened) -
-                    map.cut_length + a.cut_length + (is_join ? b.cut_length : 0.0);
+    verdict.saved = saved_by(closing, map.cut_length, a, b);
     verdict.map = std::move(map);
     verdict.tried = verdict.fresh = true;
     verdict.confirmed = false;
+}
+
+double ClosingTrials::saved_by(const Closing& closing, double cut_length, const TrialMap& a,
+                               const TrialMap& b) const {
+    const bool is_join = closing.charts.first != closing.charts.second;
+    return length_of(mesh_, closing.edges) - length_of(mesh_, closing.opened) - cut_length +
+           a.cut_length + (is_join ? b.cut_length : 0.0);
 }
 
 std::vector<std::uint8_t> ClosingTrials::seam_without(const Closing& closing) const {

@@ -67,6 +67,9 @@ public:
     std::vector<std::uint8_t> seam_without(const Closing& closing) const;
 
 private:
+    /// With cuts to a disk of that length in the joined chart.
+    double saved_by(const Closing& closing, double cut_length, const judge::TrialMap& a,
+                    const judge::TrialMap& b) const;
     judge::TrialMap try_fine(const Closing& closing, const judge::TrialEffort& effort,
                              std::vector<Vec2> turns, const Progress& progress) const;
     void try_coarse(const Closing& closing, const judge::TrialEffort& effort,

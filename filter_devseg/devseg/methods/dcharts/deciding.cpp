@@ -266,6 +266,8 @@ Decided decide(const Mesh& mesh, const SegmentationPlan& plan, DChartsResult pat
     with_more.growing.charts_number = std::min(2 * tuning.few_seeds, mesh.face_count());
     auto growing = progress.part(0.2 * progress.left());
     patches = grow_patches(mesh, with_more, growing);
+    if (patches.chart == few.patches.chart) // between creases, whatever the number of seeds
+        return few;
     auto again = progress.part(0.9 * progress.left());
     Decided more = join_patches(mesh, with_more, aim, std::move(patches), again);
     if (more.draft.charts_number() < few.draft.charts_number())
