@@ -44,6 +44,24 @@ TEST(Trial, ChartsThatLieOnThemselvesAreRefusedWhereThatIsAskedFor) {
     }
 }
 
+TEST(Trial, ChartsWhoseCutsAreTooLongAreRefused) {
+    Progress progress;
+    const Mesh mesh = checks::gated(shapes::cylinder_tube(24, 6));
+    std::vector<Index> faces(mesh.faces.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    const std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    TrialEffort effort;
+    const TrialMap any = try_chart(mesh, faces, seam, effort, progress);
+    ASSERT_TRUE(any.flat);
+    ASSERT_GT(any.cut_length, 0.0);
+    for (const double share : {0.9, 1.1}) {
+        effort.most_cut_length = share * any.cut_length;
+        const TrialMap map = try_chart(mesh, faces, seam, effort, progress);
+        EXPECT_EQ(map.flat, share > 1.0);
+        EXPECT_EQ(map.cut_length, any.cut_length);
+    }
+}
+
 } // namespace
 
 } // namespace devseg::judge
