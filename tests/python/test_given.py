@@ -386,6 +386,37 @@ def test_host_reads_selected_edges_faces_and_vertices(
     assert split["charts_number"] == 6
 
 
+def test_script_edits_by_the_numbers_of_the_pattern(
+    meshset: Callable[[meshes.Mesh], Any], tmp_path: Path
+) -> None:
+    steps = (
+        ("Charts: Join Selected", "apply_charts_join_selected", "pieces", "1,2"),
+        ("Charts: Split Selected", "apply_charts_split_selected", "pieces", "3"),
+        ("Charts: Remove Selected Seams", "apply_charts_remove_selected_seams", "seams", "9"),
+    )
+    rows = [
+        f'<filter name="{menu}"><Param name="{name}" type="RichString" value="{numbers}"/>'
+        '<Param name="force" type="RichBool" value="true"/></filter>'
+        for menu, _, name, numbers in steps
+    ]
+    (tmp_path / "edit.mlx").write_text(f"<FilterScript>{''.join(rows)}</FilterScript>")
+    charts = []
+    for scripted in (True, False):
+        ball = meshset(meshes.sphere())
+        ball.compute_segmentation_variational_shape_approximation_per_face(charts_number=6)
+        ball.compute_texcoord_parametrization_charts_per_wedge()
+        before = ball.current_mesh().face_custom_scalar_attribute_array("chart_id")
+        if scripted:
+            ball.load_filter_script(str(tmp_path / "edit.mlx"))
+            ball.apply_filter_script()
+        else:
+            for _, python, name, numbers in steps:
+                getattr(ball, python)(**{name: numbers}, force=True)
+        charts.append(ball.current_mesh().face_custom_scalar_attribute_array("chart_id"))
+        assert not same_parts(before, charts[-1])
+    np.testing.assert_array_equal(*charts)
+
+
 def test_host_makes_smooth_seams_of_a_selection(ball: Any) -> None:
     faces = ball.current_mesh().face_number()
     ball.compute_selection_by_condition_per_face(condselect="x0 + 0.4 * y0 > 0.2")
