@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import hosts
 import meshes
 from devseg import host, ply
 from devseg.cli import main
@@ -335,24 +336,35 @@ def state(mesh: Any) -> list[np.ndarray]:
         mesh.wedge_tex_coord_matrix().reshape(-1, 6),
         mesh.face_color_matrix(),
         mesh.face_scalar_array(),
+        mesh.face_matrix(),
+    ]
+
+
+def filters_on_part() -> list[str]:
+    """Those that take `selected_only`."""
+    return [
+        str(f["python_name"])
+        for f in hosts.declarations()
+        if any(p["name"] == "selected_only" for p in f["parameters"])
     ]
 
 
 def test_host_changes_nothing_outside_of_the_selection(ball: Any, pymeshlab: ModuleType) -> None:
     ball.compute_selection_by_condition_per_face(condselect="y0 > 0.2")
-    selected = ball.current_mesh().face_selection_array()
-    for name in (
-        "compute_segmentation_variational_shape_approximation_per_face",
-        "compute_segmentation_dcharts_per_face",
-        "compute_charts_refinement_per_face",
-        "compute_texcoord_parametrization_charts_per_wedge",
-        "apply_texcoord_chart_packing_per_wedge",
-    ):
+    names = filters_on_part()
+    assert len(names) >= 13
+    for name in names:
+        selected = ball.current_mesh().face_selection_array()
+        points = ball.current_mesh().vertex_matrix()
         before = state(ball.current_mesh())
         getattr(ball, name)(selected_only=True)
-        after = state(ball.current_mesh())
+        after = state(ball.current_mesh())  # faces that are split leave their parts at the end
         for old, new in zip(before, after, strict=True):
-            np.testing.assert_array_equal(old[~selected], new[~selected], name)
+            outside = new[: len(old)][~selected]
+            assert old[~selected].tobytes() == outside.tobytes(), name
+        now = ball.current_mesh().vertex_matrix()[: len(points)]
+        assert points.tobytes() == now.tobytes(), name
+        ball.compute_selection_by_condition_per_face(condselect="y0 > 0.2")
     ball.set_selection_none()
     ball.set_verbosity(True)  # a silent host goes on swallowing what is printed after a failure
     with host.captured(), pytest.raises(pymeshlab.PyMeshLabException, match="expected selected"):
@@ -372,6 +384,37 @@ def test_host_reads_selected_edges_faces_and_vertices(
     assert joined["charts_number"] == 5 and joined["l2_stretch"] == pytest.approx(1)
     split = cube.apply_charts_split_selected(along_selection=False)
     assert split["charts_number"] == 6
+
+
+def test_script_edits_by_the_numbers_of_the_pattern(
+    meshset: Callable[[meshes.Mesh], Any], tmp_path: Path
+) -> None:
+    steps = (
+        ("Charts: Join Selected", "apply_charts_join_selected", "pieces", "1,2"),
+        ("Charts: Split Selected", "apply_charts_split_selected", "pieces", "3"),
+        ("Charts: Remove Selected Seams", "apply_charts_remove_selected_seams", "seams", "9"),
+    )
+    rows = [
+        f'<filter name="{menu}"><Param name="{name}" type="RichString" value="{numbers}"/>'
+        '<Param name="force" type="RichBool" value="true"/></filter>'
+        for menu, _, name, numbers in steps
+    ]
+    (tmp_path / "edit.mlx").write_text(f"<FilterScript>{''.join(rows)}</FilterScript>")
+    charts = []
+    for scripted in (True, False):
+        ball = meshset(meshes.sphere())
+        ball.compute_segmentation_variational_shape_approximation_per_face(charts_number=6)
+        ball.compute_texcoord_parametrization_charts_per_wedge()
+        before = ball.current_mesh().face_custom_scalar_attribute_array("chart_id")
+        if scripted:
+            ball.load_filter_script(str(tmp_path / "edit.mlx"))
+            ball.apply_filter_script()
+        else:
+            for _, python, name, numbers in steps:
+                getattr(ball, python)(**{name: numbers}, force=True)
+        charts.append(ball.current_mesh().face_custom_scalar_attribute_array("chart_id"))
+        assert not same_parts(before, charts[-1])
+    np.testing.assert_array_equal(*charts)
 
 
 def test_host_makes_smooth_seams_of_a_selection(ball: Any) -> None:

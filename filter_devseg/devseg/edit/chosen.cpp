@@ -171,7 +171,11 @@ std::vector<std::uint8_t> chosen_seams(const FilterInput& input, const ChartMap&
     for (const HalfEdge h : mesh.all_half_edges())
         marks[h] = mesh.twin[h] >= 0 && charts.seam[h] != 0 ? marks[h] : 0;
     if (std::none_of(marks.begin(), marks.end(), [](auto m) { return m != 0; }))
-        throw InvalidMesh("expected selected seams, found none: no chosen edge is a seam");
+        throw InvalidMesh(seams.empty() ? "expected selected seams, found none: no chosen edge is "
+                                          "a seam"
+                                        : "seams: expected seams of the charts, found that those "
+                                          "of these numbers are there no more: joining the charts "
+                                          "on both sides takes them away as well");
     if (whole)
         spread_along_seams(mesh, charts.seam, marks);
     for (const HalfEdge h : mesh.all_half_edges())

@@ -274,6 +274,12 @@ TEST(Numbers, OfPiecesAndSeamsAreThoseOfThePattern) {
     EXPECT_TRUE(
         contains(error_of<InvalidParameter>([&] { read_numbers("seams", "3,x4"); }), "found 'x4'"));
     EXPECT_EQ(read_numbers("seams", " 3,,P04 "), (std::vector<int>{3, 4}));
+    HostMesh whole = host; // numbers stay those of the pattern when seams go
+    checks::take_charts(whole, run("Charts: Remove Selected Seams", host, {{"seams", "1"}}));
+    EXPECT_TRUE(contains(error_of<InvalidMesh>([&] {
+                             run("Charts: Remove Selected Seams", whole, {{"seams", "1"}});
+                         }),
+                         "seams: expected seams of the charts"));
 }
 
 } // namespace

@@ -27,6 +27,8 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
+constexpr double isometry = 1.0; // its energy, which no map is below
+
 // The distance of a vertex to the left of the line of its edge, with its derivatives.
 struct SignedDistance {
     double value = 0.0;
@@ -99,8 +101,11 @@ class Descent {
 public:
     Descent(const FlatteningProblem& problem, const std::vector<std::uint8_t>& fixed,
             const ContactPenalty& penalty, Positions start)
-        : problem_(problem), fixed_(fixed), penalty_(penalty), x_(std::move(start)),
-          energy_(value(x_)), shape_(looked_at_), gradient_(slope()) {}
+        : problem_(problem), fixed_(fixed), penalty_(penalty), x_(std::move(start)) {
+        energy_ = value(x_);
+        shape_ = looked_at_;
+        gradient_ = slope();
+    }
 
     const Positions& x() const { return x_; }
     double energy() const { return energy_; }
@@ -125,9 +130,14 @@ public:
     const Positions& last_change() const { return change_; } // of the gradient
 
 private:
+    // Where contacts alone outweigh the energy at x, the faces need not be looked at: many steps
+    // that are too long end so.
     double value(const Positions& y) {
+        const double pressing = penalty_.energy(y);
+        if (isometry + pressing > energy_)
+            return infinite;
         looked_at_ = distortion_with_gradient(problem_, y, distortion_slope_);
-        return looked_at_ + penalty_.energy(y);
+        return looked_at_ + pressing;
     }
     // At x, where the energy was looked at last.
     Positions slope() {
@@ -145,8 +155,8 @@ private:
     // Without the penalty, where the energy was looked at last.
     Positions distortion_slope_;
     double looked_at_ = infinite;
-    double energy_;
-    double shape_;
+    double energy_ = infinite;
+    double shape_ = infinite;
     Positions gradient_;
     Positions step_;
     Positions change_;
