@@ -186,12 +186,7 @@ private:
         int idle = 0;
         int focused_rounds = 0;
         bool may_focus = true;
-        // What is within the tolerance gets exact while that is quick: errors add up in large
-        // charts.
-        const auto is_settling = [&] {
-            return idle == 0 && projection_.residual() <= options_.tolerance;
-        };
-        while (effort_ < options_.max_iterations || is_settling()) {
+        while (effort_ < options_.max_iterations) {
             if (projection_.residual() <= tuning.polished * options_.tolerance ||
                 focused_rounds > tuning.most_focused_rounds) {
                 if (!focused_)

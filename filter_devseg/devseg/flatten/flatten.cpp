@@ -27,7 +27,6 @@ struct Tuning {
     double excess_factor = 1.05;
     double allowed_excess = 1e-4;
     double allowed_stretch = 1.5;
-    double exact_angle = 1e-6; // radians: what deformations leave at most
     double least_hinge = 0.3;  // length of the edge over the root of the part's area
     double speck_share = 5e-4; // of the mesh's area: smaller parts hang on any edge
 };
@@ -197,8 +196,7 @@ private:
             return largest_defect(make_flattening_problem(mesh_, chart.surface));
         };
         return unfold(make_flattening_problem(mesh_, joined.surface)) &&
-               defect_of(joined) <=
-                   std::max({tuning.exact_angle, defect_of(small), defect_of(large)});
+               defect_of(joined) <= std::max({exact_angle, defect_of(small), defect_of(large)});
     }
 
     bool is_border(HalfEdge h, Index part) const {
@@ -219,7 +217,7 @@ private:
             other = leaving != h ? leaving : other;
         });
         const bool glues =
-            is_inner && cuts == 2 && std::abs(defect_[mesh_.origin(h)]) <= tuning.exact_angle;
+            is_inner && cuts == 2 && std::abs(defect_[mesh_.origin(h)]) <= exact_angle;
         return glues ? other : HalfEdge();
     }
 

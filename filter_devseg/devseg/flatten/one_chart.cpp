@@ -283,7 +283,7 @@ public:
     /// What is to be cut, see flatten_one.
     std::vector<HalfEdge> flatten() {
         if (develop(mesh_, problem_, chart_)) // stays as it is: its parts are not pushed apart
-            return tear(overlaps());
+            return tear(deep_overlaps());
         const bool has_holes = !problem_.holes.empty();
         const auto open = [&] { return open_holes(mesh_, surface_, progress_); };
         auto map = flattening_.map(method_);
@@ -316,6 +316,12 @@ private:
     }
 
     Pairs overlaps() const { return overlapping_pairs(surface_, chart_.uv, tolerance_); }
+
+    // Those that paper shows, if there are any: what is left once they are apart may need no cut.
+    Pairs deep_overlaps() const {
+        Pairs deep = overlapping_pairs(surface_, chart_.uv, slit_gap * problem_.model_size);
+        return deep.empty() ? overlaps() : deep;
+    }
 
     Pairs take(const Map& map) {
         chart_.uv = map.uv;
@@ -403,6 +409,9 @@ void part_closed_slits(const Mesh& mesh, const FlatteningProblem& problem, FlatC
 
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
     auto development = unfold(problem);
+    // Exact angles of many vertices add up to gaps that paper does not show.
+    if (!development && largest_defect(problem) <= exact_angle)
+        development = unfold(problem, slit_gap);
     if (!development)
         return false;
     chart.uv = std::move(*development);
