@@ -16,8 +16,8 @@ export CCACHE_BASEDIR=$root
 source "$root/scripts/meshlab_headers.sh"
 
 system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev libeigen3-dev
-    libgtest-dev libcgal-dev libpolyclipping-dev libglew-dev pkg-config xz-utils dpkg-dev ccache python3-venv
-    python3-dev fonts-dejavu-core)
+    libgtest-dev libcgal-dev libpolyclipping-dev libjpeg-dev libglew-dev pkg-config xz-utils dpkg-dev
+    ccache python3-venv python3-dev fonts-dejavu-core)
 
 # What is built: everything, tests as well.
 build_targets=(all)

@@ -28,8 +28,12 @@ constexpr Tuning tuning;
 
 constexpr plane::Color paper = {255, 255, 255};
 
-// Barycentric coordinates of a point in the plane of a face.
+// Barycentric coordinates of a point in the plane of a face; faces that no cut goes through have
+// its corners.
 Vec3 place_in(const Mesh& mesh, Face f, const Vec3& p) {
+    for (Index k = 0; k < 3; ++k)
+        if (p == mesh.points[mesh.faces[f][at(k)]])
+            return Vec3::Unit(k);
     const Vec3& origin = mesh.points[mesh.faces[f][0]];
     Eigen::Matrix<double, 3, 2> edges;
     edges << mesh.points[mesh.faces[f][1]] - origin, mesh.points[mesh.faces[f][2]] - origin;

@@ -1,5 +1,3 @@
-// References
-//   W3C: Portable Network Graphics (PNG) Specification, second edition. 2003.
 #include "writers/canvas.h"
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include <QByteArray>
+#include <QBuffer>
+#include <QImage>
 
 #include "devseg/base/errors.h"
 #include "devseg/plane/plane.h"
@@ -21,36 +20,6 @@ namespace {
 constexpr double pixels_per_mm = 300.0 / 25.4;
 constexpr double line_width = 0.2; // mm, as in PDF files
 constexpr double chord = 0.02;     // mm, between curves and their lines
-
-std::string big_endian(std::uint32_t value) {
-    std::string bytes;
-    for (int shift = 24; shift >= 0; shift -= 8)
-        bytes += static_cast<char>(value >> shift & 255U);
-    return bytes;
-}
-
-std::uint32_t checksum(const std::string& bytes) {
-    static const std::array<std::uint32_t, 256> table = [] {
-        std::array<std::uint32_t, 256> all{};
-        for (std::uint32_t i = 0; i < 256; ++i) {
-            std::uint32_t value = i;
-            for (int k = 0; k < 8; ++k)
-                value = (value & 1U) != 0 ? 0xedb88320U ^ value >> 1 : value >> 1;
-            all[i] = value;
-        }
-        return all;
-    }();
-    std::uint32_t sum = 0xffffffffU;
-    for (const char c : bytes)
-        sum = table[(sum ^ static_cast<std::uint8_t>(c)) & 255U] ^ sum >> 8;
-    return ~sum;
-}
-
-std::string chunk(const std::string& name, const std::string& content) {
-    const std::string body = name + content;
-    return big_endian(static_cast<std::uint32_t>(content.size())) + body +
-           big_endian(checksum(body));
-}
 
 // A page of pixels, drawn on in millimetres from its lower left corner.
 class Canvas {
@@ -277,30 +246,19 @@ private:
 } // namespace
 
 std::string png_bytes(const DrawingImage& image) {
-    // Each row after a byte that says how it is filtered: by the row above, as what is drawn goes
-    // on.
-    std::string rows;
-    const std::size_t width = 3 * static_cast<std::size_t>(image.columns);
-    rows.reserve((width + 1) * static_cast<std::size_t>(image.rows));
-    for (std::size_t y = 0; y < static_cast<std::size_t>(image.rows); ++y) {
-        rows += '\2';
-        for (std::size_t x = 0; x < width; ++x) {
-            const int above = y > 0 ? image.rgb[(y - 1) * width + x] : 0;
-            rows += static_cast<char>(image.rgb[y * width + x] - above);
-        }
-    }
-    // Qt puts the size in front of what zlib makes, as four bytes.
-    const QByteArray packed =
-        qCompress(reinterpret_cast<const uchar*>(rows.data()), static_cast<int>(rows.size()))
-            .mid(4);
-    const auto per_metre = static_cast<std::uint32_t>(
-        std::lround(1e3 * image.columns / std::max(1e-9, image.size.x())));
-    return "\x89PNG\r\n\x1a\n" +
-           chunk("IHDR", big_endian(static_cast<std::uint32_t>(image.columns)) +
-                             big_endian(static_cast<std::uint32_t>(image.rows)) +
-                             std::string("\10\2\0\0\0", 5)) +
-           chunk("pHYs", big_endian(per_metre) + big_endian(per_metre) + '\1') +
-           chunk("IDAT", packed.toStdString()) + chunk("IEND", "");
+    QImage picture(image.rgb.data(), image.columns, image.rows, 3 * image.columns,
+                   QImage::Format_RGB888);
+    const auto per_metre =
+        static_cast<int>(std::lround(1e3 * image.columns / std::max(1e-9, image.size.x())));
+    picture.setDotsPerMeterX(per_metre);
+    picture.setDotsPerMeterY(per_metre);
+    QBuffer file;
+    file.open(QIODevice::WriteOnly);
+    if (!picture.save(&file, "PNG"))
+        throw InvalidParameter("page: expected pictures that fit into memory in .png, found " +
+                               std::to_string(image.columns) + " x " + std::to_string(image.rows) +
+                               " pixels; give a smaller page");
+    return file.data().toStdString();
 }
 
 std::vector<std::string> png_pages(const Document& document) {

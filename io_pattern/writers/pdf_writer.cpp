@@ -192,10 +192,12 @@ private:
     // The images of the drawing, each inside of its rings.
     std::string pictures(std::string& objects) {
         std::string data;
-        for (std::size_t i = 0; i < document_.drawing.images.size(); ++i) {
+        const std::vector<std::string> photographs = jpeg_files(document_.drawing.images);
+        for (std::size_t i = 0; i < photographs.size(); ++i) {
             const DrawingImage& image = document_.drawing.images[i];
             const std::string name = "/Picture" + std::to_string(i);
-            objects += name + ' ' + PdfObjects::reference(add_photograph(image)) + ' ';
+            objects +=
+                name + ' ' + PdfObjects::reference(add_photograph(image, photographs[i])) + ' ';
             data += "q ";
             for (const DrawingPolyline& ring : image.clip)
                 data += outline(ring);
@@ -210,12 +212,12 @@ private:
                "EMC\n";
     }
 
-    int add_photograph(const DrawingImage& image) {
+    int add_photograph(const DrawingImage& image, const std::string& jpeg) {
         return objects_.add_packed("/Type /XObject /Subtype /Image /ColorSpace /DeviceRGB "
                                    "/BitsPerComponent 8 /Filter /DCTDecode /Width " +
                                        std::to_string(image.columns) + " /Height " +
                                        std::to_string(image.rows),
-                                   jpeg_bytes(image));
+                                   jpeg);
     }
 
     int add_image(const DrawingImage& image) {

@@ -28,7 +28,8 @@ constexpr double stroke_width = 0.1; // mm, a hairline that viewers still show
 
 class Writer {
 public:
-    explicit Writer(const Drawing& drawing) : drawing_(drawing), xml_(&bytes_) {
+    explicit Writer(const Drawing& drawing)
+        : drawing_(drawing), photographs_(jpeg_files(drawing.images)), xml_(&bytes_) {
         xml_.setAutoFormatting(true);
         xml_.setAutoFormattingIndent(1);
     }
@@ -103,7 +104,8 @@ private:
     // The images of one piece, of none (""), or all of them, each inside of its rings.
     void write_images(const std::string& prefix, const std::string& piece) {
         bool any = false;
-        for (const DrawingImage& image : drawing_.images) {
+        for (std::size_t i = 0; i < drawing_.images.size(); ++i) {
+            const DrawingImage& image = drawing_.images[i];
             if (piece != all && image.owner != piece)
                 continue;
             if (!any)
@@ -126,11 +128,10 @@ private:
             xml_.writeAttribute("height", number(image.size.y()));
             xml_.writeAttribute("preserveAspectRatio", "none");
             xml_.writeAttribute("clip-path", "url(#" + clip + ')');
-            const std::string bytes = jpeg_bytes(image);
             xml_.writeAttribute(
                 xlink_namespace, "href",
                 "data:image/jpeg;base64," +
-                    QString::fromLatin1(QByteArray::fromStdString(bytes).toBase64()));
+                    QString::fromLatin1(QByteArray::fromStdString(photographs_[i]).toBase64()));
         }
         if (any)
             xml_.writeEndElement();
@@ -240,6 +241,7 @@ private:
     }
 
     const Drawing& drawing_;
+    std::vector<std::string> photographs_; // of each image
     QByteArray bytes_;
     QXmlStreamWriter xml_;
     int clips_ = 0;

@@ -119,7 +119,8 @@ bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOpt
         const Marks still = whole_charts(mesh, result.charts, around);
         for (std::size_t v = 0; v < still.size(); ++v)
             if (still[v] != 0) {
-                attempt.opened[v] = 1;
+                if (std::abs(defect[v]) > options.tolerance)
+                    attempt.opened[v] = 1;
                 attempt.ease[at(point_of[v])] = 0.0;
             }
     }

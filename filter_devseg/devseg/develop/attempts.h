@@ -24,8 +24,9 @@ using Crossings = std::vector<std::pair<Index, Index>>;
 /// Changes `attempt` for the next time, by what is wrong with the result of this one: defects above
 /// the tolerance, crossings, vertices that moved too far. Where slits may be cut (`adjust_slits`),
 /// vertices there are opened, farther around and with smaller defects each time, and in the end the
-/// charts that are concerned are opened at all vertices and do not move at all: their faces are
-/// developable. So this ends. Returns false where nothing is wrong, or nothing can be done.
+/// charts that are concerned are opened at all vertices with defects and do not move at all: they
+/// are developable then. So this ends. Returns false where nothing is wrong, or nothing can be
+/// done.
 bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOptions& options,
            const DeformResult& result, const Crossings& crossings, Attempt& attempt);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -68,6 +69,9 @@ public:
     DeformResult run(Progress& progress) {
         const std::vector<Vec3> start = projection_.points();
         iterate(progress);
+        if (options_.adjust_slits)
+            close_tips(
+                [&](Vertex, double defect) { return std::abs(defect) <= options_.tolerance; });
         result_.residual = projection_.residual();
         result_.converged = result_.residual <= options_.tolerance;
         result_.inner_vertices = static_cast<Index>(rows_.size());
@@ -90,10 +94,15 @@ private:
         do
             project(progress);
         while (options_.adjust_slits && projection_.residual() <= options_.tolerance &&
-               effort_ < options_.max_iterations && close_reflex_tips());
+               effort_ < options_.max_iterations && close_tips([&](Vertex v, double defect) {
+                   return kept_open_[v] == 0 && defect < -options_.tolerance &&
+                          defect >= -attempt_.most_turn_inside;
+               }));
     }
 
-    bool close_reflex_tips() {
+    // Closes the last edge of slits to such vertices, and what is exact behind it.
+    template <class MayClose>
+    bool close_tips(MayClose may_close) {
         Mesh now = mesh_;
         for (std::size_t v = 0; v < now.points.size(); ++v)
             now.points[v] = projection_.points()[point_of_[v]];
@@ -101,10 +110,13 @@ private:
         const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh_);
         std::vector<Index> cuts = atlas::cut_edges_at_vertices(mesh_, result_.charts.seam);
         std::vector<std::uint8_t>& seam = result_.charts.seam;
-        const Index closed_before = result_.closed_edges;
-        for (const Vertex v : mesh_.all_vertices()) {
-            if (boundary[v] != 0 || cuts[v] != 1 || kept_open_[v] != 0 ||
-                !(defect[v] < -options_.tolerance) || defect[v] < -attempt_.most_turn_inside)
+        std::vector<Index> tips(mesh_.points.size()); // the last one comes next
+        std::iota(tips.rbegin(), tips.rend(), 0);
+        bool any = false;
+        while (!tips.empty()) {
+            const Vertex v = tips.back();
+            tips.pop_back();
+            if (boundary[v] != 0 || cuts[v] != 1 || !may_close(v, defect[v]))
                 continue;
             HalfEdge edge;
             mesh::visit_star(mesh_, leaving_[v],
@@ -117,11 +129,13 @@ private:
             --cuts[other];
             kept_open_[v] = 1; // if it is cut again, it stays so
             ++result_.closed_edges;
+            any = true;
+            if (std::abs(defect[other]) <= options_.tolerance)
+                tips.push_back(other);
         }
-        if (result_.closed_edges == closed_before)
-            return false;
-        constrain_all();
-        return true;
+        if (any)
+            constrain_all();
+        return any;
     }
 
     void constrain_all() {

@@ -12,6 +12,7 @@
 #include "devseg/flatten/maps/unfold.h"
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/repair/overlaps.h"
+#include "devseg/mesh/angle_defects.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::flatten {
@@ -109,7 +110,8 @@ std::vector<Index> cut_apart(const Mesh& mesh, const Cuts& cuts, FlattenResult& 
 // Joins charts. Labels of charts that are joined to others fall out of use until `renumber`.
 class Reattachment {
 public:
-    Reattachment(const Mesh& mesh, FlattenResult& result) : mesh_(mesh), result_(result) {}
+    Reattachment(const Mesh& mesh, FlattenResult& result)
+        : mesh_(mesh), defect_(mesh::angle_defects(mesh)), result_(result) {}
 
     // Parts that were cut off: (area, chart), the smallest first.
     std::vector<std::pair<double, Index>> parts() const {
@@ -132,17 +134,25 @@ public:
     }
 
     bool hinge(Index part, double least) {
-        std::vector<std::pair<double, Index>> hinges;
+        std::vector<std::pair<double, std::vector<HalfEdge>>> hinges;
+        std::vector<std::uint8_t> in_hinge(mesh_.twin.size(), 0);
         for (const Face f : flat(part).surface.face)
             for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh_.twin[h];
-                if (twin >= 0 && result_.charts.chart[face_of(twin)] != part &&
-                    mesh_.edge_length(h) >= least)
-                    hinges.emplace_back(mesh_.edge_length(h), h);
+                if (in_hinge[h] != 0 || !is_border(h, part))
+                    continue;
+                std::vector<HalfEdge> run = run_through(h, part);
+                double length = 0.0;
+                for (const HalfEdge k : run) {
+                    in_hinge[k] = 1;
+                    length += mesh_.edge_length(k);
+                }
+                if (length >= least)
+                    hinges.emplace_back(length, std::move(run));
             }
-        std::sort(hinges.begin(), hinges.end(), std::greater<>());
+        std::stable_sort(hinges.begin(), hinges.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
         return std::any_of(hinges.begin(), hinges.end(),
-                           [&](const auto& edge) { return try_hinge(part, edge.second); });
+                           [&](const auto& run) { return try_hinge(part, run.second); });
     }
 
     void renumber() {
@@ -163,9 +173,7 @@ private:
         joined.surface = atlas::join_surfaces(mesh_, small.surface, large.surface, seam);
         if (!atlas::is_sound(mesh_, joined.surface))
             return false;
-        // What can be folded of paper stays so.
-        if ((small.developed || large.developed) &&
-            !unfold(make_flattening_problem(mesh_, joined.surface)))
+        if ((small.developed || large.developed) && !stays_exact(small, large, joined))
             return false;
         if (!flatten_one(mesh_, method, joined, progress).empty())
             return false;
@@ -180,22 +188,78 @@ private:
         return true;
     }
 
-    // Across one edge: an exact development stays one.
-    bool try_hinge(Index part, HalfEdge h) {
+    // What can be folded of paper stays so: small faces close gaps that are not seen, but an angle
+    // that is wrong stays wrong.
+    bool stays_exact(const FlatChart& small, const FlatChart& large,
+                     const FlatChart& joined) const {
+        const auto defect_of = [&](const FlatChart& chart) {
+            return largest_defect(make_flattening_problem(mesh_, chart.surface));
+        };
+        return unfold(make_flattening_problem(mesh_, joined.surface)) &&
+               defect_of(joined) <= std::max({exact_angle, defect_of(small), defect_of(large)});
+    }
+
+    bool is_border(HalfEdge h, Index part) const {
         const HalfEdge twin = mesh_.twin[h];
-        const Index other = result_.charts.chart[face_of(twin)];
+        return twin >= 0 && result_.charts.chart[face_of(h)] == part &&
+               result_.charts.chart[face_of(twin)] != part;
+    }
+
+    // The other cut edge at the start of a half-edge, leaving it: where there are two, and exact
+    // angles once they are glued. Else none.
+    HalfEdge across_start(HalfEdge h) const {
+        HalfEdge other;
+        int cuts = 0;
+        const bool is_inner = mesh::visit_star(mesh_, h, [&](HalfEdge leaving) {
+            if (result_.charts.seam[leaving] == 0)
+                return;
+            ++cuts;
+            other = leaving != h ? leaving : other;
+        });
+        const bool glues =
+            is_inner && cuts == 2 && std::abs(defect_[mesh_.origin(h)]) <= exact_angle;
+        return glues ? other : HalfEdge();
+    }
+
+    // The edge with those before and behind it along the part's border, as far as gluing them all
+    // to one neighbour leaves angles exact, as on straight creases: a hinge is mostly one edge.
+    std::vector<HalfEdge> run_through(HalfEdge h, Index part) const {
+        const Index other = result_.charts.chart[face_of(mesh_.twin[h])];
+        const auto goes_on = [&](HalfEdge k) {
+            return k >= 0 && k != h && is_border(k, part) &&
+                   result_.charts.chart[face_of(mesh_.twin[k])] == other;
+        };
+        std::vector<HalfEdge> run{h};
+        for (HalfEdge k = across_start(mesh_.twin[h]); goes_on(k); k = across_start(mesh_.twin[k]))
+            run.push_back(k);
+        const auto before = [&](HalfEdge k) {
+            const HalfEdge leaving = across_start(k);
+            return leaving >= 0 ? HalfEdge(mesh_.twin[leaving]) : leaving;
+        };
+        // Behind a run that goes all around there is none before it.
+        for (HalfEdge k = before(h); goes_on(k) && k != run.back(); k = before(k))
+            run.push_back(k);
+        return run;
+    }
+
+    // Across one edge, or several that leave angles exact: an exact development stays one.
+    bool try_hinge(Index part, const std::vector<HalfEdge>& run) {
+        const Index other = result_.charts.chart[face_of(mesh_.twin[run.front()])];
         if (!flat(other).developed)
             return false;
-        std::vector<std::uint8_t>& seam = result_.charts.seam;
-        seam[h] = seam[twin] = 0;
+        const auto mark = [&](std::uint8_t value) {
+            for (const HalfEdge h : run)
+                result_.charts.seam[h] = result_.charts.seam[mesh_.twin[h]] = value;
+        };
+        mark(0);
         std::vector<Index> faces = flat(other).surface.face;
         const std::vector<Index>& added = flat(part).surface.face;
         faces.insert(faces.end(), added.begin(), added.end());
         std::sort(faces.begin(), faces.end());
         FlatChart joined;
-        joined.surface = atlas::extract_surface(mesh_, std::move(faces), seam);
+        joined.surface = atlas::extract_surface(mesh_, std::move(faces), result_.charts.seam);
         if (!atlas::is_sound(mesh_, joined.surface) || !lies_flat(joined)) {
-            seam[h] = seam[twin] = 1;
+            mark(1);
             return false;
         }
         joined.cut_off = flat(other).cut_off;
@@ -223,6 +287,7 @@ private:
     }
 
     const Mesh& mesh_;
+    std::vector<double> defect_; // #V, radians
     FlattenResult& result_;
 };
 

@@ -40,8 +40,9 @@ struct FlattenResult {
 /// are pushed apart where the method is symmetric Dirichlet and that changes the shape little, and
 /// else cut apart along a short path; what is then too small to be a chart goes to a neighbour
 /// whose map has room for it. Charts that are exactly developable are unfolded, whatever the
-/// method: only cut apart, never pushed, and small parts are hinged to another chart. The result
-/// does not depend on the number of threads. Throws NumericalFailure, naming the chart's size,
+/// method: only cut apart, never pushed, and small parts are hinged to another chart; slits whose
+/// sides lie on each other by less than `slit_gap` are opened by as little. The result does not
+/// depend on the number of threads. Throws NumericalFailure, naming the chart's size,
 /// where no map without flips could be found.
 FlattenResult flatten_charts(const Mesh& mesh, const atlas::ChartMap& charts, FlattenMethod method,
                              Progress& progress);
@@ -66,8 +67,9 @@ void hand_over_slivers(const Mesh& mesh, FlattenMethod method, FlattenResult& re
                        Progress& progress);
 
 /// Parts of exact developments that were separated go to a neighbour, also an exact development,
-/// the smallest part first: across one edge, which keeps the development exact, that is long enough
-/// to hold the part. Returns how many.
+/// the smallest part first: across one edge, or several between which all angles are exact, as on
+/// straight creases. That keeps the development exact, and is long enough to hold the part. Returns
+/// how many.
 int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress);
 
 } // namespace devseg::flatten

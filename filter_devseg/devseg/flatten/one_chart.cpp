@@ -1,5 +1,6 @@
 #include "devseg/flatten/one_chart.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -228,11 +229,11 @@ private:
 };
 
 // The half-edges of the mesh along a short path that takes overlapping faces apart.
-std::vector<HalfEdge> cut_between(const Mesh& mesh, const ChartSurface& surface,
-                                  const Pairs& pairs) {
+std::vector<HalfEdge> cut_between(const Mesh& mesh, const ChartSurface& surface, const Pairs& pairs,
+                                  bool at_folds) {
     std::vector<HalfEdge> cut;
     if (!pairs.empty())
-        for (const HalfEdge h : separating_path(mesh, surface, pairs))
+        for (const HalfEdge h : separating_path(mesh, surface, pairs, Progress(), at_folds))
             cut.push_back(surface.mesh_half_edge(h));
     return cut;
 }
@@ -257,7 +258,7 @@ std::vector<HalfEdge> halve(const Mesh& mesh, const ChartSurface& surface) {
     Pairs pairs{{reached.front(), reached.back()}};
     for (std::size_t i = 0; i < reached.size() / 3; ++i)
         pairs.emplace_back(reached[i], reached[reached.size() - 1 - i]);
-    return cut_between(mesh, surface, pairs);
+    return cut_between(mesh, surface, pairs, false);
 }
 
 // An isometric map is no longer than half of its boundary.
@@ -282,7 +283,7 @@ public:
     /// What is to be cut, see flatten_one.
     std::vector<HalfEdge> flatten() {
         if (develop(mesh_, problem_, chart_)) // stays as it is: its parts are not pushed apart
-            return tear(overlaps());
+            return tear(deep_overlaps());
         const bool has_holes = !problem_.holes.empty();
         const auto open = [&] { return open_holes(mesh_, surface_, progress_); };
         auto map = flattening_.map(method_);
@@ -311,10 +312,16 @@ private:
     std::vector<HalfEdge> tear(const Pairs& pairs) {
         if (pairs.empty())
             return {};
-        return tear([&] { return cut_between(mesh_, surface_, pairs); });
+        return tear([&] { return cut_between(mesh_, surface_, pairs, chart_.developed); });
     }
 
     Pairs overlaps() const { return overlapping_pairs(surface_, chart_.uv, tolerance_); }
+
+    // Those that paper shows, if there are any: what is left once they are apart may need no cut.
+    Pairs deep_overlaps() const {
+        Pairs deep = overlapping_pairs(surface_, chart_.uv, slit_gap * problem_.model_size);
+        return deep.empty() ? overlaps() : deep;
+    }
 
     Pairs take(const Map& map) {
         chart_.uv = map.uv;
@@ -376,8 +383,35 @@ std::vector<HalfEdge> open_holes(const Mesh& mesh, const ChartSurface& surface,
     return cut;
 }
 
+namespace {
+
+// Slits whose sides lie on each other by less than paper shows are opened by as little: cutting off
+// a face for that would make a speck.
+void part_closed_slits(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
+    const double unseen = slit_gap * problem.model_size;
+    const auto overlaps = [&](const std::vector<Vec2>& uv, double tolerance) {
+        return overlaps_itself(chart.surface, uv, tolerance);
+    };
+    const double tolerance = plane::layout_tolerance(problem.model_size);
+    if (!overlaps(chart.uv, tolerance) || overlaps(chart.uv, unseen))
+        return;
+    for (double gap = tolerance; gap < 2.0 * unseen; gap *= 2.0) {
+        std::vector<Vec2> uv = chart.uv;
+        open_closed_slits(mesh, chart.surface, std::min(gap, unseen), uv);
+        if (!overlaps(uv, tolerance)) {
+            chart.uv = std::move(uv);
+            return;
+        }
+    }
+}
+
+} // namespace
+
 bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& chart) {
     auto development = unfold(problem);
+    // Exact angles of many vertices add up to gaps that paper does not show.
+    if (!development && largest_defect(problem) <= exact_angle)
+        development = unfold(problem, slit_gap);
     if (!development)
         return false;
     chart.uv = std::move(*development);
@@ -387,6 +421,7 @@ bool develop(const Mesh& mesh, const FlatteningProblem& problem, FlatChart& char
     const double gap = slit_gap * problem.model_size;
     if (closed_slits_hide_loops(mesh, chart.surface, 0.1 * gap, chart.uv))
         open_closed_slits(mesh, chart.surface, gap, chart.uv);
+    part_closed_slits(mesh, problem, chart);
     chart.developed = true;
     chart.energy = symmetric_dirichlet_energy(problem, chart.uv);
     return true;

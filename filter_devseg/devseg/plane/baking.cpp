@@ -46,6 +46,17 @@ struct Weights {
             weights[static_cast<Index>(k)] = across[k].dot(p - corner[(k + 1) % 3]);
         return weights;
     }
+    // The part of a row that is inside, with a pixel to spare at both ends.
+    void limit(double y, double& low, double& high) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2& from = corner[(k + 1) % 3];
+            const double x = from.x() - across[k].y() / across[k].x() * (y - from.y());
+            if (across[k].x() > 0.0)
+                low = std::max(low, x - 1.0);
+            else if (across[k].x() < 0.0)
+                high = std::min(high, x + 1.0);
+        }
+    }
 
     double area;
     const std::array<Vec2, 3>& corner;
@@ -59,13 +70,16 @@ struct Step {
 
     static constexpr std::int16_t unknown = std::numeric_limits<std::int16_t>::max();
     bool is_known() const { return x != unknown; }
-    std::int64_t squared() const { return std::int64_t{x} * x + std::int64_t{y} * y; }
+    bool is_none() const { return x == 0 && y == 0; }
 };
 
 class Nearest {
 public:
-    Nearest(int width, int height, const std::vector<float>& distance)
+    // Within `reach` pixels.
+    Nearest(int width, int height, double reach, const std::vector<float>& distance)
         : width_(width), height_(height), steps_(distance.size()) {
+        reach = std::min(reach, Step::unknown - 1.0);
+        most_ = static_cast<std::int64_t>(reach * reach);
         for (std::size_t i = 0; i < steps_.size(); ++i)
             if (std::isfinite(distance[i]))
                 steps_[i] = {0, 0};
@@ -81,28 +95,35 @@ private:
     void sweep(int y, int beside) {
         if (y + beside >= 0 && y + beside < height_)
             for (int x = 0; x < width_; ++x)
-                for (const int aside : {-1, 0, 1})
-                    learn(x, y, aside, beside);
+                if (!row(y)[x].is_none())
+                    for (const int aside : {-1, 0, 1})
+                        learn(x, y, aside, beside);
         for (int x = 0; x < width_; ++x)
             learn(x, y, -1, 0);
         for (int x = width_ - 1; x >= 0; --x)
             learn(x, y, 1, 0);
     }
     void learn(int x, int y, int dx, int dy) {
-        Step& own = steps_[at(y) * at(width_) + at(x)];
-        if ((own.x == 0 && own.y == 0) || x + dx < 0 || x + dx >= width_)
+        Step& own = row(y)[x];
+        if (own.is_none() || x + dx < 0 || x + dx >= width_)
             return;
-        const Step& other = steps_[at(y + dy) * at(width_) + at(x + dx)];
+        const Step other = row(y + dy)[x + dx];
         if (!other.is_known())
             return;
         const Step candidate{static_cast<std::int16_t>(other.x + dx),
                              static_cast<std::int16_t>(other.y + dy)};
-        if (!own.is_known() || candidate.squared() < own.squared())
+        const std::int64_t size = squared(candidate);
+        if (size <= most_ && (!own.is_known() || size < squared(own)))
             own = candidate;
+    }
+    Step* row(int y) { return steps_.data() + static_cast<std::ptrdiff_t>(y) * width_; }
+    static std::int64_t squared(const Step& step) {
+        return std::int64_t{step.x} * step.x + std::int64_t{step.y} * step.y;
     }
 
     int width_;
     int height_;
+    std::int64_t most_; // squared
     std::vector<Step> steps_;
 };
 
@@ -129,9 +150,12 @@ void Baking::add(const BakedTriangle& triangle, double reach) {
         return static_cast<int>(std::clamp(std::ceil(high + reach), 0.0, double(size)));
     };
     const Weights weights(triangle.place);
-    for (int y = first(box.min().y(), image_.height); y < last(box.max().y(), image_.height); ++y)
-        for (int x = first(box.min().x(), image_.width); x < last(box.max().x(), image_.width);
-             ++x) {
+    for (int y = first(box.min().y(), image_.height); y < last(box.max().y(), image_.height); ++y) {
+        double low = box.min().x();
+        double high = box.max().x();
+        if (reach <= 0.0)
+            weights.limit(y + 0.5, low, high);
+        for (int x = first(low, image_.width); x < last(high, image_.width); ++x) {
             const std::size_t pixel = at(image_.height - 1 - y) * at(image_.width) + at(x);
             if (distance_[pixel] == 0.0F)
                 continue;
@@ -152,38 +176,40 @@ void Baking::add(const BakedTriangle& triangle, double reach) {
             distance_[pixel] = distance;
             paint(triangle, pixel, place);
         }
+    }
 }
 
 void Baking::paint(const BakedTriangle& triangle, std::size_t pixel, const Vec3& weights) {
     std::array<double, 3> color{};
-    Vec2 source = Vec2::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-        source += weights[static_cast<Index>(k)] * triangle.uv[k];
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            color[channel] +=
-                weights[static_cast<Index>(k)] * triangle.color[k][static_cast<Index>(channel)];
-    }
-    if (triangle.source != nullptr)
+    if (triangle.source != nullptr) {
+        Vec2 source = Vec2::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+            source += weights[static_cast<Index>(k)] * triangle.uv[k];
         color = sample(*triangle.source, source);
+    } else {
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                color[channel] +=
+                    weights[static_cast<Index>(k)] * triangle.color[k][static_cast<Index>(channel)];
+    }
     for (std::size_t k = 0; k < 3; ++k)
         image_.rgb[3 * pixel + k] =
-            static_cast<std::uint8_t>(std::lround(std::clamp(color[k], 0.0, 255.0)));
+            static_cast<std::uint8_t>(std::clamp(color[k], 0.0, 255.0) + 0.5);
 }
 
 void Baking::spread(double reach, const Color& far) {
-    const Nearest nearest(image_.width, image_.height, distance_);
+    const Nearest nearest(image_.width, image_.height, reach, distance_);
     for (int y = 0; y < image_.height; ++y)
         for (int x = 0; x < image_.width; ++x) {
             const std::size_t pixel = at(y) * at(image_.width) + at(x);
             const Step& step = nearest[pixel];
-            if (step.x == 0 && step.y == 0)
+            if (step.is_none())
                 continue;
-            const bool is_near =
-                step.is_known() && static_cast<double>(step.squared()) <= reach * reach;
-            const std::size_t source =
-                is_near ? at(y + step.y) * at(image_.width) + at(x + step.x) : pixel;
-            for (std::size_t k = 0; k < 3; ++k)
-                image_.rgb[3 * pixel + k] = is_near ? image_.rgb[3 * source + k] : far[k];
+            const std::uint8_t* color =
+                step.is_known()
+                    ? image_.rgb.data() + 3 * (at(y + step.y) * at(image_.width) + at(x + step.x))
+                    : far.data();
+            std::copy(color, color + 3, image_.rgb.data() + 3 * pixel);
         }
 }
 

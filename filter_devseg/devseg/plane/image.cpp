@@ -14,11 +14,13 @@ struct Between {
 };
 
 Between between(double place, int size) {
-    const double floor = std::floor(place);
     const double period = static_cast<double>(size);
-    const auto low = static_cast<std::size_t>(
-        std::min(floor - period * std::floor(floor / period), period - 1.0));
-    return {low, (low + 1) % static_cast<std::size_t>(size), place - floor};
+    if (!(place >= 0.0 && place < period)) // outside of the unit square, or no number
+        place = std::min(std::max(0.0, place - period * std::floor(place / period)),
+                         std::nextafter(period, 0.0));
+    const auto low = static_cast<std::size_t>(place);
+    return {low, low + 1 < static_cast<std::size_t>(size) ? low + 1 : 0,
+            place - static_cast<double>(low)};
 }
 
 } // namespace
@@ -27,14 +29,15 @@ std::array<double, 3> sample(const Image& image, const Vec2& uv) {
     const Between x = between(uv.x() * image.width - 0.5, image.width);
     const Between y = between((1.0 - uv.y()) * image.height - 0.5, image.height);
     const auto width = static_cast<std::size_t>(image.width);
+    const auto pixel = [&](std::size_t column, std::size_t row) {
+        return image.rgb.data() + 3 * (row * width + column);
+    };
+    const std::array<const std::uint8_t*, 4> around = {pixel(x.low, y.low), pixel(x.high, y.low),
+                                                       pixel(x.low, y.high), pixel(x.high, y.high)};
     std::array<double, 3> color{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto pixel = [&](std::size_t column, std::size_t row) {
-            return static_cast<double>(image.rgb[3 * (row * width + column) + k]);
-        };
-        const double above = (1.0 - x.share) * pixel(x.low, y.low) + x.share * pixel(x.high, y.low);
-        const double below =
-            (1.0 - x.share) * pixel(x.low, y.high) + x.share * pixel(x.high, y.high);
+        const double above = (1.0 - x.share) * around[0][k] + x.share * around[1][k];
+        const double below = (1.0 - x.share) * around[2][k] + x.share * around[3][k];
         color[k] = (1.0 - y.share) * above + y.share * below;
     }
     return color;

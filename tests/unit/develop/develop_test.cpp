@@ -1,4 +1,5 @@
 // Deformation to exact developability and exact unfolding.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,10 +9,12 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/develop/angle_constraints.h"
+#include "devseg/develop/attempts.h"
 #include "devseg/develop/deform.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/maps/unfold.h"
+#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/methods/papercraft/papercraft.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
@@ -239,6 +242,20 @@ TEST(Deform, VerticesMoveNoFartherThanTheyMay) {
     EXPECT_LE(shares(0.0, 0.5 * free.second).second, 0.5 * free.second);
 }
 
+TEST(Deform, ChartsThatStandStillAreOpenedWhereTheyAreNotFlat) {
+    const Mesh mesh = checks::gated(shapes::cube(4));
+    DeformResult result;
+    result.points = mesh.points;
+    result.charts = checks::components(mesh);
+    Attempt attempt{std::vector<double>(mesh.points.size(), 1.0),
+                    std::vector<std::uint8_t>(mesh.points.size(), 0)};
+    attempt.number = 20; // late
+    ASSERT_TRUE(learn(mesh, own_points(mesh), {}, result, {{0, 1}}, attempt));
+    EXPECT_EQ(std::count(attempt.opened.begin(), attempt.opened.end(), 1), 8); // its corners
+    EXPECT_EQ(std::count(attempt.ease.begin(), attempt.ease.end(), 0.0),
+              static_cast<std::ptrdiff_t>(mesh.points.size()));
+}
+
 TEST(Deform, VerticesThatShareAPointStayTogether) {
     // Two fans that touch in a vertex of the host: the gate splits it.
     mesh::RawMesh raw = shapes::with_noise(shapes::hemisphere(12, 4), 0.02, 1);
@@ -407,6 +424,42 @@ TEST(Unfold, DevelopmentsThatLieOnThemselvesAreSeparated) {
         }
     }
     EXPECT_NEAR(area, mesh.total_area, 1e-9 * mesh.total_area);
+}
+
+// A ring in a zigzag, cut along one ray, with a little more than a full turn around its middle: the
+// sides of the cut lie on each other in the plane.
+Index parts_of_ring(double excess) {
+    mesh::RawMesh raw = shapes::annulus(16, 2, 1.0, 2.0);
+    const double turn = 2.0 * shapes::pi / 16.0;
+    const double c = (std::cos(turn + excess / 16.0) + 1.0) / (std::cos(turn) + 1.0);
+    const double psi = std::acos(std::sqrt(c)); // as in zigzag_fan
+    std::vector<std::uint8_t> on_ray;
+    for (Vec3& p : raw.points) {
+        const int i = static_cast<int>(std::lround(std::atan2(p.y(), p.x()) / turn));
+        on_ray.push_back(i == 0 ? 1 : 0);
+        const double r = p.norm();
+        p *= std::cos(psi);
+        p.z() = r * std::sin(i % 2 == 0 ? psi : -psi);
+    }
+    const Mesh mesh = checks::gated(raw);
+    std::vector<std::uint8_t> seam;
+    for (const HalfEdge h : mesh.all_half_edges())
+        seam.push_back(mesh.twin[h] >= 0 ? on_ray[mesh.origin(h)] & on_ray[mesh.target(h)] : 0);
+    const std::vector<Index> labels(mesh.faces.size(), 0);
+    Progress progress;
+    const flatten::FlattenResult flat =
+        flatten::flatten_charts(mesh, atlas::make_chart_map(mesh, labels, seam, false),
+                                flatten::FlattenMethod::symmetric_dirichlet, progress);
+    for (const flatten::FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        EXPECT_TRUE(flatten::is_one_to_one(chart.surface, chart.uv));
+    }
+    return flat.charts.count;
+}
+
+TEST(Unfold, OverlapsThatPaperDoesNotShowAreNoReasonToCut) {
+    EXPECT_EQ(parts_of_ring(1e-5), 1);
+    EXPECT_EQ(parts_of_ring(1e-2), 2);
 }
 
 TEST(Unfold, ASmallPartIsHingedToANeighbour) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -106,6 +107,33 @@ TEST(Slivers, CloseAFlatRing) {
     ASSERT_EQ(flat.charts.count, 1);
     EXPECT_EQ(flat.flat.front().surface.loops.size(), 2U);
     EXPECT_TRUE(flat.flat.front().developed);
+}
+
+// A square whose middle is raised a little, so that half of the faces around it are a part of their
+// own: both unfold, and together nearly.
+Index charts_around_a_tip(double height) {
+    mesh::RawMesh raw = shapes::grid(20, 20);
+    const Index tip = 10 * 21 + 10;
+    raw.points[at(tip)].z() += height;
+    const Mesh mesh = checks::gated(raw);
+    std::vector<Index> label(mesh.faces.size(), 0);
+    for (const Face f : mesh.all_faces())
+        if (std::count(mesh.faces[f].begin(), mesh.faces[f].end(), tip) > 0)
+            label[at(f)] = mesh.face_centers[f].x() > mesh.points[at(tip)].x() ? 1 : 0;
+    Progress progress;
+    FlattenResult flat = flatten_charts(mesh, atlas::make_chart_map(mesh, label, {}, false),
+                                        FlattenMethod::symmetric_dirichlet, progress);
+    for (FlatChart& chart : flat.flat) {
+        EXPECT_TRUE(chart.developed);
+        chart.cut_off = chart.surface.face_count() < 10;
+    }
+    hand_over_slivers(mesh, FlattenMethod::symmetric_dirichlet, flat, progress);
+    return flat.charts.count;
+}
+
+TEST(Slivers, StayWhereAnAngleOfAnExactChartWouldBeWrong) {
+    EXPECT_EQ(charts_around_a_tip(0.0), 1);
+    EXPECT_EQ(charts_around_a_tip(1e-4), 2); // 1e-5 radians, and gaps of 5e-7
 }
 
 // Charts that readers of the texture coordinates take for disks, or for disks with flat holes.

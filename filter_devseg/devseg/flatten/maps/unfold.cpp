@@ -1,5 +1,6 @@
 #include "devseg/flatten/maps/unfold.h"
 
+#include <algorithm>
 #include <cmath>
 #include <queue>
 #include <utility>
@@ -81,6 +82,25 @@ std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double
     if (!keeps || laid < problem.faces.size() || count_flips(problem, uv) > 0)
         return std::nullopt;
     return uv;
+}
+
+double largest_defect(const FlatteningProblem& problem) {
+    std::vector<double> sum(at(problem.vertex_count), 0.0);
+    std::vector<std::uint8_t> is_inner(sum.size(), 1);
+    for (std::size_t f = 0; f < problem.faces.size(); ++f)
+        for (const HalfEdge h : half_edges_of(static_cast<Index>(f))) {
+            const Triangle& t = problem.faces[f];
+            const Vertex v = t[corner_of(h)];
+            sum[v] +=
+                plane::angle_between(rest_edge(problem, h), -rest_edge(problem, Mesh::previous(h)));
+            if (problem.twin[h] < 0)
+                is_inner[v] = is_inner[t[corner_of(Mesh::next(h))]] = 0;
+        }
+    double largest = 0.0;
+    for (std::size_t v = 0; v < sum.size(); ++v)
+        if (is_inner[v] != 0)
+            largest = std::max(largest, std::abs(sum[v] - 2.0 * pi));
+    return largest;
 }
 
 } // namespace devseg::flatten

@@ -14,4 +14,11 @@ namespace devseg::flatten {
 /// the chart's area, and no face is turned over. Nothing for charts that are not developable.
 std::optional<std::vector<Vec2>> unfold(const FlatteningProblem& problem, double tolerance = 1e-6);
 
+/// Radians: what deformations leave at most around an inner vertex.
+constexpr double exact_angle = 1e-6;
+
+/// Largest difference of the angles around an inner vertex from 2π, radians: small faces unfold to
+/// within a length although theirs are wrong.
+double largest_defect(const FlatteningProblem& problem);
+
 } // namespace devseg::flatten

@@ -323,14 +323,17 @@ bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>
 }
 
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
-                                   const Pairs& pairs, const Progress& progress) {
+                                   const Pairs& pairs, const Progress& progress, bool at_folds) {
     // In a disk, the least border between two connected sets of faces is one path from boundary to
     // boundary: the cut makes two disks. Around holes it may be several.
     graph::MinCut cut(two_sides(surface, pairs));
     for (const HalfEdge h : surface.all_half_edges())
-        if (surface.twin[h] > h)
+        if (surface.twin[h] > h) {
+            const HalfEdge edge = surface.mesh_half_edge(h);
             cut.link(face_of(h), face_of(surface.twin[h]),
-                     atlas::cut_cost(mesh, surface.mesh_half_edge(h)));
+                     atlas::cut_cost(mesh, edge) *
+                         (at_folds ? atlas::crease_factor(mesh, edge) : 1.0));
+        }
     const std::vector<graph::CutSide> side = cut.solve(progress);
     std::vector<Index> path;
     for (const HalfEdge h : surface.all_half_edges())

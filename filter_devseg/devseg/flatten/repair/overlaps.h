@@ -36,9 +36,11 @@ bool overlaps_itself(const atlas::ChartSurface& surface, const std::vector<Vec2>
 
 /// Half-edges of the surface that cut it in two along a short path, such that the two faces of the
 /// first overlapping pair, with as many of the faces around them that take part in the overlap as
-/// possible, come apart. Half-edges are local, one for each edge.
+/// possible, come apart. Half-edges are local, one for each edge. `at_folds`: sharp folds count
+/// less, as cuts of paper are not seen there.
 std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& surface,
-                                   const Pairs& pairs, const Progress& progress = Progress());
+                                   const Pairs& pairs, const Progress& progress = Progress(),
+                                   bool at_folds = false);
 
 /// The map with its overlapping parts pushed apart by a penalty on contacts; `pairs` are the faces
 /// that overlap. Nothing if that does not help, or costs too much shape: then a cut
