@@ -71,8 +71,8 @@ pack::Window PageGrid::clear(Index page) const {
 pack::Window PageGrid::sheet() const {
     if (rows_ == 0)
         return {};
-    return coarse({0, clear_range(columns_ - 1, columns_, 0)[1], 0,
-                   clear_range(rows_ - 1, rows_, 1)[1]});
+    return coarse(
+        {0, clear_range(columns_ - 1, columns_, 0)[1], 0, clear_range(rows_ - 1, rows_, 1)[1]});
 }
 
 pack::ChartCells PageGrid::closed(const std::vector<std::uint8_t>& is_open,
@@ -115,18 +115,18 @@ pack::ChartCells PageGrid::closed(const std::vector<std::uint8_t>& is_open,
 void PageGrid::count(const pack::ChartCells& image, const pack::Spot& spot,
                      std::vector<Index>& cells) const {
     std::vector<pack::Window> pages;
-    for (Index page = 0; page < glued(); ++page)
-        pages.push_back(own(page));
-    for (const pack::CellRun& run : image.runs)
-        for (Index row = 0; row < rows_; ++row) {
-            const pack::Window& first = pages[at(row * columns_)];
-            if (spot.y + run.row < first.bottom || spot.y + run.row > first.top)
-                continue;
-            for (Index page = row * columns_; page < (row + 1) * columns_; ++page)
-                cells[at(page)] +=
-                    std::max(Index{0}, std::min(pages[at(page)].right + 1, spot.x + run.last) -
-                                           std::max(pages[at(page)].left, spot.x + run.first));
-        }
+    for (Index column = 0; column < columns_; ++column)
+        pages.push_back(own(column));
+    Index row = 0;
+    pack::Window here = rows_ > 0 ? own(0) : pack::Window{};
+    for (const pack::CellRun& run : image.runs) { // row by row
+        while (row + 1 < rows_ && spot.y + run.row > here.top)
+            here = own(++row * columns_);
+        for (Index column = 0; column < columns_; ++column)
+            cells[at(row * columns_ + column)] +=
+                std::max(Index{0}, std::min(pages[at(column)].right + 1, spot.x + run.last) -
+                                       std::max(pages[at(column)].left, spot.x + run.first));
+    }
 }
 
 } // namespace devseg::sheet

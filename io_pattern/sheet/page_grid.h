@@ -16,6 +16,7 @@ constexpr double border_clearance = 0.5;
 struct PageProblem {
     PageFormat page;
     double cell = 1.0; // mm
+    Index factor = 1;  // cells that make a coarse one, to a side
     Index columns = 0; // cells that a piece with its margin may take on one page
     Index rows = 0;
     std::vector<pack::Outline> outlines;

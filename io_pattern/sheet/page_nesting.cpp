@@ -21,6 +21,7 @@ struct Tuning {
     // Along the shorter side of a page: 1.5 mm of an A4 page, and more where a piece fits narrowly.
     double cells = 130.0;
     double most_cells = 1000.0;
+    double coarse_cells = 26.0;       // where pieces look for pages
     int turns = 32;                   // of a piece, all around
     int all_turns = 180;              // of one that fits on a page in none of these
     double most_pages_across = 200.0; // of one piece: more is a wrong scale
@@ -119,6 +120,7 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     const Vec2 room = page.printable() + Vec2::Constant(piece_gap - 2.0 * border_clearance);
     problem.columns = static_cast<Index>(std::floor(room.x() / problem.cell));
     problem.rows = static_cast<Index>(std::floor(room.y() / problem.cell));
+    problem.factor = static_cast<Index>(std::lround(cells / tuning.coarse_cells));
     problem.poses.resize(pieces.size());
     problem.is_large.assign(pieces.size(), 0);
     for (const SheetPiece& piece : pieces) {
@@ -130,8 +132,7 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
         auto drawing = progress.part(cells < tuning.most_cells ? 0.5 : 1.0);
         parallel_for(
             static_cast<int>(pieces.size()),
-            [&](int i) { is_fine[at(i)] = draw_poses(problem, at(i)) ? 1 : 0; },
-            drawing);
+            [&](int i) { is_fine[at(i)] = draw_poses(problem, at(i)) ? 1 : 0; }, drawing);
     }
     if (cells < tuning.most_cells && std::count(is_fine.begin(), is_fine.end(), 0) > 0)
         return make_problem(pieces, page, 2.0 * cells, progress);
@@ -243,9 +244,9 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
         if (on < 0) {
             std::vector<Index> cells(at(grid.pages()), 0);
             grid.count(best.images[i], spot, cells);
-            on = static_cast<Index>(std::find_if(cells.begin(), cells.end(),
-                                                 [](Index c) { return c > 0; }) -
-                                    cells.begin());
+            on = static_cast<Index>(
+                std::find_if(cells.begin(), cells.end(), [](Index c) { return c > 0; }) -
+                cells.begin());
         }
         const Index sheet = ranks[at(found.of_page[at(on)])];
         Vec2 corner = Vec2(extents[at(sheet)][0], extents[at(sheet)][2]).cwiseProduct(page.step());

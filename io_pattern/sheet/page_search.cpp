@@ -1,11 +1,11 @@
-#include <cstdio>
-#include <cstdlib>
 #include "sheet/page_search.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "devseg/base/parallel.h"
@@ -16,17 +16,19 @@ namespace devseg::sheet {
 namespace {
 
 struct Tuning {
-    Index factor = getenv("FA") ? atoi(getenv("FA")) : 5;           // cells that make one coarse cell, to a side
-    int searches = 4;           // on sheets of other widths
-    double work = getenv("WK") ? atof(getenv("WK")) : 8e9;        // cells that all searches look at, some seconds
-    double fine_work = getenv("FW") ? atof(getenv("FW")) : 1.0e8;   // to bring what was found to the problem's cells
-    double covered = 0.6;      // of the pages of a sheet, as large pieces lie at first
+    int searches = 6;           // on sheets of other widths,
+    int best = 2;               // of which the best go on, each with one half of
+    double work = 8e9;          // cells that are looked at, some seconds
+    double board_work = 60.0;   // of a cell, for each time that pages are closed
+    double fine_work = 1e8;     // to bring what was found to the problem's cells
+    double enough = 0.4;        // of a coarse cell: pieces have room on the finer ones
+    double covered = 0.6;       // of pages, by pieces that are laid for the first time
+    int attempts = 8;           // on more and more pages
     double full = 0.9;          // share of the paper that no nesting covers
     double almost_empty = 0.05; // of a page: it is hardly worth the paper
-    int attempts = 8;           // on larger and larger sheets, until pieces lie apart
 };
-static const Tuning tuning;
-static const pack::SeparationOptions coarse_moves{0, std::size_t(getenv("CP")?atoi(getenv("CP")):8), getenv("PA")?atoi(getenv("PA")):30};
+constexpr Tuning tuning;
+constexpr pack::SeparationOptions coarse_moves{0, 8, 15};
 constexpr double fine_turn = 1.5 * pi / 180.0;
 constexpr int fine_turns = 2; // to each side
 constexpr pack::SeparationOptions fine_moves{7, 2 * fine_turns + 1, 40};
@@ -47,14 +49,23 @@ Windows windows_of(const PageProblem& problem, const PageGrid& grid,
                    const std::vector<std::uint8_t>& is_open, const pack::ChartCells& closed,
                    const pack::Spot& spot) {
     std::vector<pack::Window> clear;
-    for (Index page = 0; page < grid.pages(); ++page)
-        if (is_open[at(page)] != 0)
-            clear.push_back(grid.clear(page));
+    pack::Window around{grid.sheet().right, 0, grid.sheet().top, 0}; // open pages of the sheet
+    for (Index page = 0; page < grid.pages(); ++page) {
+        if (is_open[at(page)] == 0)
+            continue;
+        clear.push_back(grid.clear(page));
+        if (page >= grid.glued())
+            continue;
+        const pack::Window own = grid.own(page);
+        around = {std::min(around.left, own.left), std::max(around.right, own.right),
+                  std::min(around.bottom, own.bottom), std::max(around.top, own.top)};
+    }
+    around.right = std::min(around.right, grid.sheet().right);
+    around.top = std::min(around.top, grid.sheet().top);
     Windows windows;
     for (const std::uint8_t large : problem.is_large)
-        windows.push_back(large != 0 ? std::vector<pack::Window>{grid.sheet()} : clear);
-    windows.push_back(
-        {{spot.x, spot.x + closed.width - 1, spot.y, spot.y + closed.height - 1}});
+        windows.push_back(large != 0 ? std::vector<pack::Window>{around} : clear);
+    windows.push_back({{spot.x, spot.x + closed.width - 1, spot.y, spot.y + closed.height - 1}});
     return windows;
 }
 
@@ -70,31 +81,86 @@ Index page_of(const PageGrid& grid, const pack::ChartCells& image, const pack::S
     return -1;
 }
 
+// Places of one large piece on its own, by the pages that it needs.
+struct Footprints {
+    std::vector<std::vector<pack::Spot>> spots; // as few as possible, and one more
+    Index most_columns = 0;                     // of pages, as the piece may lie
+    Index fewest = 0;
+    Index most_rows = 0;
+};
+
+Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& poses) {
+    Footprints result;
+    result.spots.resize(2);
+    const Vec2 step = problem.page.step() / (problem.factor * problem.cell);
+    Index across = 0;
+    for (const pack::ChartCells& image : poses)
+        across = std::max({across, image.width, image.height});
+    result.most_columns = static_cast<Index>(std::ceil(across / step.x())) + 1;
+    result.most_rows = static_cast<Index>(std::ceil(across / step.y())) + 1;
+    const PageGrid grid(problem, result.most_columns, result.most_rows, 0, problem.factor);
+    Index fewest = grid.glued();
+    for (std::size_t pose = 0; pose < poses.size(); ++pose)
+        for (Index y = 0; y < step.y(); ++y)
+            for (Index x = 0; x < step.x(); ++x) {
+                std::vector<Index> cells(at(grid.glued()), 0);
+                grid.count(poses[pose], {pose, x, y}, cells);
+                const auto pages =
+                    grid.glued() - static_cast<Index>(std::count(cells.begin(), cells.end(), 0));
+                if (pages < fewest) {
+                    result.spots[1] = pages + 1 == fewest ? std::move(result.spots[0])
+                                                          : std::vector<pack::Spot>();
+                    result.spots[0].clear();
+                    fewest = pages;
+                }
+                if (pages <= fewest + 1)
+                    result.spots[at(pages - fewest)].push_back({pose, x, y});
+            }
+    result.fewest = fewest;
+    if (result.spots[1].empty())
+        result.spots.pop_back();
+    return result;
+}
+
 class Search {
 public:
-    Search(const PageProblem& problem, const std::vector<pack::ChartPoses>& poses, Index columns,
-           std::uint64_t seed, double work)
-        : problem_(problem), poses_(poses), columns_(columns), seed_(seed), work_(static_cast<std::int64_t>(work)) {}
+    Search(const PageProblem& problem, const std::vector<pack::ChartPoses>& poses,
+           const std::vector<Footprints>& footprints, Index columns, std::uint64_t seed)
+        : problem_(problem), poses_(poses), footprints_(footprints), columns_(columns), seed_(seed),
+          random_(static_cast<std::minstd_rand::result_type>(seed + 1)), charts_(poses) {
+        charts_.emplace_back();
+    }
 
     // All layouts that were found, each better than the one before.
     const std::vector<CoarseLayout>& found() const { return found_; }
-    std::int64_t left() const { return work_; }
 
-    void run(const Progress& progress) {
-        if (!begin(progress))
-            return;
-        while (work_ > 0 && !is_best() && close_some(progress))
-            ;
+    // Goes on for so much work.
+    void advance(double work, const Progress& progress) {
+        work_ += static_cast<std::int64_t>(work);
+        while (work_ > 0 && found_.empty() && attempt_ < tuning.attempts)
+            begin(progress);
+        while (work_ > 0 && !found_.empty() && !is_best())
+            close_some(progress);
+    }
+
+    Index goal() const {
+        Index least = std::numeric_limits<Index>::max();
+        for (const CoarseLayout& layout : found_)
+            least = std::min(least, layout.goal);
+        return least;
     }
 
 private:
     bool is_best() const {
         const double total = std::accumulate(problem_.area.begin(), problem_.area.end(), 0.0);
-        return found_.back().goal <= std::ceil(total / (tuning.full * problem_.page_area()));
+        Index least = static_cast<Index>(std::ceil(total / (tuning.full * problem_.page_area())));
+        for (const Footprints& f : footprints_)
+            least = std::max(least, f.fewest);
+        return goal() <= least;
     }
 
     PageGrid grid_of(const CoarseLayout& layout) const {
-        return {problem_, layout.columns, layout.rows, layout.singles, tuning.factor};
+        return {problem_, layout.columns, layout.rows, layout.singles, problem_.factor};
     }
 
     std::vector<Index> covered(const CoarseLayout& layout) const {
@@ -111,7 +177,7 @@ private:
     }
 
     void keep(CoarseLayout layout) {
-        const double cell = tuning.factor * problem_.cell;
+        const double cell = problem_.factor * problem_.cell;
         const double least = tuning.almost_empty * problem_.page_area() / (cell * cell);
         layout.goal = 0;
         for (const Index cells : covered(layout))
@@ -123,11 +189,12 @@ private:
     bool separate(CoarseLayout& layout, const std::vector<std::uint8_t>& is_open, bool anew,
                   const Progress& progress) {
         const PageGrid grid = grid_of(layout);
-        std::vector<pack::ChartPoses> charts = poses_;
         pack::Spot spot;
-        charts.push_back({grid.closed(is_open, spot)});
-        pack::Separation separation(charts, ++seed_, progress);
-        separation.confine(windows_of(problem_, grid, is_open, charts.back().front(), spot));
+        charts_.back() = {grid.closed(is_open, spot)};
+        const pack::ChartCells& closed = charts_.back().front();
+        work_ -= static_cast<std::int64_t>(tuning.board_work * closed.width * closed.height);
+        pack::Separation separation(charts_, ++seed_, progress);
+        separation.confine(windows_of(problem_, grid, is_open, closed, spot));
         pack::Layout spots = layout.spots;
         spots.push_back(spot);
         const pack::Frame frame{grid.sheet().right + 1, grid.sheet().top + 1};
@@ -146,63 +213,98 @@ private:
         return done;
     }
 
-    bool begin(const Progress& progress) {
+    // On a larger and larger part of the sheet, until pieces lie apart.
+    void begin(const Progress& progress) {
         double large = 0.0;
         double small = 0.0;
         for (std::size_t i = 0; i < poses_.size(); ++i)
             (problem_.is_large[i] != 0 ? large : small) += problem_.area[i];
+        const double covered = tuning.covered * problem_.page_area();
         CoarseLayout layout;
-        layout.columns = columns_;
+        Index rows = 0;
+        layout.columns = columns_ + 1;
         if (large > 0.0)
-            layout.rows = static_cast<Index>(
-                std::ceil(large / (tuning.covered * problem_.page_area() * columns_)));
+            rows = static_cast<Index>(std::ceil(large / (covered * columns_))) + attempt_;
         if (small > 0.0)
-            layout.singles =
-                static_cast<Index>(std::ceil(small / (tuning.covered * problem_.page_area())));
-        for (int attempt = 0; attempt < tuning.attempts; ++attempt) {
-            layout.spots.assign(poses_.size(), pack::Spot{});
-            const std::vector<std::uint8_t> is_open(at(grid_of(layout).pages()), 1);
-            if (separate(layout, is_open, true, progress)) {
-                keep(std::move(layout));
-                return true;
-            }
-            layout.rows += large > 0.0 ? 1 : 0;
-            layout.singles += small > 0.0 ? 1 : 0;
+            layout.singles = static_cast<Index>(std::ceil(small / covered)) + attempt_;
+        ++attempt_;
+        layout.rows = large > 0.0 ? rows + 1 : 0;
+        for (const Footprints& f : footprints_) {
+            layout.columns = std::max(layout.columns, f.most_columns);
+            layout.rows = std::max(layout.rows, f.most_rows);
         }
-        return false;
+        layout.spots.assign(poses_.size(), pack::Spot{});
+        const PageGrid grid = grid_of(layout);
+        std::vector<std::uint8_t> is_open(at(grid.pages()), 1);
+        for (Index page = 0; page < grid.glued(); ++page)
+            is_open[at(page)] =
+                page % layout.columns < columns_ && page / layout.columns < rows ? 1 : 0;
+        if (separate(layout, is_open, true, progress))
+            keep(std::move(layout));
     }
 
-    // Closes one page of those in use, the emptiest that can be.
-    bool close_some(const Progress& progress) {
-        const std::vector<Index> cells = covered(found_.back());
-        std::vector<std::size_t> pages;
-        std::vector<std::uint8_t> is_open(cells.size(), 0);
-        for (std::size_t page = 0; page < cells.size(); ++page)
-            if (cells[page] > 0) {
-                pages.push_back(page);
-                is_open[page] = 1;
-            }
+    // A large piece jumps to where it needs few pages, or none does; and one page less is open.
+    void close_some(const Progress& progress) {
+        CoarseLayout next = found_.back();
+        const auto count_open = [](const std::vector<Index>& cells) {
+            return cells.size() -
+                   static_cast<std::size_t>(std::count(cells.begin(), cells.end(), 0));
+        };
+        const std::size_t wanted = count_open(covered(next)) - 1;
+        const std::size_t i = random_() % poses_.size();
+        const bool jumps = problem_.is_large[i] != 0 && random_() % 2 == 0;
+        if (jumps)
+            jump(i, next);
+        const std::vector<Index> cells = covered(next);
+        std::vector<std::size_t> pages(cells.size());
+        std::iota(pages.begin(), pages.end(), std::size_t{0});
+        pages.erase(std::remove_if(pages.begin(), pages.end(),
+                                   [&](std::size_t page) { return cells[page] == 0; }),
+                    pages.end());
         std::stable_sort(pages.begin(), pages.end(),
                          [&](std::size_t a, std::size_t b) { return cells[a] < cells[b]; });
-        for (const std::size_t page : pages) {
-            if (work_ <= 0)
-                return false;
-            CoarseLayout next = found_.back();
-            is_open[page] = 0;
-            if (separate(next, is_open, false, progress)) {
-                keep(std::move(next));
-                return true;
-            }
+        std::vector<std::uint8_t> is_open(cells.size(), 0);
+        for (const std::size_t page : pages)
             is_open[page] = 1;
+        for (std::size_t open = pages.size(); open > wanted; --open) {
+            // Mostly one of the emptiest.
+            const std::size_t k = std::min(random_() % pages.size(), random_() % pages.size());
+            is_open[pages[k]] = 0;
+            pages.erase(pages.begin() + static_cast<std::ptrdiff_t>(k));
         }
-        return true; // again, with other numbers
+        if (separate(next, is_open, false, progress))
+            keep(std::move(next));
+    }
+
+    void jump(std::size_t i, CoarseLayout& layout) {
+        const Footprints& f = footprints_[i];
+        const std::vector<pack::Spot>& spots = f.spots[random_() % f.spots.size()];
+        pack::Spot spot = spots[random_() % spots.size()];
+        const PageGrid grid = grid_of(layout);
+        const pack::Window all = grid.sheet();
+        const pack::ChartCells& image = poses_[i][spot.pose];
+        // As many pages further as there is room for.
+        const Vec2 step = problem_.page.step() / (problem_.factor * problem_.cell);
+        const auto shift = [&](Index low, Index high, double pages) {
+            const auto most =
+                static_cast<unsigned>(std::max(0.0, std::floor((high - low) / pages)));
+            return static_cast<Index>(
+                std::lround(pages * static_cast<double>(random_() % (most + 1))));
+        };
+        spot.x += shift(spot.x + image.width, all.right + 1, step.x());
+        spot.y += shift(spot.y + image.height, all.top + 1, step.y());
+        layout.spots[i] = spot;
     }
 
     const PageProblem& problem_;
     const std::vector<pack::ChartPoses>& poses_;
+    const std::vector<Footprints>& footprints_;
     Index columns_;
     std::uint64_t seed_;
-    std::int64_t work_;
+    std::minstd_rand random_;
+    std::vector<pack::ChartPoses> charts_; // pieces, and what is closed
+    int attempt_ = 0;
+    std::int64_t work_ = 0;
     std::vector<CoarseLayout> found_;
 };
 
@@ -210,7 +312,7 @@ private:
 std::optional<PageLayout> refined(const PageProblem& problem,
                                   const std::vector<pack::ChartPoses>& coarse,
                                   const CoarseLayout& found, const Progress& progress) {
-    const PageGrid from(problem, found.columns, found.rows, found.singles, tuning.factor);
+    const PageGrid from(problem, found.columns, found.rows, found.singles, problem.factor);
     const PageGrid grid(problem, found.columns, found.rows, found.singles, 1);
     std::vector<std::uint8_t> is_open(at(grid.pages()), 0);
     std::vector<pack::ChartPoses> charts;
@@ -221,13 +323,13 @@ std::optional<PageLayout> refined(const PageProblem& problem,
         pack::Spot spot = found.spots[i];
         if (problem.is_large[i] != 0) {
             from.count(image, spot, cells);
-            spot.x *= tuning.factor;
-            spot.y *= tuning.factor;
+            spot.x *= problem.factor;
+            spot.y *= problem.factor;
         } else {
             const Index page = page_of(from, image, spot);
             cells[at(page)] += 1;
-            spot.x = grid.clear(page).left + tuning.factor * (spot.x - from.clear(page).left);
-            spot.y = grid.clear(page).bottom + tuning.factor * (spot.y - from.clear(page).bottom);
+            spot.x = grid.clear(page).left + problem.factor * (spot.x - from.clear(page).left);
+            spot.y = grid.clear(page).bottom + problem.factor * (spot.y - from.clear(page).bottom);
         }
         const double angle = std::atan2(image.sine, image.cosine);
         charts.emplace_back();
@@ -253,9 +355,8 @@ std::optional<PageLayout> refined(const PageProblem& problem,
     for (std::size_t i = 0; i < coarse.size(); ++i) {
         result.images.push_back(charts[i][spots[i].pose]);
         result.spots.push_back(spots[i]);
-        result.page.push_back(problem.is_large[i] != 0
-                                  ? -1
-                                  : page_of(grid, result.images.back(), spots[i]));
+        result.page.push_back(
+            problem.is_large[i] != 0 ? -1 : page_of(grid, result.images.back(), spots[i]));
     }
     return result;
 }
@@ -360,17 +461,38 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
         static_cast<int>(count),
         [&](int i) {
             for (const pack::FitImage& image : problem.poses[at(i)])
-                coarse[at(i)].push_back(pack::coarsen(image.cells, tuning.factor, getenv("SH") ? atof(getenv("SH")) : 0.5));
+                coarse[at(i)].push_back(pack::coarsen(image.cells, problem.factor, tuning.enough));
+        },
+        progress);
+    std::vector<Footprints> footprints(count);
+    parallel_for(
+        static_cast<int>(count),
+        [&](int i) {
+            if (problem.is_large[at(i)] != 0)
+                footprints[at(i)] = find_footprints(problem, coarse[at(i)]);
         },
         progress);
     std::vector<Search> searches;
-    constexpr Index wider[] = {0, -1, 1, -2};
-    for (int k = 0; k < tuning.searches; ++k)
-        searches.emplace_back(problem, coarse, std::max(least, even + wider[k % 4]),
-                              std::uint64_t{1000} * at(k), tuning.work / tuning.searches);
-    auto searching = progress.part(0.9);
+    for (int k = 0; k < tuning.searches; ++k) {
+        const Index wider = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
+        searches.emplace_back(problem, coarse, footprints, std::max(least, even + wider),
+                              std::uint64_t{1000} * at(k));
+    }
+    const double work = tuning.work / (2 * tuning.searches);
+    auto searching = progress.part(0.5);
     parallel_for(
-        tuning.searches, [&](int k) { searches[at(k)].run(searching); }, searching);
+        tuning.searches, [&](int k) { searches[at(k)].advance(work, searching); }, searching);
+    // The better ones go on.
+    std::vector<Search*> better;
+    for (Search& search : searches)
+        better.push_back(&search);
+    std::stable_sort(better.begin(), better.end(),
+                     [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
+    auto going_on = progress.part(0.9);
+    parallel_for(
+        tuning.best,
+        [&](int k) { better[at(k)]->advance(0.5 * tuning.work / tuning.best, going_on); },
+        going_on);
     std::vector<const CoarseLayout*> found;
     for (const Search& search : searches)
         for (const CoarseLayout& layout : search.found())
@@ -378,10 +500,9 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
     std::stable_sort(found.begin(), found.end(), [](const CoarseLayout* a, const CoarseLayout* b) {
         return a->goal < b->goal;
     });
-    if (getenv("PDBG")) for (const Search& q : searches) { fprintf(stderr, "search:"); for (auto& l : q.found()) fprintf(stderr, " %dx%d+%d:%d", l.columns, l.rows, l.singles, l.goal); fprintf(stderr, " work left %.2g\n", (double)q.left()); }
     for (const CoarseLayout* layout : found)
-        if (auto result = refined(problem, coarse, *layout, progress)) { if (getenv("PDBG")) fprintf(stderr, "refined %d\n", layout->goal);
-            return *result; } else if (getenv("PDBG")) fprintf(stderr, "refine failed %d\n", layout->goal);
+        if (auto result = refined(problem, coarse, *layout, progress))
+            return *result;
     return first_fit(problem, std::max(least, even), progress);
 }
 

@@ -315,8 +315,7 @@ ChartCells coarsen(const ChartCells& fine, Index factor, double share) {
     Canvas canvas(width, height);
     const Index most = *std::max_element(covered.begin(), covered.end());
     // A chart thinner than the cells must not vanish.
-    const Index enough =
-        std::min(most, static_cast<Index>(std::ceil(share * factor * factor)));
+    const Index enough = std::min(most, static_cast<Index>(std::ceil(share * factor * factor)));
     for (Index y = 0; y < height; ++y)
         for (Index x = 0; x < width; ++x)
             if (covered[at(y) * at(width) + at(x)] >= enough)

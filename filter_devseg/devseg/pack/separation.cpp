@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <cstdlib>
 // Guided local search for nesting:
 //   J. Egeblad, B. K. Nielsen, A. Odgaard: "Fast neighborhood search for two- and three-dimensional
 //   nesting problems", European Journal of Operational Research 183(3), 2007,
@@ -223,7 +221,6 @@ bool Separation::run(Layout& layout, const Frame& frame, const SeparationOptions
             idle = 0;
         }
     }
-    if (getenv("PDBG2")) { fprintf(stderr, "run n %zu frame %dx%d: total %lld least %lld work used %.2g :", n, frame.width, frame.height, (long long)total, (long long)least, double(work - work_)); for (auto t : totals_) fprintf(stderr, " %lld", (long long)t); fprintf(stderr, "\n"); }
     work = work_;
     if (total > 0)
         return false;

@@ -130,7 +130,6 @@ public:
     bool run(Layout& layout, const Frame& frame, const SeparationOptions& options,
              std::int64_t& work);
 
-
     /// True when every chart has a pose that fits into the frame, without windows.
     bool fits(const Frame& frame) const;
 
@@ -150,9 +149,7 @@ private:
     Index right_of(std::size_t i, const ChartCells& c) const {
         return at_left_[i] != 0 ? 0 : frame_.width - c.width;
     }
-    bool fits(std::size_t i, const ChartCells& c) const {
-        return !places_within(i, c).empty();
-    }
+    bool fits(std::size_t i, const ChartCells& c) const { return !places_within(i, c).empty(); }
     std::vector<Window> places_within(std::size_t i, const ChartCells& c) const;
     const ChartCells& cells(std::size_t i) const { return poses_[i][layout_[i].pose]; }
 
