@@ -109,7 +109,11 @@ pack::ChartCells PageGrid::closed(const std::vector<std::uint8_t>& is_open,
                 ++x;
         }
     }
-    return pack::coarsen(image, 1); // with the depth of its cells
+    if (factor_ > 1)
+        return pack::coarsen(image, 1); // with the depth of its cells
+    for (const pack::CellRun& run : image.runs)
+        image.obstacle.push_back({run, 1});
+    return image;
 }
 
 void PageGrid::count(const pack::ChartCells& image, const pack::Spot& spot,

@@ -24,6 +24,7 @@ struct Tuning {
     double enough = 0.4;        // of a coarse cell: pieces have room on the finer ones
     double covered = 0.6;       // of pages, by pieces that are laid for the first time
     int attempts = 8;           // on more and more pages
+    Index longest = 4000;       // cells of a piece: of larger ones, others are few pages
     double full = 0.9;          // share of the paper that no nesting covers
     double almost_empty = 0.05; // of a page: it is hardly worth the paper
 };
@@ -89,7 +90,8 @@ struct Footprints {
     Index most_rows = 0;
 };
 
-Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& poses) {
+Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& poses,
+                           const Progress& progress) {
     Footprints result;
     result.spots.resize(2);
     const Vec2 step = problem.page.step() / (problem.factor * problem.cell);
@@ -101,7 +103,8 @@ Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& p
     const PageGrid grid(problem, result.most_columns, result.most_rows, 0, problem.factor);
     Index fewest = grid.glued();
     for (std::size_t pose = 0; pose < poses.size(); ++pose)
-        for (Index y = 0; y < step.y(); ++y)
+        for (Index y = 0; y < step.y(); ++y) {
+            progress.check();
             for (Index x = 0; x < step.x(); ++x) {
                 std::vector<Index> cells(at(grid.glued()), 0);
                 grid.count(poses[pose], {pose, x, y}, cells);
@@ -116,6 +119,7 @@ Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& p
                 if (pages <= fewest + 1)
                     result.spots[at(pages - fewest)].push_back({pose, x, y});
             }
+        }
     result.fewest = fewest;
     if (result.spots[1].empty())
         result.spots.pop_back();
@@ -319,6 +323,7 @@ std::optional<PageLayout> refined(const PageProblem& problem,
     pack::Layout spots;
     std::vector<Index> cells(at(grid.pages()), 0);
     for (std::size_t i = 0; i < coarse.size(); ++i) {
+        progress.check();
         const pack::ChartCells& image = coarse[i][found.spots[i].pose];
         pack::Spot spot = found.spots[i];
         if (problem.is_large[i] != 0) {
@@ -361,9 +366,16 @@ std::optional<PageLayout> refined(const PageProblem& problem,
     return result;
 }
 
+// Of the images of a piece, those of quarter turns.
+std::vector<std::size_t> few_poses(const std::vector<pack::FitImage>& all) {
+    std::vector<std::size_t> few;
+    for (std::size_t k = 0; k < all.size(); k += std::max<std::size_t>(1, all.size() / 4))
+        few.push_back(k);
+    return few;
+}
+
 // Each piece at the lowest free place, the largest first.
 PageLayout first_fit(const PageProblem& problem, Index columns, const Progress& progress) {
-    constexpr std::size_t few_turns = 4;
     const std::size_t count = problem.poses.size();
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -382,13 +394,10 @@ PageLayout first_fit(const PageProblem& problem, Index columns, const Progress& 
     const Index width = one_row.sheet().right + 1;
     pack::FreeCells board(std::max(width, columns * problem.columns), longest);
     const auto put = [&](std::size_t i, pack::FreeCells& cells, const pack::FitWindow& window) {
+        const std::vector<std::size_t> poses = few_poses(problem.poses[i]);
         std::vector<pack::FitImage> few;
-        std::vector<std::size_t> poses;
-        const std::size_t every = std::max<std::size_t>(1, problem.poses[i].size() / few_turns);
-        for (std::size_t k = 0; k < problem.poses[i].size(); k += every) {
-            few.push_back(problem.poses[i][k]);
-            poses.push_back(k);
-        }
+        for (const std::size_t pose : poses)
+            few.push_back(problem.poses[i][pose]);
         if (!cells.put(few, window, layout.spots[i]))
             return false;
         layout.spots[i].pose = poses[layout.spots[i].pose];
@@ -437,8 +446,8 @@ std::array<Index, 2> columns_of(const PageProblem& problem) {
             continue;
         large += problem.area[i];
         Index least = problem.poses[i].front().cells.width;
-        for (const pack::FitImage& image : problem.poses[i])
-            least = std::min(least, image.cells.width);
+        for (const std::size_t pose : few_poses(problem.poses[i]))
+            least = std::min(least, problem.poses[i][pose].cells.width);
         widest = std::max(widest, least);
     }
     Index columns = 1;
@@ -454,7 +463,11 @@ std::array<Index, 2> columns_of(const PageProblem& problem) {
 PageLayout search_pages(const PageProblem& problem, Progress& progress) {
     const auto [least, even] = columns_of(problem);
     const std::size_t count = problem.poses.size();
-    if (count > pack::very_many_charts)
+    Index longest = 0;
+    for (const auto& poses : problem.poses)
+        for (const pack::FitImage& image : poses)
+            longest = std::max({longest, image.cells.width, image.cells.height});
+    if (count > pack::very_many_charts || longest > tuning.longest)
         return first_fit(problem, std::max(least, even), progress);
     std::vector<pack::ChartPoses> coarse(count);
     parallel_for(
@@ -469,7 +482,7 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
         static_cast<int>(count),
         [&](int i) {
             if (problem.is_large[at(i)] != 0)
-                footprints[at(i)] = find_footprints(problem, coarse[at(i)]);
+                footprints[at(i)] = find_footprints(problem, coarse[at(i)], progress);
         },
         progress);
     std::vector<Search> searches;

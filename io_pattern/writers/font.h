@@ -1,7 +1,7 @@
 // Fonts that are part of the library: for texts as outlines, and for names that the standard fonts
 // of PDF cannot write. DejaVu Sans has Latin, Greek, Cyrillic, Armenian, Georgian, Hebrew, Arabic
-// and many signs; what it lacks is taken from Droid Sans Fallback: Chinese, Japanese, Korean, Thai
-// and scripts of India. Each character has a glyph of its own: letters are not joined.
+// and many signs; what it lacks is taken from Droid Sans Fallback: Chinese, Japanese and Korean.
+// Each character has a glyph of its own: letters are not joined.
 //
 // References
 //   ISO/IEC 14496-22:2019: Open Font Format. Tables cmap (format 12), glyf, head, hhea, hmtx, loca.

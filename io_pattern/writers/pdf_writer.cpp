@@ -87,8 +87,7 @@ private:
         std::string map;
         for (const auto& [glyph, point] : used.glyphs) {
             glyphs.insert(glyph);
-            widths +=
-                std::to_string(glyph) + " [" + thousandths(font.advance(glyph)) + "] ";
+            widths += std::to_string(glyph) + " [" + thousandths(font.advance(glyph)) + "] ";
             map += '<' + hex(static_cast<unsigned>(glyph)) + "> <" + hex(point) + ">\n";
         }
         const std::string data = font.subset(glyphs);
@@ -98,8 +97,8 @@ private:
             return thousandths(p.x()) + ' ' + thousandths(p.y());
         };
         const int descriptor = objects_.add(
-            "<< /Type /FontDescriptor /FontName /DEVSEG+" + font.name() +
-            " /Flags 32 /FontBBox [" + corner(font.box().min()) + ' ' + corner(font.box().max()) +
+            "<< /Type /FontDescriptor /FontName /DEVSEG+" + font.name() + " /Flags 32 /FontBBox [" +
+            corner(font.box().min()) + ' ' + corner(font.box().max()) +
             "] /ItalicAngle 0 /Ascent " + thousandths(font.ascent()) + " /Descent " +
             thousandths(font.descent()) + " /CapHeight " + thousandths(capital_height) +
             " /StemV 80 /FontFile2 " + PdfObjects::reference(file) + " >>");
@@ -114,9 +113,9 @@ private:
                     std::to_string(used.glyphs.size()) + " beginbfchar\n" + map +
                     "endbfchar\nendcmap CMapName currentdict /CMap defineresource pop end end\n");
         objects_.define(used.object, "<< /Type /Font /Subtype /Type0 " + name +
-                                        " /Encoding /Identity-H /DescendantFonts [" +
-                                        PdfObjects::reference(glyph_font) + "] /ToUnicode " +
-                                        PdfObjects::reference(unicode) + " >>");
+                                         " /Encoding /Identity-H /DescendantFonts [" +
+                                         PdfObjects::reference(glyph_font) + "] /ToUnicode " +
+                                         PdfObjects::reference(unicode) + " >>");
     }
 
     // UTF-16, big-endian.

@@ -213,6 +213,12 @@ def test_names_in_other_scripts_are_drawn(flattened: Any, tmp_path: Path) -> Non
     assert "/FontFile2" in glyphs.get_object()["/FontDescriptor"]
     assert path.stat().st_size < 1_000_000
     assert files.renders(path)
+    far = "\u718a \u304f\u307e \uacf0 \u041c"  # Chinese, Japanese, Korean and Cyrillic
+    path = tmp_path / f"{far}.pdf"
+    flattened.apply_filter("export_pattern", output_file=str(path), page="a4", mm_per_unit=50.0)
+    assert all(far in page.extract_text() for page in pypdf.PdfReader(path, strict=True).pages)
+    assert path.stat().st_size < 1_000_000
+    assert files.renders(path)
     plain = tmp_path / "bear.pdf"
     flattened.apply_filter("export_pattern", output_file=str(plain), page="a4", mm_per_unit=50.0)
     assert "/F2" not in pypdf.PdfReader(plain).pages[0]["/Resources"]["/Font"]
