@@ -24,7 +24,7 @@ struct Tuning {
     double enough = 0.4;        // of a coarse cell: pieces have room on the finer ones
     double covered = 0.6;       // of pages, by pieces that are laid for the first time
     int attempts = 8;           // on more and more pages
-    Index longest = 4000;       // cells of a piece: of larger ones, others are few pages
+    Index longest = 3000;       // cells of a piece: of larger ones, others are few pages
     double full = 0.9;          // share of the paper that no nesting covers
     double almost_empty = 0.05; // of a page: it is hardly worth the paper
 };
@@ -42,6 +42,15 @@ struct CoarseLayout {
     pack::Layout spots;
     Index goal = 0; // pages, and once more those that are almost empty
 };
+
+// By the cells that pieces cover on each page.
+Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, double cell) {
+    const double least = tuning.almost_empty * problem.page_area() / (cell * cell);
+    Index goal = 0;
+    for (const Index cells : covered)
+        goal += cells == 0 ? 0 : cells < least ? 2 : 1;
+    return goal;
+}
 
 using Windows = std::vector<std::vector<pack::Window>>;
 
@@ -181,11 +190,7 @@ private:
     }
 
     void keep(CoarseLayout layout) {
-        const double cell = problem_.factor * problem_.cell;
-        const double least = tuning.almost_empty * problem_.page_area() / (cell * cell);
-        layout.goal = 0;
-        for (const Index cells : covered(layout))
-            layout.goal += cells == 0 ? 0 : cells < least ? 2 : 1;
+        layout.goal = goal_of(problem_, covered(layout), problem_.factor * problem_.cell);
         found_.push_back(std::move(layout));
     }
 
@@ -366,109 +371,29 @@ std::optional<PageLayout> refined(const PageProblem& problem,
     return result;
 }
 
-// Of the images of a piece, those of quarter turns.
-std::vector<std::size_t> few_poses(const std::vector<pack::FitImage>& all) {
-    std::vector<std::size_t> few;
-    for (std::size_t k = 0; k < all.size(); k += std::max<std::size_t>(1, all.size() / 4))
-        few.push_back(k);
-    return few;
-}
-
-// Each piece at the lowest free place, the largest first.
-PageLayout first_fit(const PageProblem& problem, Index columns, const Progress& progress) {
-    const std::size_t count = problem.poses.size();
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return problem.area[a] > problem.area[b];
-    });
-    PageLayout layout{columns, 0, 0, {}, {}, {}};
-    layout.images.resize(count);
-    layout.spots.resize(count);
-    layout.page.assign(count, -1);
-    Index longest = 1;
-    for (const auto& poses : problem.poses)
-        for (const pack::FitImage& image : poses)
-            longest = std::max(longest, image.cells.width);
-    const PageGrid one_row(problem, columns, 1, 0, 1);
-    const Index width = one_row.sheet().right + 1;
-    pack::FreeCells board(std::max(width, columns * problem.columns), longest);
-    const auto put = [&](std::size_t i, pack::FreeCells& cells, const pack::FitWindow& window) {
-        const std::vector<std::size_t> poses = few_poses(problem.poses[i]);
-        std::vector<pack::FitImage> few;
-        for (const std::size_t pose : poses)
-            few.push_back(problem.poses[i][pose]);
-        if (!cells.put(few, window, layout.spots[i]))
-            return false;
-        layout.spots[i].pose = poses[layout.spots[i].pose];
-        layout.images[i] = problem.poses[i][layout.spots[i].pose].cells;
-        return true;
-    };
-    for (const std::size_t i : order)
-        if (problem.is_large[i] != 0) {
-            progress.check();
-            put(i, board, {0, width});
-        }
-    std::vector<Index> cells;
-    while (PageGrid(problem, columns, layout.rows, 0, 1).sheet().top + 1 < board.height())
-        ++layout.rows;
-    const PageGrid grid(problem, columns, layout.rows, static_cast<Index>(count), 1);
-    cells.assign(at(grid.pages()), 0);
-    for (std::size_t i = 0; i < count; ++i)
-        if (problem.is_large[i] != 0)
+std::vector<Index> covered_by(const PageProblem& problem, const PageLayout& layout) {
+    const PageGrid grid(problem, layout.columns, layout.rows, layout.singles, 1);
+    std::vector<Index> cells(at(grid.pages()), 0);
+    for (std::size_t i = 0; i < layout.spots.size(); ++i)
+        if (layout.page[i] >= 0)
+            cells[at(layout.page[i])] += layout.images[i].count;
+        else
             grid.count(layout.images[i], layout.spots[i], cells);
-    std::vector<Index> pages;
-    for (Index page = 0; page < grid.pages(); ++page)
-        if (page >= grid.glued() || cells[at(page)] > 0)
-            pages.push_back(page);
-    for (const std::size_t i : order) {
-        progress.check();
-        for (const Index page : pages) {
-            if (problem.is_large[i] != 0)
-                break;
-            const pack::Window w = grid.clear(page);
-            if (!put(i, board, {w.left, w.right + 1, w.bottom, w.top + 1}))
-                continue;
-            layout.page[i] = page;
-            break;
-        }
-    }
-    layout.singles = static_cast<Index>(count);
-    return layout;
-}
-
-// Columns of pages that the widest of the large pieces needs, and those of a square sheet.
-std::array<Index, 2> columns_of(const PageProblem& problem) {
-    double large = 0.0;
-    Index widest = 0;
-    for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-        if (problem.is_large[i] == 0)
-            continue;
-        large += problem.area[i];
-        Index least = problem.poses[i].front().cells.width;
-        for (const std::size_t pose : few_poses(problem.poses[i]))
-            least = std::min(least, problem.poses[i][pose].cells.width);
-        widest = std::max(widest, least);
-    }
-    Index columns = 1;
-    while (PageGrid(problem, columns, 1, 0, 1).sheet().right < widest)
-        ++columns;
-    const Vec2 step = problem.page.step();
-    const double pages = large / (tuning.covered * problem.page_area());
-    return {columns, static_cast<Index>(std::lround(std::sqrt(pages * step.y() / step.x())))};
+    return cells;
 }
 
 } // namespace
 
 PageLayout search_pages(const PageProblem& problem, Progress& progress) {
-    const auto [least, even] = columns_of(problem);
+    const auto [least, even] = columns_of(problem, tuning.covered);
     const std::size_t count = problem.poses.size();
+    PageLayout best = first_fit(problem, std::max(least, even), progress);
     Index longest = 0;
     for (const auto& poses : problem.poses)
         for (const pack::FitImage& image : poses)
             longest = std::max({longest, image.cells.width, image.cells.height});
     if (count > pack::very_many_charts || longest > tuning.longest)
-        return first_fit(problem, std::max(least, even), progress);
+        return best;
     std::vector<pack::ChartPoses> coarse(count);
     parallel_for(
         static_cast<int>(count),
@@ -513,10 +438,14 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
     std::stable_sort(found.begin(), found.end(), [](const CoarseLayout* a, const CoarseLayout* b) {
         return a->goal < b->goal;
     });
-    for (const CoarseLayout* layout : found)
+    const Index first = goal_of(problem, covered_by(problem, best), problem.cell);
+    for (const CoarseLayout* layout : found) {
+        if (layout->goal >= first)
+            break;
         if (auto result = refined(problem, coarse, *layout, progress))
             return *result;
-    return first_fit(problem, std::max(least, even), progress);
+    }
+    return best;
 }
 
 } // namespace devseg::sheet
