@@ -118,18 +118,20 @@ pack::ChartCells PageGrid::closed(const std::vector<std::uint8_t>& is_open,
 
 void PageGrid::count(const pack::ChartCells& image, const pack::Spot& spot,
                      std::vector<Index>& cells) const {
-    std::vector<pack::Window> pages;
+    std::vector<std::array<Index, 2>> across;
     for (Index column = 0; column < columns_; ++column)
-        pages.push_back(own(column));
-    Index row = 0;
-    pack::Window here = rows_ > 0 ? own(0) : pack::Window{};
-    for (const pack::CellRun& run : image.runs) { // row by row
-        while (row + 1 < rows_ && spot.y + run.row > here.top)
-            here = own(++row * columns_);
-        for (Index column = 0; column < columns_; ++column)
-            cells[at(row * columns_ + column)] +=
-                std::max(Index{0}, std::min(pages[at(column)].right + 1, spot.x + run.last) -
-                                       std::max(pages[at(column)].left, spot.x + run.first));
+        across.push_back(own_range(column, columns_, 0));
+    for (Index row = 0; row < rows_; ++row) {
+        const std::array<Index, 2> up = own_range(row, rows_, 1);
+        // Runs come row by row. Parts of pages may share a row of cells.
+        const auto begin =
+            std::lower_bound(image.runs.begin(), image.runs.end(), up[0] - spot.y,
+                             [](const pack::CellRun& run, Index y) { return run.row < y; });
+        for (auto run = begin; run != image.runs.end() && run->row + spot.y <= up[1]; ++run)
+            for (Index column = 0; column < columns_; ++column)
+                cells[at(row * columns_ + column)] +=
+                    std::max(Index{0}, std::min(across[at(column)][1] + 1, spot.x + run->last) -
+                                           std::max(across[at(column)][0], spot.x + run->first));
     }
 }
 
