@@ -10,7 +10,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 clipper_version=6.4.2
 # What is compiled in from Debian's packages; each has its licences in its own file.
-compiled_in=(libeigen3-dev libcgal-dev libboost-dev libjpeg-dev fonts-dejavu-core)
+compiled_in=(libeigen3-dev libcgal-dev libboost-dev libjpeg-dev fonts-dejavu-core
+    fonts-droid-fallback)
 tree=$root/build/wheel/tree
 # Bytes that the wheel may have.
 largest=12000000

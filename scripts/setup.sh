@@ -17,7 +17,7 @@ source "$root/scripts/meshlab_headers.sh"
 
 system_packages=(build-essential cmake ninja-build qtbase5-dev libqt5opengl5-dev libeigen3-dev
     libgtest-dev libcgal-dev libpolyclipping-dev libjpeg-dev libglew-dev pkg-config xz-utils dpkg-dev
-    ccache python3-venv python3-dev fonts-dejavu-core)
+    ccache python3-venv python3-dev fonts-dejavu-core fonts-droid-fallback)
 
 # What is built: everything, tests as well.
 build_targets=(all)

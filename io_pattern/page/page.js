@@ -167,7 +167,7 @@ class ModelView {
   }
 
   reset() {
-    const distance = 0.88 * this.radius / Math.sin((this.camera.fov / 2) * Math.PI / 180);
+    const distance = 0.88 * spread() * this.radius / Math.sin((this.camera.fov / 2) * Math.PI / 180);
     this.controls.target.copy(this.middle).multiplyScalar(this.size).add(this.low);
     this.camera.position.set(-0.5, 0.3, 0.8).normalize().multiplyScalar(distance)
       .add(this.controls.target);
@@ -231,7 +231,7 @@ class ModelView {
       uniforms.color.value.setRGB(r / 255, g / 255, b / 255, "srgb-linear");
       uniforms.by_strain.value = state.colors === "byStrain" ? 1 : 0;
       uniforms.lit.value = isLit(p) ? 0.75 : 0;
-      const away = 1.1 * state.explode + 2.5 * this.flight[p];
+      const away = spread() - 1 + 2.5 * this.flight[p];
       group.position.copy(group.userData.away).multiplyScalar(away * this.size).add(this.low);
       group.visible = state.step === 0 || stepOfPiece[p] <= state.step;
     });
@@ -257,6 +257,8 @@ function sectionColor(section) {
 
 const colorOf = (p) => (state.colors === "bySection"
   ? sectionColor(DATA.pieces[p].section) : DATA.pieces[p].color);
+// Of the model, as far as it is exploded.
+const spread = () => 1 + 1.1 * state.explode;
 const currentSeams = () => (state.step > 0 ? DATA.steps[state.step - 1].seams : []);
 const isLit = (p) => p === state.piece ||
   (state.seam >= 0 && DATA.seams[state.seam].sides.some((side) => side.piece === p)) ||
@@ -593,7 +595,9 @@ function listen() {
     byId("reset").addEventListener("click", () => model.reset());
   }
   byId("explode").addEventListener("input", (event) => {
+    const before = spread();
     state.explode = event.target.value / 100;
+    model?.zoom(spread() / before); // all of it stays in sight
     draw();
   });
   byId("colors").addEventListener("change", (event) => {

@@ -21,9 +21,9 @@ struct Tuning {
     // Along the shorter side of a page: 1.5 mm of an A4 page, and more where a piece fits narrowly.
     double cells = 130.0;
     double most_cells = 1000.0;
-    int turns = 16;                   // of a piece on one page, all around
-    int all_turns = 180;              // of one that fits in none of these
-    int large_turns = 36;             // of a piece on several pages
+    double coarse_cells = 26.0;       // where pieces look for pages
+    int turns = 32;                   // of a piece, all around
+    int all_turns = 180;              // of one that fits on a page in none of these
     double most_pages_across = 200.0; // of one piece: more is a wrong scale
 };
 constexpr Tuning tuning;
@@ -71,8 +71,8 @@ std::vector<double> fitting_angles(const pack::Outline& outline, const PageForma
 
 // The images of a piece: on one page, or on several where it fits on none. False where the grid is
 // too coarse for a piece that fits: images are larger than their pieces.
-bool draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
-    const pack::Outline outline = pack::outline_of(piece.cut);
+bool draw_poses(PageProblem& problem, std::size_t i) {
+    const pack::Outline& outline = problem.outlines[i];
     const std::vector<double> fitting = fitting_angles(outline, problem.page);
     std::vector<pack::FitImage>& poses = problem.poses[i];
     const auto draw = [&](double angle) {
@@ -86,9 +86,8 @@ bool draw_poses(const SheetPiece& piece, PageProblem& problem, std::size_t i) {
     problem.is_large[i] = poses.empty() ? 1 : 0;
     if (!poses.empty())
         return true;
-    for (const double angle : angles_of(outline, tuning.large_turns))
+    for (const double angle : angles_of(outline, tuning.turns))
         poses.push_back(draw(angle));
-    problem.footprints[i] = find_footprints(problem, poses);
     return fitting.empty();
 }
 
@@ -119,40 +118,86 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     problem.page = page;
     problem.cell = page.printable().minCoeff() / cells;
     const Vec2 room = page.printable() + Vec2::Constant(piece_gap - 2.0 * border_clearance);
-    problem.columns = problem.cells_down(room.x());
-    problem.rows = problem.cells_down(room.y());
+    problem.columns = static_cast<Index>(std::floor(room.x() / problem.cell));
+    problem.rows = static_cast<Index>(std::floor(room.y() / problem.cell));
+    problem.factor = static_cast<Index>(std::lround(cells / tuning.coarse_cells));
     problem.poses.resize(pieces.size());
-    problem.footprints.resize(pieces.size());
     problem.is_large.assign(pieces.size(), 0);
-    for (const SheetPiece& piece : pieces)
+    for (const SheetPiece& piece : pieces) {
         problem.area.push_back(outline_area(piece));
+        problem.outlines.push_back(pack::outline_of(piece.cut));
+    }
     std::vector<std::uint8_t> is_fine(pieces.size(), 0);
     {
         auto drawing = progress.part(cells < tuning.most_cells ? 0.5 : 1.0);
         parallel_for(
             static_cast<int>(pieces.size()),
-            [&](int i) { is_fine[at(i)] = draw_poses(pieces[at(i)], problem, at(i)) ? 1 : 0; },
-            drawing);
+            [&](int i) { is_fine[at(i)] = draw_poses(problem, at(i)) ? 1 : 0; }, drawing);
     }
     if (cells < tuning.most_cells && std::count(is_fine.begin(), is_fine.end(), 0) > 0)
         return make_problem(pieces, page, 2.0 * cells, progress);
-    for (const auto& poses : problem.poses)
-        for (const pack::FitImage& image : poses)
-            for (const pack::CellRun& run : image.runs)
-                problem.longest_run = std::max(problem.longest_run, run.last - run.first);
     return problem;
 }
 
+// Pages that large pieces have in common are one sheet, and every other page is one of its own.
+struct Sheets {
+    std::vector<Index> of_page; // on the board; -1: no piece lies there
+    std::vector<double> area;   // of pieces
+    std::vector<Index> pages;   // how many
+};
+
+Sheets find_sheets(const PageProblem& problem, const PageLayout& layout, const PageGrid& grid) {
+    std::vector<Index> parent(at(grid.pages()));
+    std::iota(parent.begin(), parent.end(), Index{0});
+    const auto root = [&](Index page) {
+        while (parent[at(page)] != page)
+            page = parent[at(page)];
+        return page;
+    };
+    std::vector<std::vector<Index>> pages_of(layout.spots.size());
+    std::vector<std::uint8_t> is_used(parent.size(), 0);
+    for (std::size_t i = 0; i < layout.spots.size(); ++i) {
+        if (layout.page[i] >= 0) {
+            pages_of[i] = {layout.page[i]};
+        } else {
+            std::vector<Index> cells(parent.size(), 0);
+            grid.count(layout.images[i], layout.spots[i], cells);
+            for (Index page = 0; page < grid.pages(); ++page)
+                if (cells[at(page)] > 0)
+                    pages_of[i].push_back(page);
+        }
+        for (const Index page : pages_of[i]) {
+            is_used[at(page)] = 1;
+            parent[at(root(page))] = root(pages_of[i].front());
+        }
+    }
+    Sheets sheets;
+    sheets.of_page.assign(parent.size(), -1);
+    for (Index page = 0; page < grid.pages(); ++page) {
+        if (is_used[at(page)] == 0)
+            continue;
+        Index& sheet = sheets.of_page[at(root(page))];
+        if (sheet < 0) {
+            sheet = static_cast<Index>(sheets.area.size());
+            sheets.area.push_back(0.0);
+            sheets.pages.push_back(0);
+        }
+        sheets.of_page[at(page)] = sheet;
+        ++sheets.pages[at(sheet)];
+    }
+    for (std::size_t i = 0; i < pages_of.size(); ++i)
+        sheets.area[at(sheets.of_page[at(pages_of[i].front())])] += problem.area[i];
+    return sheets;
+}
+
 // Sheets of several pages first, then single pages, the fullest first.
-std::vector<Index> ranks_of(const Filling& filling) {
-    std::vector<Index> order(filling.sheets.size());
+std::vector<Index> ranks_of(const Sheets& sheets) {
+    std::vector<Index> order(sheets.area.size());
     std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-        const PageSheet& p = filling.sheets[at(a)];
-        const PageSheet& q = filling.sheets[at(b)];
-        const bool p_single = p.page_count() == 1;
-        const bool q_single = q.page_count() == 1;
-        return p_single != q_single ? q_single : p.area() > q.area();
+    std::stable_sort(order.begin(), order.end(), [&](Index p, Index q) {
+        const bool p_single = sheets.pages[at(p)] == 1;
+        const bool q_single = sheets.pages[at(q)] == 1;
+        return p_single != q_single ? q_single : sheets.area[at(p)] > sheets.area[at(q)];
     });
     std::vector<Index> ranks(order.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -171,21 +216,47 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
         if (problem.is_large[i] != 0 && !tiling)
             refuse_size(pieces[i], page);
     auto filling = progress.part(progress.left());
-    const Filling best = search_pages(problem, filling);
-    const std::vector<Index> ranks = ranks_of(best);
+    const PageLayout best = search_pages(problem, filling);
+    const PageGrid grid(problem, best.columns, best.rows, best.singles, 1);
+    const Sheets found = find_sheets(problem, best, grid);
+    const std::vector<Index> ranks = ranks_of(found);
     PageNesting result;
-    result.sheets.resize(best.sheets.size());
-    for (std::size_t s = 0; s < ranks.size(); ++s)
-        result.sheets[at(ranks[s])] = best.sheets[s].result();
+    std::vector<std::array<Index, 4>> extents( // columns and rows of the board
+        ranks.size(), {grid.pages(), -1, grid.pages(), -1});
+    for (Index p = 0; p < grid.pages(); ++p) {
+        if (found.of_page[at(p)] < 0)
+            continue;
+        std::array<Index, 4>& e = extents[at(ranks[at(found.of_page[at(p)])])];
+        const Index column = p < grid.glued() ? p % grid.columns() : 0;
+        const Index row = p < grid.glued() ? p / grid.columns() : 0;
+        e = {std::min(e[0], column), std::max(e[1], column), std::min(e[2], row),
+             std::max(e[3], row)};
+    }
+    for (const std::array<Index, 4>& e : extents) {
+        PatternSheet sheet{Vec2::Zero(), e[1] - e[0] + 1, e[3] - e[2] + 1};
+        sheet.size = page.size + Vec2(sheet.columns - 1, sheet.rows - 1).cwiseProduct(page.step());
+        result.sheets.push_back(sheet);
+    }
     const double origin = page.margin + border_clearance - 0.5 * piece_gap;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const pack::Spot& spot = best.spot[i];
-        result.placements.push_back(
-            pack::placement_of(problem.poses[i][spot.pose].cells, spot, problem.cell));
-        const PageSpot margin = best.sheets[at(best.sheet[i])].empty_margin();
-        result.placements.back().offset +=
-            Vec2::Constant(origin) - Vec2(margin[0], margin[1]).cwiseProduct(page.step());
-        result.sheet.push_back(ranks[at(best.sheet[i])]);
+        pack::Spot spot = best.spots[i];
+        Index on = best.page[i];
+        if (on < 0) {
+            std::vector<Index> cells(at(grid.pages()), 0);
+            grid.count(best.images[i], spot, cells);
+            on = static_cast<Index>(
+                std::find_if(cells.begin(), cells.end(), [](Index c) { return c > 0; }) -
+                cells.begin());
+        }
+        const Index sheet = ranks[at(found.of_page[at(on)])];
+        Vec2 corner = Vec2(extents[at(sheet)][0], extents[at(sheet)][2]).cwiseProduct(page.step());
+        if (on >= grid.glued()) {
+            spot.x -= grid.clear(on).left;
+            spot.y -= grid.clear(on).bottom;
+        }
+        result.placements.push_back(pack::placement_of(best.images[i], spot, problem.cell));
+        result.placements.back().offset += Vec2::Constant(origin) - corner;
+        result.sheet.push_back(sheet);
     }
     return result;
 }

@@ -2,331 +2,450 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <utility>
 
 #include "devseg/base/parallel.h"
+#include "devseg/pack/nest.h"
 
 namespace devseg::sheet {
 
 namespace {
 
 struct Tuning {
-    int searches = 4; // from different numbers
-    int rounds = 10;  // after each, all end where one has found what cannot be better
-    // Of all searches: cells that are compared and set, some seconds.
-    std::int64_t work = 1'600'000'000;
-    std::size_t tries = 4;      // turns of a piece on one page that are tried at a time
+    int searches = 6;           // on sheets of other widths,
+    int best = 2;               // of which the best go on, each with one half of
+    double work = 8e9;          // cells that are looked at, some seconds
+    double board_work = 60.0;   // of a cell, for each time that pages are closed
+    double fine_work = 1e8;     // to bring what was found to the problem's cells
+    double enough = 0.4;        // of a coarse cell: pieces have room on the finer ones
+    double covered = 0.6;       // of pages, by pieces that are laid for the first time
+    int attempts = 8;           // on more and more pages
+    Index longest = 3000;       // cells of a piece: of larger ones, others are few pages
     double full = 0.9;          // share of the paper that no nesting covers
     double almost_empty = 0.05; // of a page: it is hardly worth the paper
-    // A layout is better by the squares of the pages' shares as well: full pages, so that others
-    // get empty. Worse ones are taken for a while: by so many pages at the start and in the end.
-    double weight_of_fullness = 0.5;
-    double first_step = 0.3;
-    double last_step = 0.01;
 };
 constexpr Tuning tuning;
+constexpr pack::SeparationOptions coarse_moves{0, 8, 15};
+constexpr double fine_turn = 1.5 * pi / 180.0;
+constexpr int fine_turns = 2; // to each side
+constexpr pack::SeparationOptions fine_moves{7, 2 * fine_turns + 1, 40};
 
-using Random = std::minstd_rand;
+// Where pieces lie on a grid of coarse cells.
+struct CoarseLayout {
+    Index columns = 1;
+    Index rows = 0;
+    Index singles = 0;
+    pack::Layout spots;
+    Index goal = 0; // pages, and once more those that are almost empty
+};
 
-double share(Random& random) {
-    return static_cast<double>(random() - Random::min()) /
-           static_cast<double>(Random::max() - Random::min());
+// By the cells that pieces cover on each page.
+Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, double cell) {
+    const double least = tuning.almost_empty * problem.page_area() / (cell * cell);
+    Index goal = 0;
+    for (const Index cells : covered)
+        goal += cells == 0 ? 0 : cells < least ? 2 : 1;
+    return goal;
 }
 
-bool one_of(unsigned n, Random& random) {
-    return random() % n == 0;
+using Windows = std::vector<std::vector<pack::Window>>;
+
+// On the pages that are open; the last window is that of what is closed.
+Windows windows_of(const PageProblem& problem, const PageGrid& grid,
+                   const std::vector<std::uint8_t>& is_open, const pack::ChartCells& closed,
+                   const pack::Spot& spot) {
+    std::vector<pack::Window> clear;
+    pack::Window around{grid.sheet().right, 0, grid.sheet().top, 0}; // open pages of the sheet
+    for (Index page = 0; page < grid.pages(); ++page) {
+        if (is_open[at(page)] == 0)
+            continue;
+        clear.push_back(grid.clear(page));
+        if (page >= grid.glued())
+            continue;
+        const pack::Window own = grid.own(page);
+        around = {std::min(around.left, own.left), std::max(around.right, own.right),
+                  std::min(around.bottom, own.bottom), std::max(around.top, own.top)};
+    }
+    around.right = std::min(around.right, grid.sheet().right);
+    around.top = std::min(around.top, grid.sheet().top);
+    Windows windows;
+    for (const std::uint8_t large : problem.is_large)
+        windows.push_back(large != 0 ? std::vector<pack::Window>{around} : clear);
+    windows.push_back({{spot.x, spot.x + closed.width - 1, spot.y, spot.y + closed.height - 1}});
+    return windows;
 }
 
-// What is best in the end; among equals the cost says which.
-Index goal(const PageProblem& problem, const Filling& filling) {
-    const PageCount count = count_pages(problem, filling);
-    return count.pages + count.almost_empty;
+bool is_within(const pack::Window& window, const pack::ChartCells& image, const pack::Spot& spot) {
+    return spot.x >= window.left && spot.x + image.width <= window.right + 1 &&
+           spot.y >= window.bottom && spot.y + image.height <= window.top + 1;
 }
 
-// What the search makes less.
-double cost(const PageProblem& problem, const Filling& filling) {
-    const PageCount count = count_pages(problem, filling);
-    double squares = 0.0;
-    for (const PageSheet& sheet : filling.sheets)
-        for (const Index cells : sheet.covered())
-            squares += std::pow(cells / problem.page_cells(), 2);
-    return count.pages + count.almost_empty - tuning.weight_of_fullness * squares;
+Index page_of(const PageGrid& grid, const pack::ChartCells& image, const pack::Spot& spot) {
+    for (Index page = 0; page < grid.pages(); ++page)
+        if (is_within(grid.clear(page), image, spot))
+            return page;
+    return -1;
+}
+
+// Places of one large piece on its own, by the pages that it needs.
+struct Footprints {
+    std::vector<std::vector<pack::Spot>> spots; // as few as possible, and one more
+    Index most_columns = 0;                     // of pages, as the piece may lie
+    Index fewest = 0;
+    Index most_rows = 0;
+};
+
+Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& poses,
+                           const Progress& progress) {
+    Footprints result;
+    result.spots.resize(2);
+    const Vec2 step = problem.page.step() / (problem.factor * problem.cell);
+    Index across = 0;
+    for (const pack::ChartCells& image : poses)
+        across = std::max({across, image.width, image.height});
+    result.most_columns = static_cast<Index>(std::ceil(across / step.x())) + 1;
+    result.most_rows = static_cast<Index>(std::ceil(across / step.y())) + 1;
+    const PageGrid grid(problem, result.most_columns, result.most_rows, 0, problem.factor);
+    Index fewest = grid.glued();
+    for (std::size_t pose = 0; pose < poses.size(); ++pose)
+        for (Index y = 0; y < step.y(); ++y) {
+            progress.check();
+            for (Index x = 0; x < step.x(); ++x) {
+                std::vector<Index> cells(at(grid.glued()), 0);
+                grid.count(poses[pose], {pose, x, y}, cells);
+                const auto pages =
+                    grid.glued() - static_cast<Index>(std::count(cells.begin(), cells.end(), 0));
+                if (pages < fewest) {
+                    result.spots[1] = pages + 1 == fewest ? std::move(result.spots[0])
+                                                          : std::vector<pack::Spot>();
+                    result.spots[0].clear();
+                    fewest = pages;
+                }
+                if (pages <= fewest + 1)
+                    result.spots[at(pages - fewest)].push_back({pose, x, y});
+            }
+        }
+    result.fewest = fewest;
+    if (result.spots[1].empty())
+        result.spots.pop_back();
+    return result;
 }
 
 class Search {
 public:
-    Search(const PageProblem& problem, unsigned seed)
-        : problem_(problem), random_(seed), order_(problem.area.size()) {
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        const auto box = [&](std::size_t i) {
-            const pack::ChartCells& cells = problem.poses[i].front().cells;
-            return std::int64_t{cells.width} * cells.height;
-        };
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](std::size_t a, std::size_t b) { return box(a) > box(b); });
+    Search(const PageProblem& problem, const std::vector<pack::ChartPoses>& poses,
+           const std::vector<Footprints>& footprints, Index columns, std::uint64_t seed)
+        : problem_(problem), poses_(poses), footprints_(footprints), columns_(columns), seed_(seed),
+          random_(static_cast<std::minstd_rand::result_type>(seed + 1)), charts_(poses) {
+        charts_.emplace_back();
     }
 
-    // Goes on until so much of the work is done.
-    void advance(double share_of_work, const Progress& progress) {
-        const double all = static_cast<double>(tuning.work) / tuning.searches;
-        if (kept_.sheet.empty()) {
-            current_.sheet.assign(order_.size(), -1);
-            current_.spot.resize(order_.size());
-            put_all(order_, progress, current_);
-            current_cost_ = cost(problem_, current_);
-            keep(current_);
-        }
-        while (static_cast<double>(work_) < share_of_work * all && !is_best()) {
-            Filling filling = laid_anew(current_, progress);
-            const double now = cost(problem_, filling);
-            const double step =
-                tuning.first_step * std::pow(tuning.last_step / tuning.first_step,
-                                             std::min(1.0, static_cast<double>(work_) / all));
-            if (now > current_cost_ - step * std::log(std::max(1e-9, share(random_))))
-                continue;
-            if (std::pair(goal(problem_, filling), now) < kept_as_)
-                keep(filling);
-            current_ = std::move(filling);
-            current_cost_ = now;
-        }
+    // All layouts that were found, each better than the one before.
+    const std::vector<CoarseLayout>& found() const { return found_; }
+
+    // Goes on for so much work.
+    void advance(double work, const Progress& progress) {
+        work_ += static_cast<std::int64_t>(work);
+        while (work_ > 0 && found_.empty() && attempt_ < tuning.attempts)
+            begin(progress);
+        while (work_ > 0 && !found_.empty() && !is_best())
+            close_some(progress);
     }
 
-    // Whether nothing better is possible.
-    bool is_best() const {
-        const double total = std::accumulate(problem_.area.begin(), problem_.area.end(), 0.0);
-        const PageCount count = count_pages(problem_, kept_);
-        return count.pages <= std::ceil(total / (tuning.full * problem_.page_area())) &&
-               count.almost_empty == 0;
+    Index goal() const {
+        Index least = std::numeric_limits<Index>::max();
+        for (const CoarseLayout& layout : found_)
+            least = std::min(least, layout.goal);
+        return least;
     }
-
-    const Filling& kept() const { return kept_; }
-    const std::pair<Index, double>& kept_as() const { return kept_as_; }
 
 private:
-    void keep(const Filling& filling) {
-        kept_ = filling;
-        kept_as_ = {goal(problem_, filling), cost(problem_, filling)};
+    bool is_best() const {
+        const double total = std::accumulate(problem_.area.begin(), problem_.area.end(), 0.0);
+        Index least = static_cast<Index>(std::ceil(total / (tuning.full * problem_.page_area())));
+        for (const Footprints& f : footprints_)
+            least = std::max(least, f.fewest);
+        return goal() <= least;
     }
 
-    void put(std::size_t i, std::size_t chosen, const pack::Spot& spot, Filling& filling) {
-        filling.sheets[chosen].take(problem_.poses[i][spot.pose], spot, problem_.area[i]);
-        filling.sheet[i] = static_cast<Index>(chosen);
-        filling.spot[i] = spot;
+    PageGrid grid_of(const CoarseLayout& layout) const {
+        return {problem_, layout.columns, layout.rows, layout.singles, problem_.factor};
     }
 
-    // On pages that are in use already, as far as possible; or on a sheet of its own.
-    void put_large(std::size_t i, Filling& filling) {
-        const std::vector<pack::FitImage>& poses = problem_.poses[i];
-        const std::vector<Footprint>& footprints = problem_.footprints[i];
-        const auto fewest = static_cast<Index>(footprints.front().pages.size());
-        // As many new pages as on a sheet of its own may serve as well.
-        Index limit = fewest + (one_of(2, random_) ? 1 : 0);
-        std::optional<pack::Spot> best;
-        std::size_t chosen = 0;
-        for (std::size_t s = 0; s < filling.sheets.size(); ++s)
-            if (const auto spot =
-                    filling.sheets[s].place_large(poses, footprints, random_, limit)) {
-                best = spot;
-                chosen = s;
-            }
-        if (best)
-            return put(i, chosen, *best, filling);
-        const auto some =
-            std::find_if(footprints.begin(), footprints.end(), [&](const Footprint& f) {
-                return static_cast<Index>(f.pages.size()) > fewest;
-            });
-        const auto count =
-            one_of(8, random_) ? footprints.end() - footprints.begin() : some - footprints.begin();
-        const Footprint& f =
-            footprints[static_cast<std::size_t>(random_() % static_cast<unsigned long>(count))];
-        // Others may find room beside it, on any side.
-        const auto more = static_cast<Index>(random_() % 4);
-        const Index column = f.at_border[0] ? 0 : static_cast<Index>(random_() % (at(more) + 1));
-        const Index row = f.at_border[1] ? 0 : static_cast<Index>(random_() % 2);
-        filling.sheets.emplace_back(problem_, f.across + more, work_);
-        put(i, filling.sheets.size() - 1,
-            problem_.spot_of(f.places[random_() % f.places.size()], column, row), filling);
-    }
-
-    struct PageInUse {
-        std::size_t sheet;
-        Index page;
-        Index covered;
-    };
-
-    // On the first page that has room: the fullest or emptiest first, or in any order.
-    void put_small(std::size_t i, Filling& filling) {
-        const std::vector<pack::FitImage>& poses = problem_.poses[i];
-        std::vector<std::size_t> tried;
-        for (std::size_t k = 0; k < std::min(poses.size(), tuning.tries); ++k)
-            tried.push_back(random_() % poses.size());
-        std::vector<PageInUse> pages;
-        const double room = problem_.page_cells() - problem_.area[i] / std::pow(problem_.cell, 2);
-        for (std::size_t s = 0; s < filling.sheets.size(); ++s)
-            for (std::size_t p = 0; p < filling.sheets[s].covered().size(); ++p) {
-                const Index covered = filling.sheets[s].covered()[p];
-                if (covered > 0 && covered < room)
-                    pages.push_back({s, static_cast<Index>(p), covered});
-            }
-        const auto way = random_() % 4;
-        if (way < 3)
-            std::stable_sort(pages.begin(), pages.end(), [&](const auto& a, const auto& b) {
-                return way == 0 ? a.covered < b.covered : a.covered > b.covered;
-            });
-        for (const PageInUse& page : pages)
-            if (const auto spot = filling.sheets[page.sheet].place_on_page(poses, tried, page.page))
-                return put(i, page.sheet, *spot, filling);
-        filling.sheets.emplace_back(problem_, 1, work_);
-        const auto spot = filling.sheets.back().place_on_page(poses, tried, 0);
-        put(i, filling.sheets.size() - 1, *spot, filling);
-    }
-
-    // Large pieces first, then what fits on the pages that these leave.
-    void put_all(const std::vector<std::size_t>& order, const Progress& progress,
-                 Filling& filling) {
-        for (const bool large : {true, false})
-            for (const std::size_t i : order) {
-                progress.check();
-                if ((problem_.is_large[i] != 0) != large)
-                    continue;
-                if (large)
-                    put_large(i, filling);
-                else
-                    put_small(i, filling);
-            }
-    }
-
-    Filling laid_anew(const Filling& filling, const Progress& progress) {
-        const std::vector<std::uint8_t> moves = pieces_to_move(filling);
-        Filling result = without(filling, moves);
-        std::vector<std::size_t> moved;
-        for (const std::size_t i : order_)
-            if (moves[i] != 0)
-                moved.push_back(i);
-        for (std::size_t swaps = one_of(2, random_) ? moved.size() : 0; swaps > 0; --swaps)
-            std::swap(moved[random_() % moved.size()], moved[random_() % moved.size()]);
-        put_all(moved, progress, result);
-        return result;
-    }
-
-    // Those on one page, mostly the emptiest one, or any; and some more.
-    std::vector<std::uint8_t> pieces_to_move(const Filling& filling) {
-        const std::size_t count = order_.size();
-        std::vector<std::uint8_t> moves(count, 0);
-        if (!one_of(4, random_)) {
-            const PageInUse page = chosen_page(filling);
-            for (std::size_t i = 0; i < count; ++i)
-                if (at(filling.sheet[i]) == page.sheet)
-                    moves[i] = filling.sheets[page.sheet].is_on(
-                        problem_.poses[i][filling.spot[i].pose], filling.spot[i], page.page);
-        } else if (one_of(2, random_)) { // all of a sheet
-            const Index s = filling.sheet[random_() % count];
-            for (std::size_t i = 0; i < count; ++i)
-                moves[i] = filling.sheet[i] == s ? 1 : 0;
+    std::vector<Index> covered(const CoarseLayout& layout) const {
+        const PageGrid grid = grid_of(layout);
+        std::vector<Index> cells(at(grid.pages()), 0);
+        for (std::size_t i = 0; i < poses_.size(); ++i) {
+            const pack::ChartCells& image = poses_[i][layout.spots[i].pose];
+            if (problem_.is_large[i] != 0)
+                grid.count(image, layout.spots[i], cells);
+            else
+                cells[at(page_of(grid, image, layout.spots[i]))] += image.count;
         }
-        for (auto more = static_cast<int>(random_() % 3); more >= 0; --more)
-            moves[random_() % count] = 1;
-        if (one_of(2, random_)) // small ones are in the way of large ones, and easily laid again
-            for (std::size_t i = 0; i < count; ++i)
-                moves[i] = moves[i] != 0 || problem_.is_large[i] == 0 ? 1 : 0;
-        return moves;
+        return cells;
     }
 
-    PageInUse chosen_page(const Filling& filling) {
-        std::vector<PageInUse> pages;
-        for (std::size_t s = 0; s < filling.sheets.size(); ++s)
-            for (std::size_t p = 0; p < filling.sheets[s].covered().size(); ++p)
-                if (const Index covered = filling.sheets[s].covered()[p]; covered > 0)
-                    pages.push_back({s, static_cast<Index>(p), covered});
+    void keep(CoarseLayout layout) {
+        layout.goal = goal_of(problem_, covered(layout), problem_.factor * problem_.cell);
+        found_.push_back(std::move(layout));
+    }
+
+    // Pieces on open pages, apart from each other.
+    bool separate(CoarseLayout& layout, const std::vector<std::uint8_t>& is_open, bool anew,
+                  const Progress& progress) {
+        const PageGrid grid = grid_of(layout);
+        pack::Spot spot;
+        charts_.back() = {grid.closed(is_open, spot)};
+        const pack::ChartCells& closed = charts_.back().front();
+        work_ -= static_cast<std::int64_t>(tuning.board_work * closed.width * closed.height);
+        pack::Separation separation(charts_, ++seed_, progress);
+        separation.confine(windows_of(problem_, grid, is_open, closed, spot));
+        pack::Layout spots = layout.spots;
+        spots.push_back(spot);
+        const pack::Frame frame{grid.sheet().right + 1, grid.sheet().top + 1};
+        if (anew) {
+            std::vector<std::size_t> order = pack::by_size(poses_);
+            order.insert(order.begin(), poses_.size());
+            spots = separation.insert_all(order, frame, coarse_moves);
+            if (spots.empty())
+                return false;
+        }
+        const bool done = separation.run(spots, frame, coarse_moves, work_);
+        if (done) {
+            spots.pop_back();
+            layout.spots = std::move(spots);
+        }
+        return done;
+    }
+
+    // On a larger and larger part of the sheet, until pieces lie apart.
+    void begin(const Progress& progress) {
+        double large = 0.0;
+        double small = 0.0;
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+            (problem_.is_large[i] != 0 ? large : small) += problem_.area[i];
+        const double covered = tuning.covered * problem_.page_area();
+        CoarseLayout layout;
+        Index rows = 0;
+        layout.columns = columns_ + 1;
+        if (large > 0.0)
+            rows = static_cast<Index>(std::ceil(large / (covered * columns_))) + attempt_;
+        if (small > 0.0)
+            layout.singles = static_cast<Index>(std::ceil(small / covered)) + attempt_;
+        ++attempt_;
+        layout.rows = large > 0.0 ? rows + 1 : 0;
+        for (const Footprints& f : footprints_) {
+            layout.columns = std::max(layout.columns, f.most_columns);
+            layout.rows = std::max(layout.rows, f.most_rows);
+        }
+        layout.spots.assign(poses_.size(), pack::Spot{});
+        const PageGrid grid = grid_of(layout);
+        std::vector<std::uint8_t> is_open(at(grid.pages()), 1);
+        for (Index page = 0; page < grid.glued(); ++page)
+            is_open[at(page)] =
+                page % layout.columns < columns_ && page / layout.columns < rows ? 1 : 0;
+        if (separate(layout, is_open, true, progress))
+            keep(std::move(layout));
+    }
+
+    // A large piece jumps to where it needs few pages, or none does; and one page less is open.
+    void close_some(const Progress& progress) {
+        CoarseLayout next = found_.back();
+        const auto count_open = [](const std::vector<Index>& cells) {
+            return cells.size() -
+                   static_cast<std::size_t>(std::count(cells.begin(), cells.end(), 0));
+        };
+        const std::size_t wanted = count_open(covered(next)) - 1;
+        const std::size_t i = random_() % poses_.size();
+        const bool jumps = problem_.is_large[i] != 0 && random_() % 2 == 0;
+        if (jumps)
+            jump(i, next);
+        const std::vector<Index> cells = covered(next);
+        std::vector<std::size_t> pages(cells.size());
+        std::iota(pages.begin(), pages.end(), std::size_t{0});
+        pages.erase(std::remove_if(pages.begin(), pages.end(),
+                                   [&](std::size_t page) { return cells[page] == 0; }),
+                    pages.end());
         std::stable_sort(pages.begin(), pages.end(),
-                         [](const auto& a, const auto& b) { return a.covered < b.covered; });
-        const double skewed = std::pow(share(random_), 3);
-        return pages[std::min(pages.size() - 1, static_cast<std::size_t>(
-                                                    skewed * static_cast<double>(pages.size())))];
+                         [&](std::size_t a, std::size_t b) { return cells[a] < cells[b]; });
+        std::vector<std::uint8_t> is_open(cells.size(), 0);
+        for (const std::size_t page : pages)
+            is_open[page] = 1;
+        for (std::size_t open = pages.size(); open > wanted; --open) {
+            // Mostly one of the emptiest.
+            const std::size_t k = std::min(random_() % pages.size(), random_() % pages.size());
+            is_open[pages[k]] = 0;
+            pages.erase(pages.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+        if (separate(next, is_open, false, progress))
+            keep(std::move(next));
     }
 
-    // What stays where it is. Sheets that lose nothing are taken as they are.
-    Filling without(const Filling& filling, const std::vector<std::uint8_t>& moves) {
-        std::vector<std::uint8_t> loses(filling.sheets.size(), 0);
-        std::vector<std::uint8_t> keeps(filling.sheets.size(), 0);
-        for (std::size_t i = 0; i < moves.size(); ++i)
-            (moves[i] != 0 ? loses : keeps)[at(filling.sheet[i])] = 1;
-        Filling result;
-        result.sheet.assign(moves.size(), -1);
-        result.spot = filling.spot;
-        std::vector<std::size_t> number(filling.sheets.size(), 0);
-        for (std::size_t s = 0; s < filling.sheets.size(); ++s) {
-            if (keeps[s] == 0)
-                continue;
-            number[s] = result.sheets.size();
-            if (loses[s] != 0)
-                result.sheets.emplace_back(problem_, filling.sheets[s].columns(), work_);
-            else
-                result.sheets.push_back(filling.sheets[s]);
-        }
-        for (std::size_t i = 0; i < moves.size(); ++i) {
-            if (moves[i] != 0)
-                continue;
-            const std::size_t s = at(filling.sheet[i]);
-            if (loses[s] != 0)
-                put(i, number[s], filling.spot[i], result);
-            else
-                result.sheet[i] = static_cast<Index>(number[s]);
-        }
-        return result;
+    void jump(std::size_t i, CoarseLayout& layout) {
+        const Footprints& f = footprints_[i];
+        const std::vector<pack::Spot>& spots = f.spots[random_() % f.spots.size()];
+        pack::Spot spot = spots[random_() % spots.size()];
+        const PageGrid grid = grid_of(layout);
+        const pack::Window all = grid.sheet();
+        const pack::ChartCells& image = poses_[i][spot.pose];
+        // As many pages further as there is room for.
+        const Vec2 step = problem_.page.step() / (problem_.factor * problem_.cell);
+        const auto shift = [&](Index low, Index high, double pages) {
+            const auto most =
+                static_cast<unsigned>(std::max(0.0, std::floor((high - low) / pages)));
+            return static_cast<Index>(
+                std::lround(pages * static_cast<double>(random_() % (most + 1))));
+        };
+        spot.x += shift(spot.x + image.width, all.right + 1, step.x());
+        spot.y += shift(spot.y + image.height, all.top + 1, step.y());
+        layout.spots[i] = spot;
     }
 
     const PageProblem& problem_;
-    Random random_;
-    std::vector<std::size_t> order_; // the largest boxes first
+    const std::vector<pack::ChartPoses>& poses_;
+    const std::vector<Footprints>& footprints_;
+    Index columns_;
+    std::uint64_t seed_;
+    std::minstd_rand random_;
+    std::vector<pack::ChartPoses> charts_; // pieces, and what is closed
+    int attempt_ = 0;
     std::int64_t work_ = 0;
-    Filling current_;
-    Filling kept_;
-    double current_cost_ = 0.0;
-    std::pair<Index, double> kept_as_;
+    std::vector<CoarseLayout> found_;
 };
+
+// The same layout in the problem's cells, where pieces turn and move a little.
+std::optional<PageLayout> refined(const PageProblem& problem,
+                                  const std::vector<pack::ChartPoses>& coarse,
+                                  const CoarseLayout& found, const Progress& progress) {
+    const PageGrid from(problem, found.columns, found.rows, found.singles, problem.factor);
+    const PageGrid grid(problem, found.columns, found.rows, found.singles, 1);
+    std::vector<std::uint8_t> is_open(at(grid.pages()), 0);
+    std::vector<pack::ChartPoses> charts;
+    pack::Layout spots;
+    std::vector<Index> cells(at(grid.pages()), 0);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        progress.check();
+        const pack::ChartCells& image = coarse[i][found.spots[i].pose];
+        pack::Spot spot = found.spots[i];
+        if (problem.is_large[i] != 0) {
+            from.count(image, spot, cells);
+            spot.x *= problem.factor;
+            spot.y *= problem.factor;
+        } else {
+            const Index page = page_of(from, image, spot);
+            cells[at(page)] += 1;
+            spot.x = grid.clear(page).left + problem.factor * (spot.x - from.clear(page).left);
+            spot.y = grid.clear(page).bottom + problem.factor * (spot.y - from.clear(page).bottom);
+        }
+        const double angle = std::atan2(image.sine, image.cosine);
+        charts.emplace_back();
+        for (int k = -fine_turns; k <= fine_turns; ++k)
+            charts.back().push_back(k == 0 ? problem.poses[i][spot.pose].cells
+                                           : pack::rasterize(problem.outlines[i],
+                                                             angle + k * fine_turn, problem.cell,
+                                                             0.5 * piece_gap));
+        spot.pose = fine_turns;
+        spots.push_back(spot);
+    }
+    for (std::size_t page = 0; page < cells.size(); ++page)
+        is_open[page] = cells[page] > 0 ? 1 : 0;
+    pack::Spot spot;
+    charts.push_back({grid.closed(is_open, spot)});
+    spots.push_back(spot);
+    pack::Separation separation(charts, 1, progress);
+    separation.confine(windows_of(problem, grid, is_open, charts.back().front(), spot));
+    auto work = static_cast<std::int64_t>(tuning.fine_work);
+    if (!separation.run(spots, {grid.sheet().right + 1, grid.sheet().top + 1}, fine_moves, work))
+        return {};
+    PageLayout result{found.columns, found.rows, found.singles, {}, {}, {}};
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        result.images.push_back(charts[i][spots[i].pose]);
+        result.spots.push_back(spots[i]);
+        result.page.push_back(
+            problem.is_large[i] != 0 ? -1 : page_of(grid, result.images.back(), spots[i]));
+    }
+    return result;
+}
+
+std::vector<Index> covered_by(const PageProblem& problem, const PageLayout& layout) {
+    const PageGrid grid(problem, layout.columns, layout.rows, layout.singles, 1);
+    std::vector<Index> cells(at(grid.pages()), 0);
+    for (std::size_t i = 0; i < layout.spots.size(); ++i)
+        if (layout.page[i] >= 0)
+            cells[at(layout.page[i])] += layout.images[i].count;
+        else
+            grid.count(layout.images[i], layout.spots[i], cells);
+    return cells;
+}
 
 } // namespace
 
-PageCount count_pages(const PageProblem& problem, const Filling& filling) {
-    PageCount count;
-    const double least = tuning.almost_empty * problem.page_cells();
-    bool has_last = false;
-    for (const PageSheet& sheet : filling.sheets) {
-        count.pages += sheet.page_count();
-        for (const Index cells : sheet.covered())
-            if (cells > 0 && cells < least) {
-                ++count.almost_empty;
-                has_last |= sheet.page_count() == 1;
-            }
-    }
-    count.almost_empty -= has_last ? 1 : 0;
-    return count;
-}
-
-Filling search_pages(const PageProblem& problem, Progress& progress) {
+PageLayout search_pages(const PageProblem& problem, Progress& progress) {
+    const auto [least, even] = columns_of(problem, tuning.covered);
+    const std::size_t count = problem.poses.size();
+    PageLayout best = first_fit(problem, std::max(least, even), progress);
+    Index longest = 0;
+    for (const auto& poses : problem.poses)
+        for (const pack::FitImage& image : poses)
+            longest = std::max({longest, image.cells.width, image.cells.height});
+    if (count > pack::very_many_charts || longest > tuning.longest)
+        return best;
+    std::vector<pack::ChartPoses> coarse(count);
+    parallel_for(
+        static_cast<int>(count),
+        [&](int i) {
+            for (const pack::FitImage& image : problem.poses[at(i)])
+                coarse[at(i)].push_back(pack::coarsen(image.cells, problem.factor, tuning.enough));
+        },
+        progress);
+    std::vector<Footprints> footprints(count);
+    parallel_for(
+        static_cast<int>(count),
+        [&](int i) {
+            if (problem.is_large[at(i)] != 0)
+                footprints[at(i)] = find_footprints(problem, coarse[at(i)], progress);
+        },
+        progress);
     std::vector<Search> searches;
-    for (int k = 0; k < tuning.searches; ++k)
-        searches.emplace_back(problem, 1U + static_cast<unsigned>(k));
-    for (int round = 1; round <= tuning.rounds; ++round) {
-        auto part = progress.part(1.0 / tuning.rounds);
-        parallel_for(
-            tuning.searches,
-            [&](int k) {
-                searches[at(k)].advance(static_cast<double>(round) / tuning.rounds, part);
-            },
-            part);
-        if (std::any_of(searches.begin(), searches.end(),
-                        [](const Search& search) { return search.is_best(); }))
-            break;
+    for (int k = 0; k < tuning.searches; ++k) {
+        const Index wider = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
+        searches.emplace_back(problem, coarse, footprints, std::max(least, even + wider),
+                              std::uint64_t{1000} * at(k));
     }
-    return std::min_element(
-               searches.begin(), searches.end(),
-               [](const Search& a, const Search& b) { return a.kept_as() < b.kept_as(); })
-        ->kept();
+    const double work = tuning.work / (2 * tuning.searches);
+    auto searching = progress.part(0.5);
+    parallel_for(
+        tuning.searches, [&](int k) { searches[at(k)].advance(work, searching); }, searching);
+    // The better ones go on.
+    std::vector<Search*> better;
+    for (Search& search : searches)
+        better.push_back(&search);
+    std::stable_sort(better.begin(), better.end(),
+                     [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
+    auto going_on = progress.part(0.9);
+    parallel_for(
+        tuning.best,
+        [&](int k) { better[at(k)]->advance(0.5 * tuning.work / tuning.best, going_on); },
+        going_on);
+    std::vector<const CoarseLayout*> found;
+    for (const Search& search : searches)
+        for (const CoarseLayout& layout : search.found())
+            found.push_back(&layout);
+    std::stable_sort(found.begin(), found.end(), [](const CoarseLayout* a, const CoarseLayout* b) {
+        return a->goal < b->goal;
+    });
+    const Index first = goal_of(problem, covered_by(problem, best), problem.cell);
+    for (const CoarseLayout* layout : found) {
+        if (layout->goal >= first)
+            break;
+        if (auto result = refined(problem, coarse, *layout, progress))
+            return *result;
+    }
+    return best;
 }
 
 } // namespace devseg::sheet

@@ -9,6 +9,8 @@
 extern "C" {
 extern const char devseg_font[];
 extern const char devseg_font_end[];
+extern const char devseg_far_font[];
+extern const char devseg_far_font_end[];
 }
 
 namespace devseg::writers {
@@ -84,14 +86,35 @@ void put(std::string& bytes, std::uint32_t value, int size) {
 
 } // namespace
 
-const Font& Font::built_in() {
-    static const Font font(std::string(devseg_font, devseg_font_end));
-    return font;
+const std::vector<Font>& built_in_fonts() {
+    const auto between = [](const char* first, const char* last) {
+        return std::string_view(first, static_cast<std::size_t>(last - first));
+    };
+    static const std::vector<Font> fonts{
+        {"DejaVuSans", between(devseg_font, devseg_font_end)},
+        {"DroidSansFallback", between(devseg_far_font, devseg_far_font_end)}};
+    return fonts;
 }
 
-Font::Font(std::string bytes) : bytes_(std::move(bytes)) {
+Glyph glyph_of(unsigned code_point) {
+    const std::vector<Font>& fonts = built_in_fonts();
+    for (std::size_t font = 0; font < fonts.size(); ++font)
+        if (const int number = fonts[font].glyph(code_point); number != 0)
+            return {font, number};
+    return {};
+}
+
+double advance(const Glyph& glyph) {
+    return built_in_fonts()[glyph.font].advance(glyph.number);
+}
+
+Font::Font(std::string name, std::string_view bytes) : name_(std::move(name)), bytes_(bytes) {
     const Table head = table("head");
     units_ = u16(head.start + 18);
+    box_ = {Vec2(s16(head.start + 36), s16(head.start + 38)) / units_,
+            Vec2(s16(head.start + 40), s16(head.start + 42)) / units_};
+    ascent_ = s16(table("hhea").start + 4) / units_;
+    descent_ = s16(table("hhea").start + 6) / units_;
     long_places_ = u16(head.start + 50) != 0;
     glyph_count_ = static_cast<int>(u16(table("maxp").start + 4));
     metric_count_ = static_cast<int>(u16(table("hhea").start + 34));
@@ -285,7 +308,7 @@ std::string Font::subset(const std::set<int>& glyphs) const {
     std::string body;
     for (const char* name : names) {
         const Table found = table(name);
-        std::string content = bytes_.substr(found.start, found.size);
+        std::string content(bytes_.substr(found.start, found.size));
         if (std::string(name) == "glyf")
             content = outlines;
         if (std::string(name) == "loca")
@@ -316,17 +339,16 @@ bool needs_font(const std::string& utf8) {
 int missing_glyphs(const std::string& utf8) {
     const std::vector<unsigned> points = code_points(utf8);
     return static_cast<int>(std::count_if(points.begin(), points.end(), [](unsigned p) {
-        return p >= 0x20 && Font::built_in().glyph(p) == 0;
+        return p >= 0x20 && glyph_of(p).number == 0;
     }));
 }
 
 Drawing with_outlined_texts(Drawing drawing) {
-    const Font& font = Font::built_in();
     for (DrawingLayer& layer : drawing.layers) {
         for (const DrawingText& text : layer.texts) {
             double own_width = 0.0;
             for (const unsigned point : code_points(text.text))
-                own_width += font.advance(font.glyph(point));
+                own_width += advance(glyph_of(point));
             // The room for it was found by other widths.
             const double stretch = own_width > 0.0 ? text_width(text.text, 1.0) / own_width : 1.0;
             const Vec2 start = text_start(text);
@@ -335,13 +357,14 @@ Drawing with_outlined_texts(Drawing drawing) {
             path.owner = text.owner;
             double x = 0.0;
             for (const unsigned point : code_points(text.text)) {
-                const int glyph = font.glyph(point);
-                std::vector<DrawingPolyline> lines = font.outline(glyph);
+                const Glyph glyph = glyph_of(point);
+                std::vector<DrawingPolyline> lines =
+                    built_in_fonts()[glyph.font].outline(glyph.number);
                 change_points(lines, [&](const Vec2& p) {
                     return Vec2(start + turn * (text.size * Vec2(stretch * (x + p.x()), p.y())));
                 });
                 path.parts.insert(path.parts.end(), lines.begin(), lines.end());
-                x += font.advance(glyph);
+                x += advance(glyph);
             }
             if (!path.parts.empty())
                 layer.paths.push_back(std::move(path));

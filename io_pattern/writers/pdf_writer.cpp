@@ -22,6 +22,11 @@ constexpr double line_width = 0.2;       // mm, still seen on paper where a hair
 constexpr double largest_page = 14400.0; // user units, what readers take
 constexpr int scale_decimals = 8;        // of factors, that multiply lengths of metres
 
+struct WideFont {
+    int object = 0;
+    std::map<int, unsigned> glyphs; // with their code points
+};
+
 class Writer {
 public:
     explicit Writer(const Document& document) : document_(document) {}
@@ -31,8 +36,7 @@ public:
         tree_ = objects_.reserve();
         font_ = objects_.add("<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica "
                              "/Encoding /WinAnsiEncoding >>");
-        if (has_wide_text())
-            wide_font_ = objects_.reserve();
+        reserve_wide_fonts();
         declare_layers();
         std::string objects;
         const std::string pattern = pictures(objects) + content(document_.drawing.layers);
@@ -43,8 +47,8 @@ public:
         std::string kids;
         for (const DocumentPage& page : document_.pages)
             kids += PdfObjects::reference(add_page(page)) + ' ';
-        if (wide_font_ > 0)
-            define_wide_font();
+        for (const auto& [number, used] : wide_fonts_)
+            define_wide_font(built_in_fonts()[number], used);
         objects_.define(tree_, "<< /Type /Pages /Count " + std::to_string(document_.pages.size()) +
                                    " /Kids [" + kids + "] >>");
         objects_.define(catalogue, "<< /Type /Catalog /Pages " + PdfObjects::reference(tree_) +
@@ -58,39 +62,46 @@ public:
     }
 
 private:
-    bool has_wide_text() const {
-        const auto is_wide = [](const DrawingLayer& layer) {
-            return std::any_of(layer.texts.begin(), layer.texts.end(),
-                               [](const DrawingText& text) { return needs_font(text.text); });
+    // Only those fonts get into the file whose glyphs are used.
+    void reserve_wide_fonts() {
+        const auto reserve = [&](const DrawingLayer& layer) {
+            for (const DrawingText& text : layer.texts)
+                for (const unsigned point :
+                     needs_font(text.text) ? code_points(text.text) : std::vector<unsigned>())
+                    if (const auto [font, is_new] = wide_fonts_.try_emplace(glyph_of(point).font);
+                        is_new)
+                        font->second.object = objects_.reserve();
         };
-        const auto& layers = document_.drawing.layers;
-        return std::any_of(layers.begin(), layers.end(), is_wide) ||
-               std::any_of(document_.pages.begin(), document_.pages.end(),
-                           [&](const DocumentPage& page) {
-                               return std::any_of(page.marks.begin(), page.marks.end(), is_wide);
-                           });
+        for (const DrawingLayer& layer : document_.drawing.layers)
+            reserve(layer);
+        for (const DocumentPage& page : document_.pages)
+            for (const DrawingLayer& layer : page.marks)
+                reserve(layer);
     }
 
     // The glyphs that are used, under their numbers, with a map back for who copies text.
-    void define_wide_font() {
-        const Font& font = Font::built_in();
+    void define_wide_font(const Font& font, const WideFont& used) {
+        const auto thousandths = [](double sizes) { return number_text(1000.0 * sizes, 0); };
         std::set<int> glyphs;
         std::string widths;
         std::string map;
-        for (const auto& [glyph, point] : used_glyphs_) {
+        for (const auto& [glyph, point] : used.glyphs) {
             glyphs.insert(glyph);
-            widths +=
-                std::to_string(glyph) + " [" + number_text(1000.0 * font.advance(glyph), 0) + "] ";
+            widths += std::to_string(glyph) + " [" + thousandths(font.advance(glyph)) + "] ";
             map += '<' + hex(static_cast<unsigned>(glyph)) + "> <" + hex(point) + ">\n";
         }
         const std::string data = font.subset(glyphs);
         const int file = objects_.add_stream("/Length1 " + std::to_string(data.size()), data);
-        const std::string name = "/BaseFont /DEVSEG+DejaVuSans";
+        const std::string name = "/BaseFont /DEVSEG+" + font.name();
+        const auto corner = [&](const Vec2& p) {
+            return thousandths(p.x()) + ' ' + thousandths(p.y());
+        };
         const int descriptor = objects_.add(
-            "<< /Type /FontDescriptor /FontName /DEVSEG+DejaVuSans /Flags 32 /FontBBox [-1021 -463 "
-            "1793 1232] /ItalicAngle 0 /Ascent 928 /Descent -236 /CapHeight 729 /StemV 80 "
-            "/FontFile2 " +
-            PdfObjects::reference(file) + " >>");
+            "<< /Type /FontDescriptor /FontName /DEVSEG+" + font.name() + " /Flags 32 /FontBBox [" +
+            corner(font.box().min()) + ' ' + corner(font.box().max()) +
+            "] /ItalicAngle 0 /Ascent " + thousandths(font.ascent()) + " /Descent " +
+            thousandths(font.descent()) + " /CapHeight " + thousandths(capital_height) +
+            " /StemV 80 /FontFile2 " + PdfObjects::reference(file) + " >>");
         const int glyph_font = objects_.add(
             "<< /Type /Font /Subtype /CIDFontType2 " + name +
             " /CIDSystemInfo << /Registry (Adobe) /Ordering (Identity) /Supplement 0 >> "
@@ -99,12 +110,12 @@ private:
         const int unicode = objects_.add_stream(
             "", "/CIDInit /ProcSet findresource begin 12 dict begin begincmap\n/CMapName /devseg "
                 "def\n/CMapType 2 def\n1 begincodespacerange <0000> <FFFF> endcodespacerange\n" +
-                    std::to_string(used_glyphs_.size()) + " beginbfchar\n" + map +
+                    std::to_string(used.glyphs.size()) + " beginbfchar\n" + map +
                     "endbfchar\nendcmap CMapName currentdict /CMap defineresource pop end end\n");
-        objects_.define(wide_font_, "<< /Type /Font /Subtype /Type0 " + name +
-                                        " /Encoding /Identity-H /DescendantFonts [" +
-                                        PdfObjects::reference(glyph_font) + "] /ToUnicode " +
-                                        PdfObjects::reference(unicode) + " >>");
+        objects_.define(used.object, "<< /Type /Font /Subtype /Type0 " + name +
+                                         " /Encoding /Identity-H /DescendantFonts [" +
+                                         PdfObjects::reference(glyph_font) + "] /ToUnicode " +
+                                         PdfObjects::reference(unicode) + " >>");
     }
 
     // UTF-16, big-endian.
@@ -121,17 +132,25 @@ private:
         return digits(0xd800 + ((point - 0x10000) >> 10)) + digits(0xdc00 + (point & 0x3ffU));
     }
 
-    std::string shown_text(const std::string& utf8) {
+    // Operators that choose fonts and show the text.
+    std::string shown_text(const std::string& utf8, double size) {
+        const std::string chosen = ' ' + millimetres(size) + " Tf ";
         if (!needs_font(utf8))
-            return PdfObjects::literal(latin1(utf8));
-        std::string text = "<";
+            return "/F1" + chosen + PdfObjects::literal(latin1(utf8)) + " Tj ";
+        std::string text;
+        std::size_t font = built_in_fonts().size();
         for (const unsigned point : code_points(utf8)) {
-            const int glyph = Font::built_in().glyph(point);
-            used_glyphs_.emplace(glyph, point);
-            text += hex(static_cast<unsigned>(glyph));
+            const Glyph glyph = glyph_of(point);
+            if (glyph.font != font)
+                text += (text.empty() ? "" : "> Tj ") + wide_name(glyph.font) + chosen + '<';
+            font = glyph.font;
+            wide_fonts_.at(font).glyphs.emplace(glyph.number, point);
+            text += hex(static_cast<unsigned>(glyph.number));
         }
-        return text + '>';
+        return text + "> Tj ";
     }
+
+    static std::string wide_name(std::size_t font) { return "/F" + std::to_string(font + 2); }
 
     // A layer of the same id is the same group on all pages.
     void declare_layers() {
@@ -154,8 +173,9 @@ private:
     }
 
     std::string resources(const std::string& objects) const {
-        const std::string wide =
-            wide_font_ > 0 ? " /F2 " + PdfObjects::reference(wide_font_) : std::string();
+        std::string wide;
+        for (const auto& [number, used] : wide_fonts_)
+            wide += ' ' + wide_name(number) + ' ' + PdfObjects::reference(used.object);
         return "<< /Font << /F1 " + PdfObjects::reference(font_) + wide + " >> /Properties << " +
                properties_ + ">> /XObject << " + objects + ">> >>";
     }
@@ -278,10 +298,8 @@ private:
     void append(const DrawingText& text, std::string& data) {
         const double c = std::cos(text.angle);
         const double s = std::sin(text.angle);
-        data += std::string("BT ") + (needs_font(text.text) ? "/F2 " : "/F1 ") +
-                millimetres(text.size) + " Tf " + factor(c) + ' ' + factor(s) + ' ' + factor(-s) +
-                ' ' + factor(c) + ' ' + point(text_start(text)) + " Tm " + shown_text(text.text) +
-                " Tj ET\n";
+        data += "BT " + factor(c) + ' ' + factor(s) + ' ' + factor(-s) + ' ' + factor(c) + ' ' +
+                point(text_start(text)) + " Tm " + shown_text(text.text, text.size) + "ET\n";
     }
 
     static std::string colour(const std::string& code) {
@@ -305,8 +323,7 @@ private:
     std::string properties_; // the same by name, for content
     int tree_ = 0;
     int font_ = 0;
-    int wide_font_ = 0;                   // 0 = every text is written in the standard font
-    std::map<int, unsigned> used_glyphs_; // with their code points
+    std::map<std::size_t, WideFont> wide_fonts_; // those of the built-in fonts that are used
     int form_ = 0;
 };
 

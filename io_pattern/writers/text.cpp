@@ -63,7 +63,7 @@ double text_width(const std::string& text, double size) {
     double width = 0.0;
     const bool in_font = needs_font(text);
     for (const unsigned point : code_points(text))
-        width += in_font ? Font::built_in().advance(Font::built_in().glyph(point))
+        width += in_font                      ? advance(glyph_of(point))
                  : point >= 32 && point < 127 ? 1e-3 * widths[point - 32]
                                               : 1e-3 * other_width;
     return width * size;

@@ -213,6 +213,18 @@ def test_names_in_other_scripts_are_drawn(flattened: Any, tmp_path: Path) -> Non
     assert "/FontFile2" in glyphs.get_object()["/FontDescriptor"]
     assert path.stat().st_size < 1_000_000
     assert files.renders(path)
+    far = "\u718a \u304f\u307e \uacf0 \u041c"  # Chinese, Japanese, Korean and Cyrillic
+    path = tmp_path / f"{far}.pdf"
+    flattened.apply_filter("export_pattern", output_file=str(path), page="a4", mm_per_unit=50.0)
+    reader = pypdf.PdfReader(path, strict=True)
+    assert all(far in page.extract_text() for page in reader.pages)
+    fonts = reader.pages[0]["/Resources"]["/Font"]
+    assert {"/F2", "/F3"} <= set(fonts)
+    for name in ("/F2", "/F3"):  # glyph 0 is a box
+        used = fonts[name].get_object()["/ToUnicode"].get_data().split(b"beginbfchar")[1]
+        assert b"<0000> <" not in used
+    assert path.stat().st_size < 1_000_000
+    assert files.renders(path)
     plain = tmp_path / "bear.pdf"
     flattened.apply_filter("export_pattern", output_file=str(plain), page="a4", mm_per_unit=50.0)
     assert "/F2" not in pypdf.PdfReader(plain).pages[0]["/Resources"]["/Font"]

@@ -248,8 +248,8 @@ ON_THE_THIRD = (
     "const m = p.getScreenCTM();"
     "for (let i = 1; i < 40; ++i) for (let k = 1; k < 40; ++k) {"
     "  const q = new DOMPoint(b.x + b.width * i / 40, b.y + b.height * k / 40);"
-    "  const s = q.matrixTransform(m);"
-    "  if (document.elementFromPoint(s.x, s.y) === p) return [s.x, s.y]; }"
+    "  const s = q.matrixTransform(m); const x = Math.round(s.x); const y = Math.round(s.y);"
+    "  if (document.elementFromPoint(x, y) === p) return [x, y]; }"
 )
 
 

@@ -299,7 +299,7 @@ ChartCells rasterize(const Outline& outline, double angle, double cell, double m
     return image;
 }
 
-ChartCells coarsen(const ChartCells& fine, Index factor) {
+ChartCells coarsen(const ChartCells& fine, Index factor, double share) {
     const Index width = std::max(Index{1}, (fine.width + factor / 2) / factor);
     const Index height = std::max(Index{1}, (fine.height + factor / 2) / factor);
     std::vector<Index> covered(at(width) * at(height), 0);
@@ -315,7 +315,7 @@ ChartCells coarsen(const ChartCells& fine, Index factor) {
     Canvas canvas(width, height);
     const Index most = *std::max_element(covered.begin(), covered.end());
     // A chart thinner than the cells must not vanish.
-    const Index enough = std::min(most, factor * factor / 2);
+    const Index enough = std::min(most, static_cast<Index>(std::ceil(share * factor * factor)));
     for (Index y = 0; y < height; ++y)
         for (Index x = 0; x < width; ++x)
             if (covered[at(y) * at(width) + at(x)] >= enough)

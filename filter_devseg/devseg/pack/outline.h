@@ -62,8 +62,8 @@ struct ChartCells {
 /// more: the image is conservative). The image is as small as possible; the obstacle is flat.
 ChartCells rasterize(const Outline& outline, double angle, double cell, double margin);
 
-/// The image on cells `factor` times as wide: the cells of which at least half is covered.
-/// Faithful on average, not conservative.
-ChartCells coarsen(const ChartCells& fine, Index factor);
+/// The image on cells `factor` times as wide: the cells of which at least a share is covered. With
+/// one half, faithful on average, not conservative.
+ChartCells coarsen(const ChartCells& fine, Index factor, double share = 0.5);
 
 } // namespace devseg::pack

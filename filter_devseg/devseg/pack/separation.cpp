@@ -98,6 +98,7 @@ Separation::Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed,
       placed_(poses.size(), 1), boxes_(poses.size()), totals_(poses.size(), 0),
       overlaps_(poses.size() * poses.size(), 0), weights_(poses.size() * poses.size(), 1.0) {
     at_left_.resize(poses.size(), 0);
+    windows_.resize(poses.size());
     Index largest = 1;
     for (const ChartPoses& chart : poses)
         for (const ChartCells& pose : chart)
@@ -124,13 +125,49 @@ bool Separation::fits(const Frame& frame) const {
     });
 }
 
+void Separation::confine(std::vector<std::vector<Window>> windows) {
+    windows_ = std::move(windows);
+    windows_.resize(poses_.size());
+}
+
+// Where the corner of an image may lie, in each of the chart's windows that is large enough.
+std::vector<Window> Separation::places_within(std::size_t i, const ChartCells& c) const {
+    std::vector<Window> places;
+    const auto add = [&](const Window& cells) {
+        const Window here{cells.left, cells.right + 1 - c.width, cells.bottom,
+                          cells.top + 1 - c.height};
+        if (!here.empty())
+            places.push_back(here);
+    };
+    if (windows_[i].empty())
+        add({0, right_of(i, c) + c.width - 1, 0, frame_.height - 1});
+    for (const Window& window : windows_[i])
+        add(window);
+    return places;
+}
+
+// The place in the windows that is nearest to one.
+Spot Separation::nearest_place(std::size_t i, std::size_t pose, const Spot& spot) const {
+    Spot best{pose, spot.x, spot.y};
+    Index least = std::numeric_limits<Index>::max();
+    for (const Window& w : places_within(i, poses_[i][pose])) {
+        const Spot here{pose, std::clamp(spot.x, w.left, w.right),
+                        std::clamp(spot.y, w.bottom, w.top)};
+        const Index distance = std::abs(here.x - spot.x) + std::abs(here.y - spot.y);
+        if (distance < least) {
+            least = distance;
+            best = here;
+        }
+    }
+    return best;
+}
+
 Layout Separation::insert_all(const std::vector<std::size_t>& order, const Frame& frame,
                               const SeparationOptions& options) {
     layout_.assign(poses_.size(), Spot{});
     frame_ = frame;
-    if (!fits(frame))
+    if (!clamp_to_frame())
         return {};
-    clamp_to_frame();
     std::fill(weights_.begin(), weights_.end(), 1.0);
     std::fill(placed_.begin(), placed_.end(), char{0});
     for (const std::size_t i : order) {
@@ -157,12 +194,11 @@ Layout Separation::fit_all(const std::vector<std::size_t>& order, const Frame& f
 
 bool Separation::run(Layout& layout, const Frame& frame, const SeparationOptions& options,
                      std::int64_t& work) {
-    if (!fits(frame))
-        return false;
     layout_ = layout;
     frame_ = frame;
     work_ = work;
-    clamp_to_frame();
+    if (!clamp_to_frame())
+        return false;
     std::fill(weights_.begin(), weights_.end(), 1.0);
     const std::size_t n = poses_.size();
     std::vector<std::size_t> order(n);
@@ -173,7 +209,7 @@ bool Separation::run(Layout& layout, const Frame& frame, const SeparationOptions
         for (std::size_t i = n; i > 1; --i)
             std::swap(order[i - 1], order[random(i)]);
         for (const std::size_t i : order)
-            if (totals_[i] > 0) {
+            if (totals_[i] > 0 && !is_fixed(i)) {
                 progress_.check();
                 move(i, options);
                 measure(i);
@@ -192,16 +228,26 @@ bool Separation::run(Layout& layout, const Frame& frame, const SeparationOptions
     return true;
 }
 
-void Separation::clamp_to_frame() {
+// False when a chart has no pose that fits.
+bool Separation::clamp_to_frame() {
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-        if (!fits(cells(i))) {
+        if (!fits(i, cells(i))) {
             const auto other = std::find_if(poses_[i].begin(), poses_[i].end(),
-                                            [&](const ChartCells& c) { return fits(c); });
+                                            [&](const ChartCells& c) { return fits(i, c); });
+            if (other == poses_[i].end())
+                return false;
             layout_[i].pose = static_cast<std::size_t>(other - poses_[i].begin());
         }
-        layout_[i].x = std::clamp(layout_[i].x, Index{0}, right_of(i, cells(i)));
-        layout_[i].y = std::clamp(layout_[i].y, Index{0}, frame_.height - cells(i).height);
+        layout_[i] = nearest_place(i, layout_[i].pose, layout_[i]);
     }
+    return true;
+}
+
+bool Separation::is_fixed(std::size_t i) const {
+    if (windows_[i].size() != 1 || poses_[i].size() != 1)
+        return false;
+    const Window& w = windows_[i].front();
+    return w.right - w.left + 1 == cells(i).width && w.top - w.bottom + 1 == cells(i).height;
 }
 
 std::int64_t Separation::measure_all() {
@@ -248,17 +294,18 @@ void Separation::raise_weights() {
     }
 }
 
-Window Separation::window_of(std::size_t i, std::size_t pose, Index reach) const {
+std::vector<Window> Separation::windows_of(std::size_t i, std::size_t pose, Index reach) const {
     const ChartCells& c = poses_[i][pose];
-    const Index far_x = right_of(i, c);
-    const Index far_y = frame_.height - c.height;
+    std::vector<Window> windows = places_within(i, c);
     if (reach == 0)
-        return {0, far_x, 0, far_y};
+        return windows;
     // Poses of different sizes keep their centre.
     const Index x = layout_[i].x + (cells(i).width - c.width) / 2;
     const Index y = layout_[i].y + (cells(i).height - c.height) / 2;
-    return {std::max(Index{0}, x - reach), std::min(far_x, x + reach),
-            std::max(Index{0}, y - reach), std::min(far_y, y + reach)};
+    for (Window& w : windows)
+        w = {std::max(w.left, x - reach), std::min(w.right, x + reach),
+             std::max(w.bottom, y - reach), std::min(w.top, y + reach)};
+    return windows;
 }
 
 // The present pose comes first: it alone is sure to fit.
@@ -277,15 +324,15 @@ void Separation::move(std::size_t i, const SeparationOptions& options) {
     const std::vector<std::size_t> chosen = choose_poses(i, options.poses);
     const Index reach = placed_[i] != 0 ? options.reach : 0;
     Window area = box_of(i);
-    for (const std::size_t pose : chosen) {
-        const Window places = window_of(i, pose, reach);
-        if (places.empty())
-            continue;
-        area.left = std::min(area.left, places.left);
-        area.right = std::max(area.right, places.right + poses_[i][pose].width - 1);
-        area.bottom = std::min(area.bottom, places.bottom);
-        area.top = std::max(area.top, places.top + poses_[i][pose].height - 1);
-    }
+    for (const std::size_t pose : chosen)
+        for (const Window& places : windows_of(i, pose, reach)) {
+            if (places.empty())
+                continue;
+            area.left = std::min(area.left, places.left);
+            area.right = std::max(area.right, places.right + poses_[i][pose].width - 1);
+            area.bottom = std::min(area.bottom, places.bottom);
+            area.top = std::max(area.top, places.top + poses_[i][pose].height - 1);
+        }
     const std::int64_t before = places_.work();
     places_.clear(area);
     for (std::size_t j = 0; j < poses_.size(); ++j)
@@ -298,7 +345,8 @@ void Separation::move(std::size_t i, const SeparationOptions& options) {
     else
         places_.begin(layout_[i]);
     for (const std::size_t pose : chosen)
-        places_.look(poses_[i][pose], pose, window_of(i, pose, reach));
+        for (const Window& places : windows_of(i, pose, reach))
+            places_.look(poses_[i][pose], pose, places);
     layout_[i] = places_.best();
     work_ -= places_.work() - before;
 }

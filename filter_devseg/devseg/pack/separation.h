@@ -111,6 +111,10 @@ public:
     Separation(const std::vector<ChartPoses>& poses, std::uint64_t seed, const Progress& progress,
                std::vector<std::uint8_t> at_left = {});
 
+    /// Charts with windows (#poses; each a list) lie within one of theirs, whatever the frame, and
+    /// the others anywhere in it. A chart whose only window is as large as the chart never moves.
+    void confine(std::vector<std::vector<Window>> windows);
+
     /// Lays the charts out one after the other, each at the lowest free place or, where there is
     /// none, at the cheapest; nothing when a chart is larger than the frame.
     Layout insert_all(const std::vector<std::size_t>& order, const Frame& frame,
@@ -126,31 +130,33 @@ public:
     bool run(Layout& layout, const Frame& frame, const SeparationOptions& options,
              std::int64_t& work);
 
-    /// True when every chart has a pose that fits into the frame.
+    /// True when every chart has a pose that fits into the frame, without windows.
     bool fits(const Frame& frame) const;
 
 private:
-    void clamp_to_frame();
+    bool clamp_to_frame();
+    bool is_fixed(std::size_t i) const;
+    Spot nearest_place(std::size_t i, std::size_t pose, const Spot& spot) const;
     std::int64_t measure_all();
     void measure(std::size_t i);
     Window box_of(std::size_t i) const;
     void raise_weights();
     void move(std::size_t i, const SeparationOptions& options);
     std::vector<std::size_t> choose_poses(std::size_t i, std::size_t count);
-    Window window_of(std::size_t i, std::size_t pose, Index reach) const;
+    std::vector<Window> windows_of(std::size_t i, std::size_t pose, Index reach) const;
     std::uint64_t random(std::uint64_t bound);
 
     Index right_of(std::size_t i, const ChartCells& c) const {
         return at_left_[i] != 0 ? 0 : frame_.width - c.width;
     }
-    bool fits(const ChartCells& c) const {
-        return c.width <= frame_.width && c.height <= frame_.height;
-    }
+    bool fits(std::size_t i, const ChartCells& c) const { return !places_within(i, c).empty(); }
+    std::vector<Window> places_within(std::size_t i, const ChartCells& c) const;
     const ChartCells& cells(std::size_t i) const { return poses_[i][layout_[i].pose]; }
 
     const std::vector<ChartPoses>& poses_;
     const Progress& progress_;
     std::vector<std::uint8_t> at_left_;
+    std::vector<std::vector<Window>> windows_; // #poses; none: the frame
     std::uint64_t random_state_;
     double weight_limit_ = 1.0;
     Frame frame_;

@@ -5,11 +5,10 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/plane/plane.h"
+#include "sheet/drawing_plan.h"
 #include "sheet/export_options.h"
 #include "sheet/layout.h"
-#include "sheet/page_footprints.h"
 #include "sheet/page_nesting.h"
-#include "sheet/page_search.h"
 #include "sheet/sheet_drawing.h"
 #include "unit/checks.h"
 
@@ -71,6 +70,17 @@ std::vector<SheetPiece> put_on_pages(std::vector<SheetPiece> pieces, PageNesting
         pieces[i].sheet = nesting.sheet[i];
     }
     return pieces;
+}
+
+// How many pages have something on them.
+std::size_t printed(const std::vector<SheetPiece>& placed, const PageNesting& nesting) {
+    PatternLayout layout;
+    layout.page = small_page();
+    layout.sheets = nesting.sheets;
+    layout.pieces = placed;
+    writers::Drawing drawing;
+    drawing.sheets.resize(layout.sheets.size());
+    return printed_pages(layout, drawing).size();
 }
 
 // Of two rectangles that may be turned: 0 where a corner of one lies in the other.
@@ -146,26 +156,24 @@ TEST(PageNesting, KnowsWhereAPieceNeedsTheFewestPages) {
     const double b = 85, c = 115, e = 200;
     cross.cut = {{Vec2(b, 0), Vec2(c, 0), Vec2(c, b), Vec2(e, b), Vec2(e, c), Vec2(c, c),
                   Vec2(c, e), Vec2(b, e), Vec2(b, c), Vec2(0, c), Vec2(0, b), Vec2(b, b)}};
-    PageProblem problem;
-    problem.page = small_page();
-    problem.cell = 0.5;
-    problem.columns = problem.cells_down(problem.page.printable().x() + piece_gap - 1.0);
-    problem.rows = problem.cells_down(problem.page.printable().y() + piece_gap - 1.0);
-    std::vector<pack::FitImage> poses;
-    poses.emplace_back(
-        pack::rasterize(pack::outline_of(cross.cut), 0.0, problem.cell, 0.5 * piece_gap));
-    const std::vector<Footprint> found = find_footprints(problem, poses);
-    ASSERT_FALSE(found.empty());
-    std::size_t fewest = 100;
-    std::size_t in_the_corner = 0;
-    for (const Footprint& f : found) {
-        fewest = std::min(fewest, f.pages.size());
-        for (const PagePlace& place : f.places)
-            if (place.offset == Vec2::Zero())
-                in_the_corner = f.pages.size();
-    }
-    EXPECT_EQ(in_the_corner, 5U);
-    EXPECT_EQ(fewest, 4U);
+    PageNesting nesting;
+    const std::vector<SheetPiece> placed = put_on_pages({cross}, nesting);
+    EXPECT_EQ(printed(placed, nesting), 4U);
+}
+
+TEST(PageNesting, ManyPiecesFillPagesInOrder) {
+    std::vector<SheetPiece> pieces{rectangle(200, 40)}; // too long for a page
+    for (int i = 0; i < 300; ++i)
+        pieces.push_back(rectangle(30, 20));
+    PageNesting nesting;
+    const std::vector<SheetPiece> placed = put_on_pages(pieces, nesting);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (placed[i].sheet == placed[j].sheet) {
+                ASSERT_GE(gap_between(placed[i], placed[j]), piece_gap - 1e-6) << i << ' ' << j;
+            }
+    // With their gaps, 18 small ones fit on a page.
+    EXPECT_LE(printed(placed, nesting), 22U);
 }
 
 TEST(PageNesting, IsTheSameInEveryRunAndCanBeCancelled) {

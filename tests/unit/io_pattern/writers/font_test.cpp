@@ -1,4 +1,4 @@
-// The font that is part of the library.
+// The fonts that are part of the library.
 #include "writers/font.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Eigen::AlignedBox2d box_of(const std::vector<DrawingPolyline>& lines) {
 }
 
 TEST(Font, KnowsTheShapesOfLetters) {
-    const Font& font = Font::built_in();
+    const Font& font = built_in_fonts().front();
     EXPECT_EQ(font.outline(font.glyph('o')).size(), 2U) << "a ring";
     EXPECT_EQ(font.outline(font.glyph('B')).size(), 3U);
     EXPECT_TRUE(font.outline(font.glyph(' ')).empty());
@@ -41,11 +41,25 @@ TEST(Font, KnowsOtherScriptsAndSaysWhatItLacks) {
     EXPECT_FALSE(needs_font("b\xc3\xa4r"));
     EXPECT_TRUE(needs_font("\xd0\x9c\xd0\xb8")); // Cyrillic
     EXPECT_EQ(missing_glyphs("\xd0\x9c\xd0\xb8 \xce\xa9"), 0);
-    EXPECT_EQ(missing_glyphs("a\xe7\x86\x8a"), 1) << "Japanese";
+    for (const char* name : {"a\xe7\x86\x8a", "\xe3\x81\x8f\xe3\x81\xbe", // Chinese, Japanese
+                             "\xea\xb3\xb0"})                             // Korean
+        EXPECT_EQ(missing_glyphs(name), 0) << name;
+    EXPECT_EQ(missing_glyphs("a\xf0\x9f\x90\xbb"), 1) << "a picture of a bear";
+}
+
+TEST(Font, IsTheFirstThatHasTheCharacter) {
+    EXPECT_EQ(glyph_of('a').font, 0U);
+    const Glyph bear = glyph_of(0x718a);
+    ASSERT_EQ(bear.font, 1U);
+    const Font& font = built_in_fonts()[bear.font];
+    EXPECT_NEAR(advance(bear), 1.0, 0.01) << "as wide as high";
+    const Eigen::AlignedBox2d box = box_of(font.outline(bear.number));
+    EXPECT_GT(box.sizes().minCoeff(), 0.8);
+    EXPECT_TRUE(font.box().contains(box));
 }
 
 TEST(Font, SubsetsHaveTheSameGlyphsAndAreSmall) {
-    const Font& font = Font::built_in();
+    const Font& font = built_in_fonts().front();
     const std::string one = font.subset({font.glyph(0x416)});
     const std::string more = font.subset({font.glyph(0x416), font.glyph(0xe4)});
     EXPECT_LT(one.size(), 100000U);
