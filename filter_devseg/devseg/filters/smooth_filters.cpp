@@ -29,6 +29,7 @@ struct Tuning {
     int rounds = 6;     // of smoothing, where charts come out above a bound
     double reach = 1.0; // smoothness: what is made firmer around a place that is above; twice each
                         // time, and all of the chart's seams at the end
+    double exact = 1.0001; // L2 stretch that nobody can measure: charts within it stay within it
 };
 constexpr Tuning tuning;
 
@@ -65,10 +66,29 @@ Excess strain_above(const Mesh& mesh, const std::vector<Index>& faces,
     return excess;
 }
 
-// Which of the chosen charts have a final map above the bound: trials leave out what relieves
+// Of the charts as they were: the given bound, and none that loses what unfolded exactly, as boxes
+// do.
+std::vector<double> stretch_bounds(const Mesh& mesh, const atlas::ChartMap& charts, double bound,
+                                   Progress& progress) {
+    std::vector<double> bounds(at(charts.count), bound);
+    if (!(bound > tuning.exact))
+        return bounds;
+    const Buckets<Index> faces = atlas::group_faces(charts);
+    parallel_for(
+        static_cast<int>(charts.count),
+        [&](int c) {
+            const std::vector<Index> own(faces[c].begin(), faces[c].end());
+            if (judge::is_surely_within(mesh, own, charts.seam, tuning.exact, progress))
+                bounds[at(c)] = tuning.exact;
+        },
+        progress);
+    return bounds;
+}
+
+// Which of the chosen charts have a final map above their bound: trials leave out what relieves
 // peaks.
 void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
-                   const std::vector<std::uint8_t>& chosen, double bound,
+                   const std::vector<std::uint8_t>& chosen, const std::vector<double>& bounds,
                    std::vector<Excess>& above, Progress& progress) {
     std::vector<std::uint8_t> doubtful(chosen.size(), 0);
     parallel_for(
@@ -77,28 +97,32 @@ void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Bucket
             const std::vector<Index> own(faces[c].begin(), faces[c].end());
             if (chosen[at(c)] != 0)
                 doubtful[at(c)] =
-                    judge::is_surely_within(mesh, own, charts.seam, bound, progress) ? 0 : 1;
+                    judge::is_surely_within(mesh, own, charts.seam, bounds[at(c)], progress) ? 0
+                                                                                             : 1;
         },
         progress);
     std::vector<std::vector<Index>> tried;
     std::vector<std::size_t> number;
+    double loosest = 0.0;
     for (std::size_t c = 0; c < doubtful.size(); ++c)
         if (doubtful[c] != 0) {
             tried.emplace_back(faces[static_cast<Index>(c)].begin(),
                                faces[static_cast<Index>(c)].end());
             number.push_back(c);
+            loosest = std::max(loosest, bounds[c]);
         }
     const std::vector<judge::TrialMap> maps =
-        judge::whole_maps(mesh, tried, charts.seam, {bound, true}, progress);
+        judge::whole_maps(mesh, tried, charts.seam, {loosest, true}, progress);
     for (std::size_t i = 0; i < maps.size(); ++i)
-        if (!maps[i].flat || maps[i].l2_squared > bound * bound)
+        if (const double bound = bounds[number[i]];
+            !maps[i].flat || maps[i].l2_squared > bound * bound)
             above[number[i]] = {true, {}}; // stretch is not to be had at one place
 }
 
 // Which of the chosen charts are above a bound, and where.
 std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
                           const std::vector<std::uint8_t>& chosen, const Options& options,
-                          Progress& progress) {
+                          const std::vector<double>& stretch, Progress& progress) {
     const Buckets<Index> faces = atlas::group_faces(charts);
     std::vector<Excess> result(chosen.size());
     if (options.max_strain > 0.0)
@@ -112,7 +136,7 @@ std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
             },
             progress);
     if (options.max_chart_l2_stretch > 0.0)
-        judge_stretch(mesh, charts, faces, chosen, options.max_chart_l2_stretch, result, progress);
+        judge_stretch(mesh, charts, faces, chosen, stretch, result, progress);
     return result;
 }
 
@@ -153,6 +177,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
+    auto looking = progress.part("judging charts", 0.1);
+    const std::vector<double> stretch = stretch_bounds(mesh, charts, bound, looking);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
     std::vector<std::uint8_t> judged(at(charts.count), 1); // but for those above already before
     std::vector<Excess> kept(judged.size());
@@ -162,11 +188,11 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
         auto judging = progress.part("judging charts", 0.5 * progress.left());
         std::vector<Excess> after =
-            above(made.refinement.mesh, made.charts, judged, options, judging);
+            above(made.refinement.mesh, made.charts, judged, options, stretch, judging);
         std::vector<std::uint8_t> doubtful(after.size(), 0);
         for (std::size_t c = 0; c < after.size(); ++c)
             doubtful[c] = after[c].is_above ? 1 : 0;
-        const std::vector<Excess> before = above(mesh, charts, doubtful, options, judging);
+        const std::vector<Excess> before = above(mesh, charts, doubtful, options, stretch, judging);
         for (std::size_t c = 0; c < after.size(); ++c) {
             if (before[c].is_above) {
                 judged[c] = 0;
