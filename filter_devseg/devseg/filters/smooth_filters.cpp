@@ -103,16 +103,15 @@ void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Bucket
         progress);
     std::vector<std::vector<Index>> tried;
     std::vector<std::size_t> number;
-    double loosest = 0.0;
     for (std::size_t c = 0; c < doubtful.size(); ++c)
         if (doubtful[c] != 0) {
             tried.emplace_back(faces[static_cast<Index>(c)].begin(),
                                faces[static_cast<Index>(c)].end());
             number.push_back(c);
-            loosest = std::max(loosest, bounds[c]);
         }
+    // To the end: pushing overlaps apart takes some maps below their bound.
     const std::vector<judge::TrialMap> maps =
-        judge::whole_maps(mesh, tried, charts.seam, {loosest, true}, progress);
+        judge::whole_maps(mesh, tried, charts.seam, {}, progress);
     for (std::size_t i = 0; i < maps.size(); ++i)
         if (const double bound = bounds[number[i]];
             !maps[i].flat || maps[i].l2_squared > bound * bound)
