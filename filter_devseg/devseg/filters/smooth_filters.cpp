@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
@@ -66,6 +67,29 @@ Excess strain_above(const Mesh& mesh, const std::vector<Index>& faces,
     return excess;
 }
 
+// Of which of the charts it is sure that they are within their bounds. Each is looked at on its
+// own: what is as large as the mesh costs too much for each of thousands.
+std::vector<std::uint8_t> surely_within(const Mesh& mesh, const atlas::ChartMap& charts,
+                                        const std::vector<std::uint8_t>& chosen,
+                                        const std::vector<double>& bounds, Progress& progress) {
+    const std::vector<atlas::ChartSurface> surfaces = atlas::extract_charts(mesh, charts);
+    std::vector<std::uint8_t> within(surfaces.size(), 0);
+    parallel_for(
+        static_cast<int>(charts.count),
+        [&](int c) {
+            if (chosen[at(c)] == 0)
+                return;
+            const Mesh part = atlas::mesh_of(mesh, surfaces[at(c)]);
+            std::vector<Index> faces(part.faces.size());
+            std::iota(faces.begin(), faces.end(), 0);
+            const std::vector<std::uint8_t> no_cuts(part.twin.size(), 0);
+            within[at(c)] =
+                judge::is_surely_within(part, faces, no_cuts, bounds[at(c)], progress) ? 1 : 0;
+        },
+        progress);
+    return within;
+}
+
 // Of the charts as they were: the given bound, and none that loses what unfolded exactly, as boxes
 // do.
 std::vector<double> stretch_bounds(const Mesh& mesh, const atlas::ChartMap& charts, double bound,
@@ -73,15 +97,12 @@ std::vector<double> stretch_bounds(const Mesh& mesh, const atlas::ChartMap& char
     std::vector<double> bounds(at(charts.count), bound);
     if (!(bound > tuning.exact))
         return bounds;
-    const Buckets<Index> faces = atlas::group_faces(charts);
-    parallel_for(
-        static_cast<int>(charts.count),
-        [&](int c) {
-            const std::vector<Index> own(faces[c].begin(), faces[c].end());
-            if (judge::is_surely_within(mesh, own, charts.seam, tuning.exact, progress))
-                bounds[at(c)] = tuning.exact;
-        },
-        progress);
+    const std::vector<std::uint8_t> exact =
+        surely_within(mesh, charts, std::vector<std::uint8_t>(bounds.size(), 1),
+                      std::vector<double>(bounds.size(), tuning.exact), progress);
+    for (std::size_t c = 0; c < bounds.size(); ++c)
+        if (exact[c] != 0)
+            bounds[c] = tuning.exact;
     return bounds;
 }
 
@@ -90,21 +111,11 @@ std::vector<double> stretch_bounds(const Mesh& mesh, const atlas::ChartMap& char
 void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
                    const std::vector<std::uint8_t>& chosen, const std::vector<double>& bounds,
                    std::vector<Excess>& above, Progress& progress) {
-    std::vector<std::uint8_t> doubtful(chosen.size(), 0);
-    parallel_for(
-        static_cast<int>(charts.count),
-        [&](int c) {
-            const std::vector<Index> own(faces[c].begin(), faces[c].end());
-            if (chosen[at(c)] != 0)
-                doubtful[at(c)] =
-                    judge::is_surely_within(mesh, own, charts.seam, bounds[at(c)], progress) ? 0
-                                                                                             : 1;
-        },
-        progress);
+    const std::vector<std::uint8_t> within = surely_within(mesh, charts, chosen, bounds, progress);
     std::vector<std::vector<Index>> tried;
     std::vector<std::size_t> number;
-    for (std::size_t c = 0; c < doubtful.size(); ++c)
-        if (doubtful[c] != 0) {
+    for (std::size_t c = 0; c < chosen.size(); ++c)
+        if (chosen[c] != 0 && within[c] == 0) {
             tried.emplace_back(faces[static_cast<Index>(c)].begin(),
                                faces[static_cast<Index>(c)].end());
             number.push_back(c);
