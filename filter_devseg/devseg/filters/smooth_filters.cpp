@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
@@ -29,6 +30,7 @@ struct Tuning {
     int rounds = 6;     // of smoothing, where charts come out above a bound
     double reach = 1.0; // smoothness: what is made firmer around a place that is above; twice each
                         // time, and all of the chart's seams at the end
+    double exact = 1.0001; // L2 stretch that nobody can measure: charts within it stay within it
 };
 constexpr Tuning tuning;
 
@@ -65,40 +67,72 @@ Excess strain_above(const Mesh& mesh, const std::vector<Index>& faces,
     return excess;
 }
 
-// Which of the chosen charts have a final map above the bound: trials leave out what relieves
-// peaks.
-void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
-                   const std::vector<std::uint8_t>& chosen, double bound,
-                   std::vector<Excess>& above, Progress& progress) {
-    std::vector<std::uint8_t> doubtful(chosen.size(), 0);
+// Of which of the charts it is sure that they are within their bounds. Each is looked at on its
+// own: what is as large as the mesh costs too much for each of thousands.
+std::vector<std::uint8_t> surely_within(const Mesh& mesh, const atlas::ChartMap& charts,
+                                        const std::vector<std::uint8_t>& chosen,
+                                        const std::vector<double>& bounds, Progress& progress) {
+    const std::vector<atlas::ChartSurface> surfaces = atlas::extract_charts(mesh, charts);
+    std::vector<std::uint8_t> within(surfaces.size(), 0);
     parallel_for(
         static_cast<int>(charts.count),
         [&](int c) {
-            const std::vector<Index> own(faces[c].begin(), faces[c].end());
-            if (chosen[at(c)] != 0)
-                doubtful[at(c)] =
-                    judge::is_surely_within(mesh, own, charts.seam, bound, progress) ? 0 : 1;
+            if (chosen[at(c)] == 0)
+                return;
+            const Mesh part = atlas::mesh_of(mesh, surfaces[at(c)]);
+            std::vector<Index> faces(part.faces.size());
+            std::iota(faces.begin(), faces.end(), 0);
+            const std::vector<std::uint8_t> no_cuts(part.twin.size(), 0);
+            within[at(c)] =
+                judge::is_surely_within(part, faces, no_cuts, bounds[at(c)], progress) ? 1 : 0;
         },
         progress);
+    return within;
+}
+
+// Of the charts as they were: the given bound, and none that loses what unfolded exactly, as boxes
+// do.
+std::vector<double> stretch_bounds(const Mesh& mesh, const atlas::ChartMap& charts, double bound,
+                                   Progress& progress) {
+    std::vector<double> bounds(at(charts.count), bound);
+    if (!(bound > tuning.exact))
+        return bounds;
+    const std::vector<std::uint8_t> exact =
+        surely_within(mesh, charts, std::vector<std::uint8_t>(bounds.size(), 1),
+                      std::vector<double>(bounds.size(), tuning.exact), progress);
+    for (std::size_t c = 0; c < bounds.size(); ++c)
+        if (exact[c] != 0)
+            bounds[c] = tuning.exact;
+    return bounds;
+}
+
+// Which of the chosen charts have a final map above their bound: trials leave out what relieves
+// peaks.
+void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Buckets<Index>& faces,
+                   const std::vector<std::uint8_t>& chosen, const std::vector<double>& bounds,
+                   std::vector<Excess>& above, Progress& progress) {
+    const std::vector<std::uint8_t> within = surely_within(mesh, charts, chosen, bounds, progress);
     std::vector<std::vector<Index>> tried;
     std::vector<std::size_t> number;
-    for (std::size_t c = 0; c < doubtful.size(); ++c)
-        if (doubtful[c] != 0) {
+    for (std::size_t c = 0; c < chosen.size(); ++c)
+        if (chosen[c] != 0 && within[c] == 0) {
             tried.emplace_back(faces[static_cast<Index>(c)].begin(),
                                faces[static_cast<Index>(c)].end());
             number.push_back(c);
         }
+    // To the end: pushing overlaps apart takes some maps below their bound.
     const std::vector<judge::TrialMap> maps =
-        judge::whole_maps(mesh, tried, charts.seam, {bound, true}, progress);
+        judge::whole_maps(mesh, tried, charts.seam, {}, progress);
     for (std::size_t i = 0; i < maps.size(); ++i)
-        if (!maps[i].flat || maps[i].l2_squared > bound * bound)
+        if (const double bound = bounds[number[i]];
+            !maps[i].flat || maps[i].l2_squared > bound * bound)
             above[number[i]] = {true, {}}; // stretch is not to be had at one place
 }
 
 // Which of the chosen charts are above a bound, and where.
 std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
                           const std::vector<std::uint8_t>& chosen, const Options& options,
-                          Progress& progress) {
+                          const std::vector<double>& stretch, Progress& progress) {
     const Buckets<Index> faces = atlas::group_faces(charts);
     std::vector<Excess> result(chosen.size());
     if (options.max_strain > 0.0)
@@ -112,7 +146,7 @@ std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
             },
             progress);
     if (options.max_chart_l2_stretch > 0.0)
-        judge_stretch(mesh, charts, faces, chosen, options.max_chart_l2_stretch, result, progress);
+        judge_stretch(mesh, charts, faces, chosen, stretch, result, progress);
     return result;
 }
 
@@ -153,6 +187,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
+    auto looking = progress.part("judging charts", 0.1);
+    const std::vector<double> stretch = stretch_bounds(mesh, charts, bound, looking);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
     std::vector<std::uint8_t> judged(at(charts.count), 1); // but for those above already before
     std::vector<Excess> kept(judged.size());
@@ -162,11 +198,11 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
         auto judging = progress.part("judging charts", 0.5 * progress.left());
         std::vector<Excess> after =
-            above(made.refinement.mesh, made.charts, judged, options, judging);
+            above(made.refinement.mesh, made.charts, judged, options, stretch, judging);
         std::vector<std::uint8_t> doubtful(after.size(), 0);
         for (std::size_t c = 0; c < after.size(); ++c)
             doubtful[c] = after[c].is_above ? 1 : 0;
-        const std::vector<Excess> before = above(mesh, charts, doubtful, options, judging);
+        const std::vector<Excess> before = above(mesh, charts, doubtful, options, stretch, judging);
         for (std::size_t c = 0; c < after.size(); ++c) {
             if (before[c].is_above) {
                 judged[c] = 0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/holes.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/flatten.h"
@@ -166,6 +167,8 @@ bool is_surely_within(const Mesh& mesh, const std::vector<Index>& faces,
     std::vector<std::uint8_t> marks = atlas::enclose(mesh, faces, seam);
     const atlas::ChartSurface surface =
         atlas::cut_to_disk(mesh, atlas::extract_surface(mesh, faces, marks), marks, progress);
+    if (!atlas::is_sound(mesh, surface)) // seams take it apart
+        return false;
     const auto problem = flatten::make_flattening_problem(mesh, surface);
     const auto uv = flatten::attempt([&] {
         std::vector<Vec2> map = flatten::flatten_lscm(problem);

@@ -19,11 +19,12 @@ struct RawMesh {
 /// The checked mesh with the way back to the host's faces ("source faces").
 ///
 /// What is worked around without touching the host's mesh: vertices at the same place are joined
-/// where that closes open edges (mesh/weld.h), faces that repeat a vertex or another face and
-/// parts without area (mesh/empty_parts.h) are left out, edges with more than two faces are cut,
-/// vertices where several fans touch are split, faces are oriented coherently, and one-sided
-/// surfaces are cut where no coherent orientation exists. Coordinates are moved to the origin and
-/// scaled by a power of two, so that neither the position nor the size of a model matters.
+/// where that closes open edges (mesh/weld.h) or an edge joins them (mesh/empty_edges.h), faces
+/// that repeat a vertex or another face and parts without area (mesh/empty_parts.h) are left out,
+/// edges with more than two faces are cut, vertices where several fans touch are split, faces are
+/// oriented coherently, and one-sided surfaces are cut where no coherent orientation exists.
+/// Coordinates are moved to the origin and scaled by a power of two, so that neither the position
+/// nor the size of a model matters.
 struct GatedMesh {
     Mesh mesh;
     Vec3 center = Vec3::Zero();        // model coordinates of the mesh's origin

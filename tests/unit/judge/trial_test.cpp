@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "devseg/judge/final_map.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -60,6 +61,21 @@ TEST(Trial, ChartsWhoseCutsAreTooLongAreRefused) {
         EXPECT_EQ(map.flat, share > 1.0);
         EXPECT_EQ(map.cut_length, any.cut_length);
     }
+}
+
+// Seams that have moved may take a chart apart: that is for flattening to tell.
+TEST(FinalMap, NothingIsSureOfAChartInTwoParts) {
+    const Mesh mesh = checks::gated(shapes::grid(4, 4));
+    std::vector<Index> faces;
+    std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    for (const Face f : mesh.all_faces())
+        faces.push_back(f);
+    EXPECT_TRUE(is_surely_within(mesh, faces, seam, 1.01, Progress()));
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 && mesh.points[mesh.origin(h)].x() == 0.0 &&
+            mesh.points[mesh.target(h)].x() == 0.0)
+            seam[h] = 1;
+    EXPECT_FALSE(is_surely_within(mesh, faces, seam, 1.01, Progress()));
 }
 
 } // namespace

@@ -84,8 +84,10 @@ private:
     }
 
     // A chain, and from both ends the longest of its halves, quarters and so on that can be closed.
-    void add_parts(const Closing& chain, const Verdicts& last) {
+    void add_parts(Closing chain, const Verdicts& last) {
         add(chain, false, last);
+        begin_loop_at(
+            mesh_, [&](Vertex v) { return trials_.has(v); }, chain.edges);
         const double least = tuning.least_part * std::sqrt(mesh_.total_area);
         const double excess = draft_.excess();
         for (const bool at_end : {false, true})
@@ -106,10 +108,8 @@ private:
     std::size_t up_to_kept_vertex(const std::vector<Index>& edges, bool at_end,
                                   std::size_t count) const {
         const auto is_kept = [&](std::size_t n) {
-            const HalfEdge h = edges[at_end ? edges.size() - n : n - 1];
-            const HalfEdge k = edges[at_end ? edges.size() - n - 1 : n];
-            const Vertex v = mesh_.origin(h);
-            return trials_.has(v == mesh_.origin(k) || v == mesh_.target(k) ? v : mesh_.target(h));
+            return trials_.has(vertex_between(mesh_, edges[at_end ? edges.size() - n : n - 1],
+                                              edges[at_end ? edges.size() - n - 1 : n]));
         };
         while (count > 0 && !is_kept(count))
             --count;

@@ -59,6 +59,25 @@ std::vector<Closing> SeamChains::find(const Draft& draft) const {
     return chains;
 }
 
+Vertex vertex_between(const Mesh& mesh, HalfEdge h, HalfEdge k) {
+    const Vertex v = mesh.origin(h);
+    return v == mesh.origin(k) || v == mesh.target(k) ? v : mesh.target(h);
+}
+
+void begin_loop_at(const Mesh& mesh, const std::function<bool(Vertex)>& may_begin,
+                   std::vector<Index>& edges) {
+    const HalfEdge first = edges.front();
+    const HalfEdge last = edges.back();
+    const Vertex v = vertex_between(mesh, last, first);
+    if (edges.size() < 3 || (v != mesh.origin(first) && v != mesh.target(first)) || may_begin(v))
+        return;
+    for (std::size_t i = 1; i < edges.size(); ++i)
+        if (may_begin(vertex_between(mesh, edges[i - 1], edges[i]))) {
+            std::rotate(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end());
+            return;
+        }
+}
+
 std::vector<HalfEdge> left_border(const Mesh& mesh, const Draft& draft, const Closing& closing) {
     const auto [a, b] = closing.charts;
     std::vector<HalfEdge> left;

@@ -1,6 +1,7 @@
 // Seams as chains of edges, which joins close as a whole or in part.
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,14 @@ private:
     const Mesh& mesh_;
     std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
 };
+
+/// The vertex at which an edge follows another one.
+Vertex vertex_between(const Mesh& mesh, HalfEdge h, HalfEdge k);
+
+/// A chain that ends where it begins, as the border all around a chart, then begins at the first
+/// vertex on it at which it may, if there is one. Other chains stay as they are.
+void begin_loop_at(const Mesh& mesh, const std::function<bool(Vertex)>& may_begin,
+                   std::vector<Index>& edges);
 
 /// What the closing leaves of the border between its two charts, a half-edge for each edge.
 std::vector<HalfEdge> left_border(const Mesh& mesh, const Draft& draft, const Closing& closing);
