@@ -61,6 +61,9 @@ public:
         trial.is_sound = true;
         const auto uv = limits_.by_strain() ? by_strain(trial) : by_area(trial);
         trial.has_map = uv.has_value();
+        if (uv)
+            for (const HalfEdge h : surface_.loops.front())
+                trial.outline.push_back((*uv)[surface_.origin(h)]);
         if (details)
             describe(uv ? *uv : any_map(), trial);
         return trial;
@@ -91,8 +94,10 @@ private:
         open_slits(*uv);
         trial.area_change = flatten::measure_area_change(problem_, *uv).largest();
         trial.strain = flatten::measure_strain(flatten::face_strains(problem_, *uv), problem_.area);
-        trial.accepted = trial.strain.most_of_it <= bound && trial.strain.worst <= 2.0 * bound &&
-                         trial.strain.mean <= tuning.mean_strain * bound && is_one_to_one(*uv);
+        trial.use = std::max({trial.strain.most_of_it, 0.5 * trial.strain.worst,
+                              trial.strain.mean / tuning.mean_strain}) /
+                    bound;
+        trial.accepted = trial.use <= 1.0 && is_one_to_one(*uv);
         return uv;
     }
 
@@ -111,6 +116,7 @@ private:
         if (!map)
             return std::nullopt;
         trial.area_change = map->area_change;
+        trial.use = map->area_change / bound;
         // At the scale at which the map has the patch's area.
         const double l2 =
             map->l2_stretch * std::sqrt(flatten::map_area(problem_, map->uv) / problem_.total_area);

@@ -31,7 +31,9 @@ struct ClothTrial {
     bool is_sound = false;       // a disk, or one with holes that unfolds exactly
     bool has_map = false;        // one that sews
     double area_change = 0.0;    // largest of a face
+    double use = 0.0;            // of the limits, by the map; more than 1 is too much
     flatten::Strain strain;      // measured at the lengths of the seams
+    std::vector<Vec2> outline;   // of the map, counterclockwise, in internal units; of disks only
     std::vector<Index> face;     // of the mesh; with details only
     std::vector<double> change;  // of each face: area in the plane / on the surface − 1
     std::vector<double> strains; // of each face, where patches are judged by strain

@@ -176,6 +176,95 @@ OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vec
     return part;
 }
 
+namespace {
+
+// By how much the patch of the model under most of each patch exceeds its limits, or its mirror
+// image does: as a factor, 0 where both keep them. `use`: of the patches of the model.
+std::vector<double> excess_of(const WorkingSurface& surface, const Mesh& placed,
+                              const mesh::FaceComponents& here, const Mesh& model,
+                              const mesh::FaceComponents& there, const std::vector<double>& use) {
+    const mesh::SurfaceSearch search(model);
+    const std::vector<Vec3> normals = mesh::vertex_normals(placed);
+    std::vector<std::vector<double>> common(at(here.count), std::vector<double>(use.size(), 0.0));
+    for (const Face f : placed.all_faces()) {
+        const Vertex v = placed.faces[f][0];
+        const Vertex near = search.vertex(placed.points[v], normals[v], [](Index) { return true; });
+        if (near >= 0)
+            common[at(here.label[f])][at(there.label[face_of(search.leaving(near))])] +=
+                surface.mesh.face_areas[f];
+    }
+    std::vector<double> own;
+    for (const std::vector<double>& area : common)
+        own.push_back(use[static_cast<std::size_t>(std::max_element(area.begin(), area.end()) -
+                                                   area.begin())]);
+    std::vector<double> excess = own;
+    for (Face f = 0; f < placed.face_count() && surface.is_symmetric(); ++f)
+        excess[at(here.label[f])] =
+            std::max(excess[at(here.label[f])], own[at(here.label[surface.face_image(f)])]);
+    return excess;
+}
+
+// Darts that keep a patch within a smaller bound, the largest that asks for some; empty where there
+// are none.
+std::vector<Index> further_darts(const WorkingSurface& surface, const VertexGraph& graph,
+                                 const std::vector<double>& cost, const std::vector<Index>& patch,
+                                 const SeamMarks& seam, const judge::ClothLimits& limits,
+                                 double share, const Progress& progress) {
+    for (; share > tuning.least_share; share *= tuning.tighter) {
+        judge::ClothLimits stricter = limits;
+        stricter.max_strain *= share;
+        stricter.max_area_change *= share;
+        const auto cuts = mend_patch(surface.mesh, graph, cost, patch, seam, stricter, progress);
+        if (!cuts)
+            return {};
+        if (cuts->empty())
+            continue;
+        SeamMarks marks = seam;
+        mark_both(surface, *cuts, 1, marks);
+        // Parts that were cut off could be small.
+        return patches_of(surface.mesh, marks, patch).size() == 1 ? *cuts : std::vector<Index>{};
+    }
+    return {};
+}
+
+} // namespace
+
+bool mend_in_pairs(const WorkingSurface& surface, const Mesh& placed, const VertexGraph& graph,
+                   const std::vector<double>& cost, const judge::ClothLimits& limits,
+                   const SeamMarks& on_model, PatchTester& model_tester, SeamMarks& seam,
+                   Progress& progress) {
+    const Mesh& model = model_tester.mesh();
+    const mesh::FaceComponents there = find_patches(model, on_model);
+    const std::vector<std::vector<Index>> theirs = patches_of(model, on_model);
+    std::vector<double> use(theirs.size(), 0.0);
+    parallel_for(
+        static_cast<int>(theirs.size()),
+        [&](int p) {
+            const Verdict verdict = model_tester.judge(theirs[p], on_model, progress);
+            if (!verdict.accepted) // by a round of deciding again at least
+                use[p] = std::max(verdict.use, 1.0 / tuning.tighter);
+        },
+        progress);
+    const mesh::FaceComponents here = find_patches(surface.mesh, seam);
+    const std::vector<double> excess = excess_of(surface, placed, here, model, there, use);
+    const SeamMarks before = seam;
+    for (const std::vector<Index>& patch : patches_of(surface.mesh, before)) {
+        // The second one of two images has its darts already.
+        const bool has_darts = std::any_of(patch.begin(), patch.end(), [&](Face f) {
+            const HalfEdge h = half_edge_of(f, 0);
+            return seam[h] != before[h] || seam[Mesh::next(h)] != before[Mesh::next(h)] ||
+                   seam[Mesh::previous(h)] != before[Mesh::previous(h)];
+        });
+        const double factor = excess[at(here.label[patch.front()])];
+        if (factor > 0.0 && !has_darts)
+            mark_both(
+                surface,
+                further_darts(surface, graph, cost, patch, before, limits, 1.0 / factor, progress),
+                1, seam);
+    }
+    return seam != before;
+}
+
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part) {
     SeamMarks fixed = part.seam;
     for (const HalfEdge h : mesh.all_half_edges())
@@ -209,24 +298,59 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
     return part;
 }
 
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam) {
+    for (const auto& [area, patch] : find_remnants(mesh, seam, tuning.fragment)) {
+        if (patches_of(mesh, seam, {patch.front()}).front() != patch)
+            continue;
+        // Rather where no seam loses its end.
+        std::vector<std::vector<Index>> borders = common_borders(mesh, seam, {}, patch);
+        if (borders.empty())
+            continue;
+        const std::vector<Index> degree = seam_degrees(mesh, seam);
+        const auto loose_ends = [&](const std::vector<Index>& border) {
+            std::vector<Index> left;
+            for (const HalfEdge h : border)
+                left.insert(left.end(), {mesh.origin(h), mesh.target(h)});
+            std::sort(left.begin(), left.end());
+            Index loose = 0;
+            for (std::size_t k = 0; k < left.size(); ++k)
+                if (k + 1 < left.size() && left[k] == left[k + 1] && degree[left[k]] > 2)
+                    ++loose;
+            return loose;
+        };
+        const std::vector<Index>& border =
+            *std::min_element(borders.begin(), borders.end(), [&](const auto& a, const auto& b) {
+                return loose_ends(a) < loose_ends(b);
+            });
+        mark(mesh, border, 0, seam);
+        open_what_floats(mesh, {}, patches_of(mesh, seam, {patch.front()}).front(), seam);
+    }
+    return seam;
+}
+
 Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cost, double most_area,
                       SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = setting.mesh();
     Index tried = 0;
     const auto join_along = [&](const std::vector<Index>& border) {
         SeamMarks marks = seam;
-        mark(mesh, border, 0, marks);
+        mark_both(setting.surface, border, 0, marks);
         ++tried;
         progress.check();
         const std::vector<Index> joined =
             patches_of(mesh, marks, {face_of(border.front())}).front();
-        open_what_floats(mesh, setting.hard, joined, marks);
+        for (const std::vector<Index>& patch :
+             patches_beside(mesh, marks, with_image(setting.surface, {border})))
+            open_what_floats(mesh, setting.hard, patch, marks);
         const auto cuts =
             mend_patch(mesh, setting.graph, cost, joined, marks, setting.tester.limits(), progress);
         if (!cuts || length_of(mesh, *cuts) > tuning.longest_darts * length_of(mesh, border))
             return false;
-        mark(mesh, *cuts, 1, marks);
-        if (patches_of(mesh, marks, joined).size() > 1)
+        mark_both(setting.surface, *cuts, 1, marks);
+        if (patches_of(mesh, marks, joined).size() > 1 ||
+            !setting.tester.accepts_all(
+                patches_beside(mesh, marks, with_image(setting.surface, {border})), marks,
+                progress))
             return false;
         seam = std::move(marks);
         return true;

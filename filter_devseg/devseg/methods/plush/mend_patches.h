@@ -45,6 +45,19 @@ SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
                    const OpenPart& on_model);
 
+/// Patches of the working surface that do not keep their limits on the model, with the seams
+/// `on_model`, get further darts, with their mirror images: as many as keep a bound that is smaller
+/// by as much as they exceed it there. `placed`: the surface where it lies on the model; `limits`:
+/// of its patches. Returns whether any did.
+bool mend_in_pairs(const WorkingSurface& surface, const Mesh& placed, const VertexGraph& graph,
+                   const std::vector<double>& cost, const judge::ClothLimits& limits,
+                   const SeamMarks& on_model, PatchTester& model_tester, SeamMarks& seam,
+                   Progress& progress);
+
+/// Patches that are nothing but specks, as where two paths of a transfer cross, go to a neighbour:
+/// rather to one whose border with them no other seam meets, since that would lose its end.
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam);
+
 /// Joins patches up to a share of the surface to a neighbour along all of their common border,
 /// where darts up to half as long again as that border are enough to keep the limits. `cost`: of
 /// paths for darts, 3 #F. Returns how many joins were tried.

@@ -9,6 +9,7 @@
 #include "devseg/atlas/fragments.h"
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/canonical_frame.h"
+#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/local_seams.h"
 #include "devseg/methods/plush/mend_patches.h"
@@ -29,7 +30,8 @@ struct Evidence {
     std::vector<double> curvature; // #V
     SeamWeights weights;
     std::vector<Index> extrema;
-    SeamMarks limb_borders; // 3 #F, as they were found
+    SeamMarks limb_borders;   // 3 #F, as they were found
+    double least_width = 0.0; // of pieces; 0: they are joined whatever their shape
 };
 
 // Material borders are edges of the model: then seams are decided on the model itself. So they are
@@ -198,12 +200,13 @@ judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_
     return {share * options.max_area_change, share * options.max_strain, is_search};
 }
 
-// Seams of the open part. `hard` has all seams that are not inside of it; or is empty.
+// Seams of the open part. `hard` has all seams that are not inside of it; or is empty. `share`: of
+// the limits.
 SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
                  const PlushOptions& options, PlushSeams& result, Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, limits_of(options, share, true));
+    PatchTester tester(surface, limits_of(options, share, true), evidence.least_width);
     PatchTester strict(surface, limits_of(options, tuning.nearly_flat * share, true));
     const PathCosts costs = path_costs(evidence, options);
     const SeamSetting setting{surface,   evidence.graph, hard,
@@ -245,13 +248,14 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
     return run(passes, std::move(seam), result, progress);
 }
 
-// The seams of the model, with small patches and thin tongues given to neighbours.
+// Seams with which small patches and thin tongues are given to neighbours. `share`: as above.
 SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
-                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
+                           double share, const PlushOptions& options, PlushSeams& result,
+                           Progress& progress) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, limits_of(options, 1.0, false));
-    PatchTester search(surface, limits_of(options, 1.0, true));
+    PatchTester tester(surface, limits_of(options, share, false), evidence.least_width);
+    PatchTester search(surface, limits_of(options, share, true));
     const std::vector<double> cost =
         natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
     const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
@@ -289,11 +293,36 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
-    double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
+    // Pieces that a person would sew come in pairs: then all is decided where both images are.
+    const bool in_pairs = by_strain && surface.is_symmetric();
+    double share = by_strain  ? (is_model || in_pairs ? tuning.own_strain : tuning.far_strain)
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
+    if (in_pairs)
+        working.least_width = on_model.least_width = tuning.least_width;
     auto deciding = progress.part(0.5);
     SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
+    WorkingSurface placed = surface;
+    if (in_pairs) {
+        auto cleaning = progress.part(0.15);
+        seam = without_remnants(working, std::move(seam), {}, share, options, result, cleaning);
+        placed.mesh = fitted_to(model.mesh, surface.mesh, working.graph, progress);
+    }
+    const auto transferred = [&](Progress& part) {
+        SeamMarks marks = transfer_seams(placed.mesh, seam, model.mesh, on_model.graph,
+                                         transfer_factors(on_model, options), part);
+        return in_pairs ? absorb_specks(model.mesh, std::move(marks)) : marks;
+    };
+    const judge::ClothLimits limits = limits_of(options, 1.0, false);
+    PatchTester model_tester(model, limits);
+    for (int round = 0; in_pairs && round < tuning.paired_darts; ++round) {
+        auto mending = progress.part("transferring seams", 0.03);
+        if (!mend_in_pairs(
+                surface, placed.mesh, working.graph,
+                natural_lengths(surface.mesh, working.weights.stray, tuning.natural_dart),
+                limits_of(options, share, true), transferred(mending), model_tester, seam, mending))
+            break;
+    }
     // Where the model has two halves, they stay alike only as long as seams are decided on both.
     // By strain, darts and cuts on the model do better.
     const int most_rounds =
@@ -304,12 +333,10 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
         part =
             mend_patches(model.mesh, on_model.graph,
                          natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                        transfer_factors(on_model, options), transferring),
-                         limits_of(options, 1.0, false), transferring);
+                         transferred(transferring), limits, transferring);
         if (!part.has_open_faces() || round == most_rounds)
             break;
-        const OpenPart again = same_part(surface, seam, model.mesh, part);
+        const OpenPart again = same_part(placed, seam, model.mesh, part);
         if (!again.has_open_faces())
             break;
         share *= tuning.tighter;
@@ -323,7 +350,7 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
                            deciding_on_model);
     }
     auto cleaning = progress.part(progress.left());
-    return without_remnants(on_model, std::move(part.seam), {}, options, result, cleaning);
+    return without_remnants(on_model, std::move(part.seam), {}, 1.0, options, result, cleaning);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are
@@ -413,7 +440,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
         auto first = deciding.part(0.8);
         seam = decide(working, {}, hard, 1.0, options, result, first);
         auto cleaning = deciding.part(0.2);
-        seam = without_remnants(working, std::move(seam), hard, options, result, cleaning);
+        seam = without_remnants(working, std::move(seam), hard, 1.0, options, result, cleaning);
     } else {
         seam = decide_for_any(working, framed, options, result, deciding);
     }

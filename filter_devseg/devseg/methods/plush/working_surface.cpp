@@ -222,6 +222,16 @@ void mirror_marks(const WorkingSurface& surface, SeamMarks& marks) {
         marks[surface.image[h]] = marks[h];
 }
 
+std::vector<std::vector<Index>> with_image(const WorkingSurface& surface,
+                                           std::vector<std::vector<Index>> lines) {
+    for (std::size_t i = 0, count = lines.size(); i < count && surface.is_symmetric(); ++i) {
+        lines.push_back(lines[i]);
+        for (Index& h : lines.back())
+            h = surface.image[h];
+    }
+    return lines;
+}
+
 void mark_both(const WorkingSurface& surface, const std::vector<Index>& line, std::uint8_t value,
                SeamMarks& marks) {
     for (const HalfEdge h : line) {

@@ -43,6 +43,10 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
 /// Marks (3 #F) of the first half on both halves.
 void mirror_marks(const WorkingSurface& surface, SeamMarks& marks);
 
+/// Lines of half-edges, and their mirror images behind them.
+std::vector<std::vector<Index>> with_image(const WorkingSurface& surface,
+                                           std::vector<std::vector<Index>> lines);
+
 /// Marks a line of half-edges and its mirror image.
 void mark_both(const WorkingSurface& surface, const std::vector<Index>& line, std::uint8_t value,
                SeamMarks& marks);
