@@ -37,8 +37,7 @@ Mesh fitted_to(const Mesh& model, const Mesh& surface, const VertexGraph& graph,
             if (v % 1024 == 0)
                 progress.check();
             const Vec3& p = fitted.points[v];
-            // Along the model it is the neighbours' move: tips come off worst from
-            // nearest points.
+            // Along the model it is the neighbours' move: tips come off worst from nearest points.
             if (const Vertex near = search.vertex(p, normal[v], anywhere); near >= 0) {
                 const Vec3& across = search.normal(near);
                 const Vec3 place = search.on_faces(p, near, anywhere).second;

@@ -12,8 +12,8 @@ namespace devseg::plush {
 
 namespace {
 
-// The outline with fewer corners: steps of one length, and where it turns
-// sharply into the piece, as at the tips of darts.
+// The outline with fewer corners: steps of one length, and where it turns sharply into the piece,
+// as at the tips of darts.
 std::vector<std::size_t> simplified(const std::vector<Vec2>& outline) {
     const std::size_t count = outline.size();
     const double step = plane::perimeter(outline) / tuning.outline_corners;
@@ -42,8 +42,7 @@ public:
                              0.5 * plane::cross(corners_[i], corners_[(i + 1) % corners_.size()]));
     }
 
-    // Lines below the limit, the narrowest first. They may leave the piece:
-    // is_inside tells.
+    // Lines below the limit, the narrowest first. They may leave the piece: is_inside tells.
     std::vector<Neck> narrow_lines(double limit) const {
         std::vector<Neck> lines;
         for (std::size_t last = 2; last < corners_.size(); ++last)
