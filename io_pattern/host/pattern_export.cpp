@@ -13,27 +13,33 @@ namespace devseg::host {
 
 namespace {
 
-// Options that the dialog of 'Save as' leaves to the export filter: the host shows one row for each
-// and does not scroll, and a screen has no room for all.
-constexpr std::array<const char*, 18> left_to_the_filter = {
-    "max_piece_mm",
-    "curve_mm",
-    "simplify_mm",
-    "corner_style",
-    "match_seams",
-    "tab_depth_mm",
-    "dxf_kind",
-    "weld",
-    "group",
-    "step_numbers",
-    "text",
-    "sewing_mm_per_minute",
-    "stuffing_g_per_litre",
-    "frame",
-    "scale_check",
-    "texture",
-    "bleed_mm",
-    "registration_marks",
+// What the dialog of 'Save as' asks for; the rest is left to the export filter. The host shows one
+// row for each and does not scroll, and a laptop's screen has room for some twenty-five.
+constexpr std::array<const char*, 24> asked_for = {
+    "mm_per_unit",
+    "height_mm",
+    "preset",
+    "seam_allowance_mm",
+    "hem_allowance_mm",
+    "dart_allowance_mm",
+    "notch_spacing_mm",
+    "glue_tabs",
+    "fold_lines",
+    "fold_angle",
+    "page",
+    "page_margin_mm",
+    "tiling",
+    "fit_page",
+    "cover",
+    "labels",
+    "edge_numbers",
+    "grain_line",
+    "mirror",
+    "material",
+    "kerf_mm",
+    "fabric_width_mm",
+    "fold",
+    "nap",
 };
 
 // The file's name is asked for by the host itself.
@@ -41,9 +47,7 @@ declare::FilterDeclaration saving() {
     declare::FilterDeclaration filter = exporting::export_filter();
     std::vector<declare::Parameter>& parameters = filter.parameters;
     const auto is_left_out = [](const declare::Parameter& p) {
-        return p.kind == declare::ParameterKind::output_file ||
-               std::find(left_to_the_filter.begin(), left_to_the_filter.end(), p.name) !=
-                   left_to_the_filter.end();
+        return std::find(asked_for.begin(), asked_for.end(), p.name) == asked_for.end();
     };
     parameters.erase(std::remove_if(parameters.begin(), parameters.end(), is_left_out),
                      parameters.end());

@@ -13,6 +13,7 @@ from lxml import etree
 from svgelements import SVG, Close, Line, Move
 from svgelements import Path as SvgPath
 
+import hosts
 import meshes
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
@@ -143,6 +144,46 @@ def test_labels_can_be_left_out(save: Callable, flattened: Any) -> None:
     text = layers(save(mm_per_unit=10.0, labels=True))["text"]
     assert len([t for t in text.iter(f"{SVG_NS}text") if t.text]) >= pieces
     assert "text" not in layers(save(mm_per_unit=10.0, labels=False))
+
+
+DIALOG = [
+    "mm_per_unit",
+    "height_mm",
+    "preset",
+    "seam_allowance_mm",
+    "hem_allowance_mm",
+    "dart_allowance_mm",
+    "notch_spacing_mm",
+    "glue_tabs",
+    "fold_lines",
+    "fold_angle",
+    "page",
+    "page_margin_mm",
+    "tiling",
+    "fit_page",
+    "cover",
+    "labels",
+    "edge_numbers",
+    "grain_line",
+    "mirror",
+    "material",
+    "kerf_mm",
+    "fabric_width_mm",
+    "fold",
+    "nap",
+]
+
+
+def test_the_dialog_asks_for_the_most_used_parameters(save: Callable, pymeshlab: Any) -> None:
+    declared = next(f for f in hosts.declarations() if f["menu_name"] == "Pattern: Export")
+    as_given = {"real": float, "boolean": bool}
+    defaults = {
+        p["name"]: as_given.get(p["kind"], lambda value: value)(p["default"])
+        for p in declared["parameters"]
+    }
+    assert outlines(save(**{name: defaults[name] for name in DIALOG}))
+    with pytest.raises(pymeshlab.PyMeshLabException, match="curve_mm"):
+        save(curve_mm=0.0)
 
 
 @pytest.mark.parametrize("parameters", [{"mm_per_unit": 0.0}, {"mm_per_unit": -1.0}])
