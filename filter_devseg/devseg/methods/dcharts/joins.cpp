@@ -61,7 +61,7 @@ private:
         for (Closing& chain : found)
             if (is_open(chain.charts.first) || is_open(chain.charts.second))
                 chains[chain.charts].push_back(std::move(chain));
-        const Verdicts last = std::move(verdicts_);
+        Verdicts last = std::move(verdicts_);
         verdicts_.clear();
         untried_.clear();
         for (auto& [charts, parts] : chains) {
@@ -84,7 +84,7 @@ private:
     }
 
     // A chain, and from both ends the longest of its halves, quarters and so on that can be closed.
-    void add_parts(Closing chain, const Verdicts& last) {
+    void add_parts(Closing chain, Verdicts& last) {
         add(chain, false, last);
         begin_loop_at(
             mesh_, [&](Vertex v) { return trials_.has(v); }, chain.edges);
@@ -117,7 +117,7 @@ private:
     }
 
     // Returns what is known of it.
-    const Entry* add(Closing closing, bool whole, const Verdicts& last) {
+    const Entry* add(Closing closing, bool whole, Verdicts& last) {
         std::vector<Index> key = closing.edges;
         key.insert(key.end(), closing.opened.begin(), closing.opened.end());
         std::sort(key.begin(), key.end());
@@ -125,8 +125,9 @@ private:
             return nullptr;
         const auto known = last.find(key);
         const bool is_known = known != last.end();
-        const auto [entry, is_new] = verdicts_.try_emplace(
-            std::move(key), std::move(closing), is_known ? known->second.second : Verdict());
+        const auto [entry, is_new] =
+            verdicts_.try_emplace(std::move(key), std::move(closing),
+                                  is_known ? std::move(known->second.second) : Verdict());
         if (is_new)
             entry->second.second.whole = whole;
         if (is_known && entry->second.second.tried)
@@ -162,7 +163,7 @@ private:
             propose(progress);
             for (auto few = most_promising(); !few.empty(); few = most_promising()) {
                 try_again(few, progress);
-                found = true;
+                found = partly_; // only which parts there are depends on what others gave
             }
         }
     }
