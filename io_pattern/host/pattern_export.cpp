@@ -14,20 +14,17 @@ namespace devseg::host {
 namespace {
 
 // What the dialog of 'Save as' asks for; the rest is left to the export filter. The host shows one
-// row for each and does not scroll, and a laptop's screen has room for some twenty-five.
-constexpr std::array<const char*, 24> asked_for = {
+// row for each and does not scroll, and a laptop's screen has room for some twenty.
+constexpr std::array<const char*, 19> asked_for = {
     "mm_per_unit",
     "height_mm",
     "preset",
     "seam_allowance_mm",
     "hem_allowance_mm",
-    "dart_allowance_mm",
     "notch_spacing_mm",
     "glue_tabs",
     "fold_lines",
-    "fold_angle",
     "page",
-    "page_margin_mm",
     "tiling",
     "fit_page",
     "cover",
@@ -38,8 +35,6 @@ constexpr std::array<const char*, 24> asked_for = {
     "material",
     "kerf_mm",
     "fabric_width_mm",
-    "fold",
-    "nap",
 };
 
 // The file's name is asked for by the host itself.

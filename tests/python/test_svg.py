@@ -152,13 +152,10 @@ DIALOG = [
     "preset",
     "seam_allowance_mm",
     "hem_allowance_mm",
-    "dart_allowance_mm",
     "notch_spacing_mm",
     "glue_tabs",
     "fold_lines",
-    "fold_angle",
     "page",
-    "page_margin_mm",
     "tiling",
     "fit_page",
     "cover",
@@ -169,8 +166,6 @@ DIALOG = [
     "material",
     "kerf_mm",
     "fabric_width_mm",
-    "fold",
-    "nap",
 ]
 
 
