@@ -24,7 +24,7 @@ cube = package / "tests/sample_meshes/cube.obj"
 subprocess.run([devseg, "batch", cube, "-o", folder / "batch"], check=True)
 files = importlib.metadata.files("devseg")
 licences = {file.name.removeprefix("LICENSE.") for file in files if "licenses" in file.parts}
-inside = {"clipper", "libboost", "libcgal", "libeigen3", "fonts-dejavu-core",
+inside = {"clipper", "libboost", "libcgal", "libeigen3", "libjpeg", "fonts-dejavu-core",
           "fonts-droid-fallback", "three"}
 assert licences == {"LICENSE", *inside}, licences
 import devseg
