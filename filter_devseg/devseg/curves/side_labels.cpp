@@ -1,6 +1,7 @@
 #include "devseg/curves/side_labels.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace devseg::curves {
 
@@ -38,8 +39,8 @@ std::vector<Face> mark_sides(const Mesh& fine, const std::vector<Piece>& pieces,
     return sides;
 }
 
-// Every chart is there, and hangs together.
-void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vector<Side>& sides,
+// Every chart is there, hangs together, and ends at seams.
+void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vector<Sides>& sides,
                  std::vector<Index>& failed) {
     const mesh::FaceComponents parts =
         mesh::face_components(fine, [&](HalfEdge h) { return charts.seam[h] == 0; });
@@ -51,15 +52,33 @@ void check_parts(const Mesh& fine, const atlas::ChartMap& charts, const std::vec
             torn[charts.chart[f]] = 1;
         part = parts.label[f];
     }
-    for (const Side& side : sides)
-        if (torn[side.chart] != 0 || part_of[side.chart] < 0)
+    // Labels that meet where a part of a curve is missing, both ways.
+    std::vector<std::pair<Index, Index>> meet;
+    for (const HalfEdge h : fine.all_half_edges())
+        if (const Face g = fine.across(h);
+            g >= 0 && charts.seam[h] == 0 && charts.chart[g] != charts.chart[face_of(h)])
+            meet.emplace_back(charts.chart[face_of(h)], charts.chart[g]);
+    std::sort(meet.begin(), meet.end());
+    std::vector<std::pair<Index, Index>> neighbours;
+    for (const Sides& side : sides) {
+        neighbours.emplace_back(side.left, side.right);
+        neighbours.emplace_back(side.right, side.left);
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    for (const auto& pair : meet)
+        if (!std::binary_search(neighbours.begin(), neighbours.end(), pair))
+            torn[pair.first] = torn[pair.second] = 1; // some other curve of theirs let them through
+    const auto is_bad = [&](Index c) { return torn[c] != 0 || part_of[c] < 0; };
+    for (const Sides& side : sides)
+        if (is_bad(side.left) || is_bad(side.right) ||
+            std::binary_search(meet.begin(), meet.end(), std::pair(side.left, side.right)))
             failed.push_back(side.curve);
 }
 
 } // namespace
 
 atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
-                            const std::vector<Piece>& pieces, const std::vector<Side>& sides,
+                            const std::vector<Piece>& pieces, const std::vector<Sides>& sides,
                             std::vector<Index>& failed) {
     const Mesh& fine = refinement.mesh;
     atlas::ChartMap charts;
@@ -85,7 +104,6 @@ atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::Cha
     for (std::size_t f = 0; f < old.chart.size(); ++f)
         if (charts.chart[f] < 0)
             charts.chart[f] = old.chart[f];
-    // Two labels that meet where there is no seam make one of the two charts torn or gone.
     check_parts(fine, charts, sides, failed);
     return charts;
 }

@@ -20,17 +20,20 @@ struct Piece {
     }
 };
 
-/// A curve bounds a chart, on whichever side. One that has shrunk to a point has no pieces left.
-struct Side {
-    Index chart;
+/// The charts that an edge of a curve's path had on its sides. A curve that has shrunk to a point
+/// has no pieces left.
+struct Sides {
+    Index left;
+    Index right;
     Index curve;
 };
 
 /// Labels spread from the two sides of the pieces (sorted) over the finer mesh; components without
 /// seams keep theirs: old face f is face f or a part of it. Curves whose pieces are no edges, or
-/// whose charts (`sides`: all of both) would fall apart or be gone, are added to `failed`.
+/// whose charts (`sides`: of all paths) would fall apart, be gone or run into each other, are added
+/// to `failed`.
 atlas::ChartMap label_sides(const mesh::Refinement& refinement, const atlas::ChartMap& old,
-                            const std::vector<Piece>& pieces, const std::vector<Side>& sides,
+                            const std::vector<Piece>& pieces, const std::vector<Sides>& sides,
                             std::vector<Index>& failed);
 
 } // namespace devseg::curves

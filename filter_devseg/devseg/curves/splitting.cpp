@@ -345,13 +345,12 @@ private:
         fail_longer(result.refinement.mesh);
     }
 
-    std::vector<Side> sides() const {
-        std::vector<Side> sides;
+    std::vector<Sides> sides() const {
+        std::vector<Sides> sides;
         for (Index number = 0; number < static_cast<Index>(net_.curves.size()); ++number)
-            for (const HalfEdge h : net_.curves[number].path) {
-                sides.push_back({charts_.chart[face_of(h)], number});
-                sides.push_back({charts_.chart[mesh_.across(h)], number});
-            }
+            for (const HalfEdge h : net_.curves[number].path)
+                sides.push_back(
+                    {charts_.chart[face_of(h)], charts_.chart[mesh_.across(h)], number});
         return sides;
     }
 

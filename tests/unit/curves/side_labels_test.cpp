@@ -15,7 +15,7 @@ struct Plate {
     Mesh mesh = checks::gated(shapes::grid(6, 2, 6.0, 2.0));
     atlas::ChartMap charts;
     std::vector<Piece> pieces;
-    std::vector<Side> sides;
+    std::vector<Sides> sides;
 
     Plate() {
         std::vector<Index> label;
@@ -26,9 +26,10 @@ struct Plate {
         for (const HalfEdge h : mesh.all_half_edges())
             if (charts.seam[h] != 0) {
                 const Index left = charts.chart[face_of(h)];
-                const Index curve = std::min(left, charts.chart[mesh.across(h)]);
+                const Index right = charts.chart[mesh.across(h)];
+                const Index curve = std::min(left, right);
                 pieces.push_back({mesh.origin(h), mesh.target(h), curve, left});
-                sides.push_back({left, curve});
+                sides.push_back({left, right, curve});
             }
         std::sort(pieces.begin(), pieces.end());
     }
@@ -61,6 +62,35 @@ TEST(SideLabels, CurvesOfAChartThatIsGoneFail) {
             left.push_back(piece);
         }
     plate.pieces = left;
+    EXPECT_EQ(plate.failed(mesh::refine(plate.mesh, {}, {})), (std::vector<Index>{0, 1}));
+}
+
+// A plate with a piece missing between the first two charts.
+struct PlateWithGap : Plate {
+    PlateWithGap() {
+        const auto gap = *std::find_if(pieces.begin(), pieces.end(),
+                                       [](const Piece& piece) { return piece.curve == 0; });
+        pieces.erase(std::remove_if(pieces.begin(), pieces.end(),
+                                    [&](const Piece& piece) {
+                                        return std::minmax(piece.from, piece.to) ==
+                                               std::minmax(gap.from, gap.to);
+                                    }),
+                     pieces.end());
+    }
+};
+
+// Both charts are whole, and one part of the mesh: the gap alone tells.
+TEST(SideLabels, CurvesWithAGapFail) {
+    PlateWithGap plate;
+    EXPECT_EQ(plate.failed(mesh::refine(plate.mesh, {}, {})), (std::vector<Index>{0}));
+}
+
+// Charts that meet although no curve ran between them: all curves of both fail.
+TEST(SideLabels, CurvesThatLetOtherChartsThroughFail) {
+    PlateWithGap plate;
+    for (Sides& side : plate.sides)
+        if (side.curve == 0)
+            (side.left == 1 ? side.left : side.right) = 2;
     EXPECT_EQ(plate.failed(mesh::refine(plate.mesh, {}, {})), (std::vector<Index>{0, 1}));
 }
 
