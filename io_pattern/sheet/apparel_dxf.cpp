@@ -115,11 +115,13 @@ void write_block(writers::DxfText& file, const pattern::Pattern& pattern, const 
     if (piece.grain_line[0] != piece.grain_line[1])
         file.line("7", piece.grain_line[0], piece.grain_line[1]);
     std::vector<std::string> seams;
-    for (const pattern::Seam& seam : pattern.seams)
+    for (const Index s : source.seams()) {
+        const pattern::Seam& seam = pattern.seams[at(s)];
         for (const int side : {0, 1})
             if (seam.sides[side].piece == piece.piece)
                 seams.push_back("SEAM: " + seam.label + " TO " +
                                 pattern.pieces[seam.sides[1 - side].piece].name);
+    }
     const Vec2 place = piece.names.empty() ? piece.box().center() : piece.names.front().position;
     write_texts(file, "15", place, seams);
     write_texts(file, "1", place + Vec2(0.0, 6.0 * apparel_pitch),

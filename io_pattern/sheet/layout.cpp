@@ -8,6 +8,7 @@
 
 #include "devseg/base/errors.h"
 #include "devseg/pack/first_fit.h"
+#include "devseg/plane/box_grid.h"
 #include "devseg/plane/plane.h"
 #include "sheet/marker.h"
 #include "sheet/page_nesting.h"
@@ -95,11 +96,15 @@ bool pieces_touch(const std::vector<SheetPiece>& pieces) {
     std::vector<Eigen::AlignedBox2d> boxes;
     for (const SheetPiece& piece : pieces)
         boxes.push_back(piece.box());
+    plane::BoxGrid all(boxes);
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        for (std::size_t j = 0; j < pieces.size(); ++j)
-            if (i != j && boxes[i].contains(boxes[j]) &&
-                plane::is_inside(pieces[i].cut, pieces[j].cut.front().front()))
-                return true;
+        all.add(static_cast<Index>(i));
+    for (std::size_t j = 0; j < pieces.size(); ++j)
+        if (all.any_touching({boxes[j].min(), boxes[j].min()}, [&](Index i) {
+                return at(i) != j && boxes[at(i)].contains(boxes[j]) &&
+                       plane::is_inside(pieces[at(i)].cut, pieces[j].cut.front().front());
+            }))
+            return true;
     return false;
 }
 

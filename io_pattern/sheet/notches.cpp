@@ -55,11 +55,11 @@ void add_notches(const pattern::Pattern& pattern, const ExportOptions& options,
                  SheetPiece& result) {
     const pattern::PatternPiece& piece = pattern.pieces[result.piece];
     const AllowanceWidths widths = options.allowance();
-    for (std::size_t s = 0; s < pattern.seams.size(); ++s)
-        for (const pattern::SeamSide& side : pattern.seams[s].sides) {
+    for (const Index s : piece.seams())
+        for (const pattern::SeamSide& side : pattern.seams[at(s)].sides) {
             if (side.piece != result.piece)
                 continue;
-            const pattern::OutlineSeam edge{static_cast<Index>(s), 0, pattern.seams[s].is_dart};
+            const pattern::OutlineSeam edge{s, 0, pattern.seams[at(s)].is_dart};
             for (const double distance : side.notches)
                 add_notch(piece.path(side.path), side, distance, widths.of(edge, side.path > 0),
                           result);

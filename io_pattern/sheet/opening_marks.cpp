@@ -45,7 +45,8 @@ void add_openings(const pattern::Pattern& pattern, const assembly::Assembly& ass
 void add_drills(const pattern::Pattern& pattern, SheetPiece& result) {
     constexpr double half = 1.5; // mm
     const pattern::PatternPiece& piece = pattern.pieces[at(result.piece)];
-    for (const pattern::Seam& seam : pattern.seams) {
+    for (const Index s : piece.seams()) {
+        const pattern::Seam& seam = pattern.seams[at(s)];
         const pattern::SeamSide& side = seam.sides[0];
         if (!seam.is_dart || side.piece != result.piece)
             continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "devseg/plane/box_grid.h"
 #include "devseg/plane/plane.h"
 #include "sheet/drawing_plan.h"
 #include "sheet/marker.h"
@@ -116,14 +117,20 @@ std::vector<std::size_t> cutting_order(const std::vector<SheetPiece>& pieces) {
         boxes.push_back(piece.box());
     std::vector<int> depth(pieces.size(), 0);
     std::vector<std::size_t> order;
+    plane::BoxGrid with_holes(boxes);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         order.push_back(i);
-        for (std::size_t j = 0; j < pieces.size(); ++j)
-            if (j != i && pieces[j].cut.size() > 1 && pieces[j].sheet == pieces[i].sheet &&
-                boxes[j].contains(boxes[i]) &&
-                plane::is_inside(pieces[j].cut.front(), pieces[i].cut.front().front()))
-                ++depth[i];
+        if (pieces[i].cut.size() > 1)
+            with_holes.add(static_cast<Index>(i));
     }
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        with_holes.any_touching({boxes[i].min(), boxes[i].min()}, [&](Index j) {
+            const SheetPiece& other = pieces[at(j)];
+            if (at(j) != i && other.sheet == pieces[i].sheet && boxes[at(j)].contains(boxes[i]) &&
+                plane::is_inside(other.cut.front(), pieces[i].cut.front().front()))
+                ++depth[i];
+            return false; // all of them count
+        });
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return depth[a] > depth[b]; });
     return order;

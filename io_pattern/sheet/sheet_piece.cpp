@@ -122,7 +122,8 @@ Index mouth_of(const pattern::Seam& dart, const Outline& outline, double toleran
 void merge_slits(const pattern::Pattern& pattern, Index index, std::vector<Outline>& outlines,
                  std::vector<std::vector<Vec2>>& slits) {
     const pattern::PatternPiece& piece = pattern.pieces[index];
-    for (const pattern::Seam& seam : pattern.seams) {
+    for (const Index s : piece.seams()) {
+        const pattern::Seam& seam = pattern.seams[at(s)];
         const pattern::SeamSide& a = seam.sides[0];
         const pattern::SeamSide& b = seam.sides[1];
         if (!seam.is_dart || a.piece != index || a.path != b.path || a.count != b.count)

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "devseg/pack/first_fit.h"
+#include "devseg/plane/box_grid.h"
 #include "devseg/plane/plane.h"
 
 namespace devseg::pattern {
@@ -162,6 +163,17 @@ void move_piece(PatternPiece& piece, const Vec2& offset) {
     piece.box.translate(offset);
 }
 
+std::vector<Index> PatternPiece::seams() const {
+    std::vector<Index> result;
+    for (Index i = 0; i < path_count(); ++i)
+        for (const OutlineSeam& edge : path(i).edges)
+            if (edge.seam >= 0)
+                result.push_back(edge.seam);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+}
+
 Eigen::AlignedBox2d bounding_box(const std::vector<PatternPiece>& pieces) {
     Eigen::AlignedBox2d box;
     for (const PatternPiece& piece : pieces)
@@ -177,13 +189,17 @@ bool overlap(const PatternPiece& a, const PatternPiece& b) {
 }
 
 std::vector<std::size_t> overlapping_pieces(const std::vector<PatternPiece>& pieces) {
+    std::vector<Eigen::AlignedBox2d> boxes;
+    for (const PatternPiece& piece : pieces)
+        boxes.push_back(piece.box);
     std::vector<std::size_t> result;
-    std::vector<std::size_t> clear;
+    plane::BoxGrid clear(boxes);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const bool is_clear = std::none_of(clear.begin(), clear.end(), [&](std::size_t j) {
-            return overlap(pieces[i], pieces[j]);
-        });
-        (is_clear ? clear : result).push_back(i);
+        if (clear.any_touching(boxes[i],
+                               [&](Index j) { return overlap(pieces[i], pieces[at(j)]); }))
+            result.push_back(i);
+        else
+            clear.add(static_cast<Index>(i));
     }
     return result;
 }

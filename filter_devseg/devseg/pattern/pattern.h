@@ -114,6 +114,8 @@ struct PatternPiece {
         return i == 0 ? outer : holes[static_cast<std::size_t>(i - 1)];
     }
     PiecePath& path(Index i) { return i == 0 ? outer : holes[static_cast<std::size_t>(i - 1)]; }
+    /// The seams along its outlines, ascending.
+    std::vector<Index> seams() const;
     Index path_count() const { return 1 + static_cast<Index>(holes.size()); }
     /// The points of all outlines, the outer one first.
     std::vector<std::vector<Vec2>> rings() const {
