@@ -365,7 +365,10 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
             left_out.pieces.push_back(piece.piece);
         if (options.labels && options.marks_openings())
             write_openings(pattern, assembly, piece, room);
-        for (std::size_t s = 0; s < pattern.seams.size() && options.edge_numbers; ++s)
+        if (!options.edge_numbers)
+            continue;
+        for (const Index seam : source.seams()) {
+            const std::size_t s = at(seam);
             for (const pattern::SeamSide& side : pattern.seams[s].sides) {
                 if (side.piece != piece.piece ||
                     written[s].size() == numbers_of(pattern, pattern.seams[s]))
@@ -379,6 +382,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
                 room.take(number.leader());
                 written[s].push_back({i, number.text(), number.leader()});
             }
+        }
     }
     for (std::size_t s = 0; s < written.size() && options.edge_numbers; ++s) {
         if (written[s].size() < std::min(wanted[s], numbers_of(pattern, pattern.seams[s]))) {
