@@ -127,8 +127,11 @@ std::string closing_fault_of(const pattern::Pattern& pattern, const Assembly& pl
 // Both side by side.
 mesh::RawMesh beside(mesh::RawMesh all, const mesh::RawMesh& more) {
     const auto first = static_cast<Index>(all.points.size());
+    double right = 0.0;
+    for (const Vec3& p : all.points)
+        right = std::max(right, p.x());
     for (const Vec3& p : more.points)
-        all.points.push_back(p + Vec3(5.0 * first, 0.0, 0.0));
+        all.points.push_back(p + Vec3(right + 2.0, 0.0, 0.0));
     for (const Triangle& t : more.faces)
         all.faces.push_back({t[0] + first, t[1] + first, t[2] + first});
     return all;
