@@ -34,8 +34,8 @@ def orders_of(ms: Any, method: str, folder: Path) -> str:
     watertight, parts = solids(mesh.vertex_matrix(), mesh.face_matrix())
     segmentation, flattening = METHODS[method]
     ms.apply_filter(segmentation)
-    name = "compute_texcoord_parametrization_charts_per_wedge"
-    ms.apply_filter(name, pack=False, **flattening)
+    ms.apply_filter("compute_texcoord_parametrization_charts_per_wedge", pack=False, **flattening)
+    export = {"output_file": str(folder / "order.svg"), "height_mm": HEIGHT}
     text = f"{watertight} of {parts} watertight"
     for preset in ("Sewing", "Papercraft"):
         path = str(folder / "order.svg")

@@ -1,4 +1,4 @@
-"""A checker of assembly orders that sews step by step, knowing only which pieces each seam joins."""
+"""A checker of assembly orders: it sews step by step, knowing only which pieces each seam joins."""
 
 from __future__ import annotations
 

@@ -112,12 +112,8 @@ def test_order_of_a_cube(meshset: Any, tmp_path: Path) -> None:
 
 def test_order_of_several_parts(meshset: Any, tmp_path: Path) -> None:
     """Two cubes and a tube: the solids are closed, each once, and the tube is done first."""
-    parts = [meshes.cube(), meshes.cylinder(radius=1.0, height=3.0), meshes.cube()]
-    points, faces = [], []
-    for k, (some, corners) in enumerate(parts):
-        faces.append(np.asarray(corners) + sum(map(len, points)))
-        points.append(np.asarray(some) + [5.0 * k, 0.0, 0.0])
-    ms = meshset((np.concatenate(points), np.concatenate(faces)))
+    tube = meshes.joined(meshes.cube(), meshes.cylinder(radius=1.0, height=3.0), (5.0, 0.0, 0.0))
+    ms = meshset(meshes.joined(tube, meshes.cube(), (10.0, 0.0, 0.0)))
     assert solids(ms.current_mesh().vertex_matrix(), ms.current_mesh().face_matrix()) == (2, 3)
     ms.compute_segmentation_variational_shape_approximation_per_face(charts_number=14)
     ms.compute_seams_charts_to_disks_per_edge()
