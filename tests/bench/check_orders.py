@@ -38,18 +38,13 @@ def orders_of(ms: Any, method: str, folder: Path) -> str:
     export = {"output_file": str(folder / "order.svg"), "height_mm": HEIGHT}
     text = f"{watertight} of {parts} watertight"
     for preset in ("Sewing", "Papercraft"):
-        path = str(folder / "order.svg")
-        results = ms.apply_filter(
-            "export_pattern", output_file=path, preset=preset, height_mm=HEIGHT
-        )
+        results = ms.apply_filter("export_pattern", preset=preset, **export)
         order = guide.assembly(results)
         closed = check_order(results, order)
         assert len(closed) >= watertight, f"{preset}: {len(closed)} closed of {watertight} solids"
         assert preset == "Papercraft" or len(order["openings"]) == len(closed), "an opening is lost"
-        sections = len(set(order["sections"].values()))
-        text += (
-            f" | {preset}: {len(order['steps'])} steps, {sections} sections, {len(closed)} closed"
-        )
+        counts = [len(order["steps"]), len(set(order["sections"].values())), len(closed)]
+        text += " | {}: {} steps, {} sections, {} closed".format(preset, *counts)
     return text
 
 
