@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sheet/layout.h"
+#include "sheet/page_cover.h"
 
 namespace devseg::sheet {
 
@@ -24,8 +25,9 @@ struct PageNesting {
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
                           bool tiling, Progress& progress);
 
-/// The part of a sheet's page that no page before it, in rows from below and in columns from the
-/// left, shows: what lies there needs the page. Millimetres, the sheet's lower left is the origin.
-Eigen::AlignedBox2d own_part(const PageFormat& page, Index column, Index row_from_below);
+/// A part of a sheet that the same pages show (page_cover.h), counted from below and from the left.
+/// Millimetres, the sheet's lower left is the origin.
+Eigen::AlignedBox2d part_box(const PatternSheet& sheet, const PageFormat& page, Index part_column,
+                             Index part_row);
 
 } // namespace devseg::sheet

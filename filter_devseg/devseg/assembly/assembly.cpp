@@ -83,9 +83,9 @@ private:
             components[c].number = static_cast<Index>(c);
         for (Index p = 0; p < graph_.piece_count; ++p)
             components[at(graph_.component[at(p)])].pieces.push_back(p);
-        std::stable_partition(
-            components.begin(), components.end(),
-            [&](const Component& c) { return graph_.is_closed[at(c.number)] == 0; });
+        std::stable_partition(components.begin(), components.end(), [&](const Component& c) {
+            return graph_.is_closed[at(c.number)] == 0;
+        });
         return components;
     }
 

@@ -53,7 +53,8 @@ constexpr double most_opening = 80.0;
 
 /// Every seam is done in one step, and every step but the first of each section joins pieces that
 /// share a seam with what it is joined to. Each solid is closed once, by its own last step, and
-/// where there is a solid, the last step of all closes one. The same pattern gives the same order. Throws Cancelled.
+/// where there is a solid, the last step of all closes one. The same pattern gives the same order.
+/// Throws Cancelled.
 Assembly plan_assembly(const pattern::Pattern& pattern, Craft craft, const Progress& progress);
 
 /// "A", "B", …, "Z", "AA", …

@@ -148,10 +148,9 @@ TEST(Assembly, EachSolidIsClosedByItsOwnLastStep) {
             const Assembly plan = plan_assembly(pattern, craft, progress);
             EXPECT_EQ(fault_of(pattern, plan), "") << charts;
             EXPECT_EQ(closing_fault_of(pattern, plan), "") << charts;
-            EXPECT_EQ(std::count_if(plan.steps.begin(), plan.steps.end(),
-                                    [](const AssemblyStep& step) {
-                                        return step.kind == StepKind::close;
-                                    }),
+            EXPECT_EQ(std::count_if(
+                          plan.steps.begin(), plan.steps.end(),
+                          [](const AssemblyStep& step) { return step.kind == StepKind::close; }),
                       2);
         }
 }
