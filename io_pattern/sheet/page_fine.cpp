@@ -55,7 +55,7 @@ Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, dou
     const double least = tuning.almost_empty * problem.page_area() / (cell * cell);
     Index goal = 0;
     for (const Index cells : covered)
-        goal += cells == 0 ? 0 : cells < least ? 2 : 1;
+        goal += cells == 0 ? 0 : cells < least ? 3 : 1;
     return goal;
 }
 

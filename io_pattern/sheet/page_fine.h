@@ -14,10 +14,11 @@ struct CoarseLayout {
     Index rows = 0;
     Index singles = 0;
     pack::Layout spots;
-    Index goal = 0; // pages, and once more those that are almost empty
+    Index goal = 0; // pages, those that are almost empty counted thrice
 };
 
-/// Pages, and once more those that are almost empty, by the cells that pieces cover on each.
+/// Pages, by the cells that pieces cover on each. Those that are almost empty count thrice: one page
+/// more is better.
 Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, double cell);
 Index goal_of(const PageProblem& problem, const PageLayout& layout);
 

@@ -296,6 +296,30 @@ def test_a_seam_shows_both_sides(opened: Any) -> None:
     assert "Seam 1" in about and "mm" in about and "allowance 7 mm" in about
 
 
+def test_colours_of_strain_show_most_of_it(opened: Any) -> None:
+    percent, at_the_ends = opened.execute_script(
+        "const all = DATA.pieces.flatMap((p) => [...numbers(p.strain, Uint8Array)]);"
+        "return [100 * DATA.strain, all.filter((s) => s <= 1 || s >= 255).length / all.length]"
+    )
+    assert percent in (5, 10, 20, 50, 100) and at_the_ends < 0.2
+    colors = opened.find_element("id", "colors")
+    opened.execute_script(
+        "arguments[0].value = 'byStrain'; arguments[0].dispatchEvent(new Event('change'))", colors
+    )
+    legend = opened.find_element("id", "legend").text
+    assert f"compressed {percent:g} %" in legend and f"stretched {percent:g} %" in legend
+
+
+def test_page_numbers_lie_above_the_pieces(opened: Any) -> None:
+    assert opened.execute_script(
+        "const numbers = [...document.querySelectorAll('#paper .number')];"
+        "const pieces = [...document.querySelectorAll('#paper .outline')];"
+        "const above = Node.DOCUMENT_POSITION_FOLLOWING;"
+        "return numbers.length === DATA.pages.length && numbers.every((n) =>"
+        "  pieces.every((p) => p.compareDocumentPosition(n) & above))"
+    )
+
+
 def test_measuring_is_true(opened: Any) -> None:
     opened.find_element("id", "measure").click()
     ends = opened.execute_script(
