@@ -17,7 +17,7 @@ namespace devseg::sheet {
 namespace {
 
 struct Tuning {
-    int searches = 6;         // on sheets of other widths,
+    int searches = 12;        // on sheets of other widths,
     int best = 2;             // of which the best go on, each with one half of
     double work = 8e9;        // cells that are looked at, some seconds
     double board_work = 60.0; // of a cell, for each time that pages are closed
