@@ -16,11 +16,11 @@ struct PageNesting {
 };
 
 /// Pieces that fit on a page lie on one. Larger ones lie on sheets of several pages that share
-/// strips; others fill what they leave free, clear of the strips. One page after the other is closed
-/// (page_search.h). No piece touches the border of the printable area of a page that it fits on. The
-/// work is counted, not timed. Throws InvalidParameter where a piece is
-/// larger than a page that it may not leave (`tiling`), and Cancelled. Pieces are turned as they
-/// fit: paper has no grain, and the arrow on a piece turns with it.
+/// strips; others fill what they leave free, clear of the strips. One page after the other is
+/// closed (page_search.h). No piece touches the border of the printable area of a page that it fits
+/// on. The work is counted, not timed. Throws InvalidParameter where a piece is larger than a page
+/// that it may not leave (`tiling`), and Cancelled. Pieces are turned as they fit: paper has no
+/// grain, and the arrow on a piece turns with it.
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
                           bool tiling, Progress& progress);
 
