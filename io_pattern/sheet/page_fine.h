@@ -17,8 +17,8 @@ struct CoarseLayout {
     Index goal = 0; // pages, those that are almost empty counted thrice
 };
 
-/// Pages, by the cells that pieces cover on each. Those that are almost empty count thrice: one page
-/// more is better.
+/// Pages, by the cells that pieces cover on each. Those that are almost empty count thrice: one
+/// page more is better.
 Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, double cell);
 Index goal_of(const PageProblem& problem, const PageLayout& layout);
 
