@@ -15,8 +15,10 @@ namespace devseg::page {
 
 namespace {
 
-constexpr double steps = 65535.0;    // of a coordinate
-constexpr double strain_steps = 1e3; // strain is in thousandths, at most 127 of them
+constexpr double steps = 65535.0;      // of a coordinate
+constexpr double strain_steps = 127.0; // of the range that colours show, to each side
+constexpr double strain_ranges[] = {0.05, 0.1, 0.2, 0.5, 1.0};
+constexpr double strain_share = 0.9; // of the area that the range holds, if one does
 
 QString text(const std::string& utf8) {
     return QString::fromStdString(utf8);
@@ -63,7 +65,11 @@ public:
         for (const Vec3& p : pattern.mesh.points)
             box_.extend(mm_ * p);
         step_ = std::max(box_.sizes().maxCoeff(), 1e-9) / steps;
+        find_strain();
     }
+
+    // The strain that the end of the colours stands for.
+    double strain_range() const { return strain_range_; }
 
     QJsonObject box() const {
         return {{"low", QJsonArray{box_.min().x(), box_.min().y(), box_.min().z()}},
@@ -72,15 +78,13 @@ public:
 
     QJsonArray pieces(const Progress& progress) const {
         const std::vector<std::vector<Index>> faces = faces_of_pieces();
-        const std::vector<pattern::FaceStrain> strain =
-            pattern::measure_strain(pattern_.mesh, pattern_.corner_place, 1.0 / mm_);
         const std::vector<declare::Color> colors = sheet::piece_colors(pattern_);
         QJsonArray result;
         for (std::size_t i = 0; i < pattern_.pieces.size(); ++i) {
             progress.check();
             const pattern::PatternPiece& piece = pattern_.pieces[i];
             const declare::Color& color = colors[i];
-            QJsonObject data = geometry(faces[i], strain);
+            QJsonObject data = geometry(faces[i]);
             data["name"] = text(piece.name);
             data["section"] = text(assembly::section_name(layout_.assembly.section[i]));
             data["color"] = array_of(color);
@@ -137,6 +141,21 @@ public:
     }
 
 private:
+    // Of each face the larger one of its strains, below 0 where it is compressed.
+    void find_strain() {
+        for (const pattern::FaceStrain& s :
+             pattern::measure_strain(pattern_.mesh, pattern_.corner_place, 1.0 / mm_))
+            strain_.push_back(s.extension > s.compression ? s.extension : -s.compression);
+        for (const double range : strain_ranges) {
+            strain_range_ = range;
+            double inside = 0.0;
+            for (const Face f : pattern_.mesh.all_faces())
+                inside += std::abs(strain_[f]) <= range ? pattern_.mesh.face_areas[f] : 0.0;
+            if (inside >= strain_share * pattern_.mesh.total_area)
+                return;
+        }
+    }
+
     std::vector<std::vector<Index>> faces_of_pieces() const {
         std::vector<std::vector<Index>> faces(pattern_.pieces.size());
         for (std::size_t f = 0; f < pattern_.face_piece.size(); ++f)
@@ -152,8 +171,7 @@ private:
     }
 
     // Vertices of the piece alone, its faces, and the pairs of vertices along its border.
-    QJsonObject geometry(const std::vector<Index>& faces,
-                         const std::vector<pattern::FaceStrain>& strain) const {
+    QJsonObject geometry(const std::vector<Index>& faces) const {
         const Mesh& mesh = pattern_.mesh;
         std::map<Index, std::uint32_t> number;
         std::vector<std::uint16_t> points;
@@ -162,8 +180,7 @@ private:
         std::vector<std::uint32_t> corners;
         std::vector<std::uint32_t> border;
         for (const Index f : faces) {
-            const pattern::FaceStrain& s = strain[at(f)];
-            const double value = s.extension > s.compression ? s.extension : -s.compression;
+            const double value = strain_[at(f)];
             for (const Index v : mesh.faces[at(f)]) {
                 const auto [known, is_new] =
                     number.emplace(v, static_cast<std::uint32_t>(number.size()));
@@ -186,7 +203,7 @@ private:
         std::vector<std::uint8_t> strains;
         for (std::size_t i = 0; i < sum.size(); ++i)
             strains.push_back(static_cast<std::uint8_t>(static_cast<int>(
-                128.0 + std::clamp(strain_steps * sum[i] / count[i], -127.0, 127.0))));
+                128.0 + std::clamp(sum[i] / count[i] / strain_range_, -1.0, 1.0) * strain_steps)));
         const bool is_small = number.size() <= 65535;
         QJsonObject data{
             {"bits", is_small ? 16 : 32}, {"points", packed(points)}, {"strain", packed(strains)}};
@@ -238,8 +255,10 @@ private:
     const sheet::ExportOptions& options_;
     const writers::Drawing& drawing_;
     double mm_;
-    Eigen::AlignedBox3d box_; // mm
-    double step_ = 1.0;       // mm
+    Eigen::AlignedBox3d box_;    // mm
+    double step_ = 1.0;          // mm
+    std::vector<double> strain_; // #F
+    double strain_range_ = 1.0;
 };
 
 } // namespace
@@ -260,6 +279,7 @@ QByteArray model_data(const pattern::Pattern& pattern, const sheet::PatternLayou
                                      {"allowance", options.seam_allowance_mm},
                                      {"size", QJsonArray{drawing.width, drawing.height}},
                                      {"box", model.box()},
+                                     {"strain", model.strain_range()},
                                      {"pieces", model.pieces(progress)},
                                      {"seams", model.seams()},
                                      {"pages", model.pages()},

@@ -8,7 +8,7 @@ const TEXT = {
   zoomIn: "Zoom in", zoomOut: "Zoom out", step: "Step",
   dark: "Dark", light: "Light",
   byPiece: "Pieces", bySection: "Sections", byStrain: "Strain",
-  strain: ["compressed 5 %", "stretched 5 %"],
+  strain: (percent) => [`compressed ${percent} %`, `stretched ${percent} %`],
   canvas: (title) => `${title} in 3D. Arrow keys turn it, plus and minus zoom.`,
   paper: "Pattern pieces on their sheets. Arrow keys move, plus and minus zoom.",
   page: (n) => `page ${n}`,
@@ -112,7 +112,7 @@ class ModelView {
         void main() {
           vec3 c = color;
           ${isLine ? "" : `
-          float s = clamp((v_strain * 255.0 - 128.0) / 50.0, -1.0, 1.0);
+          float s = clamp((v_strain * 255.0 - 128.0) / 127.0, -1.0, 1.0);
           vec3 end = s < 0.0 ? vec3(0.13, 0.40, 0.67) : vec3(0.70, 0.09, 0.17);
           c = mix(c, mix(vec3(0.95), end, abs(s)), by_strain);
           c = mix(c, vec3(1.0, 0.80, 0.22), lit);
@@ -285,8 +285,6 @@ class SheetView {
       made.textContent = text;
       this.labels.push({ made, room });
     };
-    if (DATA.pages.length > 0)
-      pages.forEach(([x, y, width], i) => label(TEXT.page(i + 1), x, y, width, "number", under));
     this.groups = DATA.pieces.map((piece, p) => {
       const group = this.svg.querySelector(`[id="${piece.name}"]`);
       group.dataset.piece = p;
@@ -296,6 +294,8 @@ class SheetView {
       return group;
     });
     const over = element("g", {}, this.svg);
+    if (DATA.pages.length > 0)
+      pages.forEach(([x, y, width], i) => label(TEXT.page(i + 1), x, y, width, "number", over));
     this.names = element("g", { "aria-hidden": true }, this.svg);
     DATA.pieces.forEach((piece) => label(piece.name, ...piece.label, piece.length, "name", this.names));
     this.sides = DATA.seams.map((seam, s) => seam.sides.map((side) =>
@@ -605,7 +605,8 @@ function listen() {
     byId("legend").hidden = state.colors !== "byStrain";
     draw();
   });
-  byId("legend").append(TEXT.strain[0], document.createElement("span"), TEXT.strain[1]);
+  const ends = TEXT.strain(Math.round(100 * DATA.strain));
+  byId("legend").append(ends[0], document.createElement("span"), ends[1]);
   byId("fit").addEventListener("click", () => sheet.fit());
   byId("zoom-in").addEventListener("click", () => sheet.zoom(1 / 1.3));
   byId("zoom-out").addEventListener("click", () => sheet.zoom(1.3));

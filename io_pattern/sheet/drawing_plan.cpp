@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "devseg/plane/plane.h"
 #include "sheet/page_nesting.h"
@@ -84,6 +85,43 @@ void add_pages(const PatternLayout& layout, const std::vector<PrintedPage>& page
     }
 }
 
+// In rows from above. Pages where nothing is, or only what others show, are left out.
+std::vector<PrintedPage> pages_of_sheet(const PatternLayout& layout, Index s) {
+    const PageFormat& format = *layout.page;
+    const PatternSheet& sheet = layout.sheets[at(s)];
+    const Index across = parts_of(sheet.columns);
+    std::vector<std::vector<Index>> pieces; // on each part
+    std::vector<Index> amounts;
+    for (Index part = 0; part < across * parts_of(sheet.rows); ++part) {
+        const Eigen::AlignedBox2d box = part_box(sheet, format, part % across, part / across);
+        pieces.emplace_back();
+        for (std::size_t p = 0; p < layout.pieces.size(); ++p)
+            if (layout.pieces[p].sheet == s && touches(layout.pieces[p].cut.front(), box))
+                pieces.back().push_back(static_cast<Index>(p));
+        amounts.push_back(static_cast<Index>(pieces.back().size()));
+    }
+    const std::vector<Index> owner = cover_parts(sheet.columns, sheet.rows, amounts);
+    std::vector<PrintedPage> pages;
+    for (Index row = 0; row < sheet.rows; ++row)
+        for (Index column = 0; column < sheet.columns; ++column) {
+            const Index from_below = sheet.rows - 1 - row;
+            std::set<Index> on_page;
+            for (std::size_t part = 0; part < owner.size(); ++part)
+                if (owner[part] == from_below * sheet.columns + column)
+                    on_page.insert(pieces[part].begin(), pieces[part].end());
+            if (on_page.empty())
+                continue;
+            const Vec2 margin = Vec2::Constant(format.margin);
+            const Vec2 low = margin + Vec2(column, from_below).cwiseProduct(format.step());
+            pages.push_back({{low, format.printable(), margin, 1.0},
+                             s,
+                             row,
+                             column,
+                             {on_page.begin(), on_page.end()}});
+        }
+    return pages;
+}
+
 } // namespace
 
 writers::DrawingPolyline rectangle(const Vec2& low, const Vec2& size) {
@@ -136,29 +174,12 @@ std::vector<PrintedPage> printed_pages(const PatternLayout& layout,
     if (!layout.page)
         return {
             {{Vec2::Zero(), Vec2(drawing.width, drawing.height), Vec2::Zero(), 1.0}, 0, 0, 0, {}}};
-    const PageFormat& format = *layout.page;
     std::vector<PrintedPage> pages;
-    for (std::size_t s = 0; s < layout.sheets.size(); ++s) {
-        const PatternSheet& sheet = layout.sheets[s];
-        for (Index row = 0; row < sheet.rows; ++row)
-            for (Index column = 0; column < sheet.columns; ++column) {
-                PrintedPage page;
-                page.sheet = static_cast<Index>(s);
-                page.row = row;
-                page.column = column;
-                const Vec2 low = Vec2::Constant(format.margin) +
-                                 Vec2(column, sheet.rows - 1 - row).cwiseProduct(format.step());
-                page.window = {low, format.printable(), Vec2::Constant(format.margin), 1.0};
-                const Eigen::AlignedBox2d own = own_part(format, column, sheet.rows - 1 - row);
-                for (std::size_t p = 0; p < layout.pieces.size(); ++p)
-                    if (layout.pieces[p].sheet == page.sheet &&
-                        touches(layout.pieces[p].cut.front(), own))
-                        page.pieces.push_back(static_cast<Index>(p));
-                page.window.low += drawing.sheets[s].low;
-                if (!page.pieces.empty())
-                    pages.push_back(page);
-            }
-    }
+    for (Index s = 0; s < static_cast<Index>(layout.sheets.size()); ++s)
+        for (PrintedPage& page : pages_of_sheet(layout, s)) {
+            page.window.low += drawing.sheets[at(s)].low;
+            pages.push_back(std::move(page));
+        }
     return pages;
 }
 

@@ -52,17 +52,17 @@ PageLayout first_fit(const PageProblem& problem, Index columns, const Progress& 
             progress.check();
             put(i, board, {0, width});
         }
-    std::vector<Index> cells;
     while (PageGrid(problem, columns, layout.rows, 0, 1).sheet().top + 1 < board.height())
         ++layout.rows;
     const PageGrid grid(problem, columns, layout.rows, static_cast<Index>(count), 1);
-    cells.assign(at(grid.pages()), 0);
+    std::vector<Index> parts = grid.empty_parts();
     for (std::size_t i = 0; i < count; ++i)
         if (problem.is_large[i] != 0)
-            grid.count(layout.images[i], layout.spots[i], cells);
+            grid.count(layout.images[i], layout.spots[i], parts);
+    const std::vector<Index> owner = cover_parts(columns, layout.rows, parts);
     std::vector<Index> pages;
     for (Index page = 0; page < grid.pages(); ++page)
-        if (page >= grid.glued() || cells[at(page)] > 0)
+        if (page >= grid.glued() || std::find(owner.begin(), owner.end(), page) != owner.end())
             pages.push_back(page);
     for (const std::size_t i : order) {
         progress.check();

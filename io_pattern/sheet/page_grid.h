@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "devseg/pack/first_fit.h"
+#include "devseg/pack/separation.h"
 #include "sheet/layout.h"
+#include "sheet/page_cover.h"
 
 namespace devseg::sheet {
 
@@ -27,10 +29,15 @@ struct PageProblem {
     double page_area() const { return page.printable().prod(); }
 };
 
+struct PageCover {
+    std::vector<Index> owner; // of each part of the sheet: the page that prints it, −1: none
+    std::vector<Index> cells; // on each page, 0: it is not printed
+};
+
 /// A sheet of pages in columns and rows, from the lower left; above it single pages, side by side.
 /// Large pieces lie anywhere on the sheet, others on one page, clear of the strips. Cells are
-/// `factor` times as wide as the problem's: then windows are rounded, and else nothing that needs a
-/// page is outside of its part.
+/// `factor` times as wide as the problem's: then windows are rounded, and else nothing lies on a
+/// part that only seems to be shown.
 class PageGrid {
 public:
     PageGrid(const PageProblem& problem, Index columns, Index rows, Index singles, Index factor);
@@ -39,19 +46,38 @@ public:
     Index rows() const { return rows_; }
     Index glued() const { return columns_ * rows_; }
     Index pages() const { return glued() + singles_; }
-    /// Of a page in the sheet: what no page before it shows (own_part).
-    pack::Window own(Index page) const;
+    /// What a page of the sheet shows.
+    pack::Window shown(Index page) const;
     /// Where pieces lie that fit on a page.
     pack::Window clear(Index page) const;
     pack::Window sheet() const;
-    /// All of the sheet and around it but some of its pages: no piece lies there.
+    /// All that no open page shows, on the sheet and around it: no piece lies there.
     pack::ChartCells closed(const std::vector<std::uint8_t>& is_open, pack::Spot& spot) const;
-    /// Cells of the image on each page of the sheet, where it lies.
+    /// Where each piece may lie: small ones on one open page, large ones within the sheet's open
+    /// part. The last window is that of what is closed.
+    std::vector<std::vector<pack::Window>> windows(const std::vector<std::uint8_t>& is_open,
+                                                   const pack::ChartCells& closed,
+                                                   const pack::Spot& spot) const;
+    /// The page that shows all of the image; −1: none.
+    Index page_of(const pack::ChartCells& image, const pack::Spot& spot) const;
+    /// Adds the cells of the image on each part of the sheet (page_cover.h), where it lies.
     void count(const pack::ChartCells& image, const pack::Spot& spot,
-               std::vector<Index>& cells) const;
+               std::vector<Index>& parts) const;
+    /// Without any cells yet.
+    std::vector<Index> empty_parts() const {
+        return std::vector<Index>(at(parts_of(columns_) * parts_of(rows_)), 0);
+    }
+    /// What is printed where, of pieces with these images and places.
+    PageCover cover(const std::vector<const pack::ChartCells*>& images,
+                    const pack::Layout& spots) const;
+    /// How many pages of the sheet an image needs there by itself.
+    Index least_pages(const pack::ChartCells& image, const pack::Spot& spot) const;
+    /// The pages that an image is printed on, ascending.
+    std::vector<Index> pages_of(const pack::ChartCells& image, const pack::Spot& spot,
+                                const PageCover& cover) const;
 
 private:
-    std::array<Index, 2> own_range(Index page, Index pages, int axis) const;
+    std::vector<Index> part_starts(Index pages, int axis) const;
     std::array<Index, 2> clear_range(Index page, Index pages, int axis) const;
     pack::Window coarse(const pack::Window& fine) const;
 
@@ -60,6 +86,8 @@ private:
     Index rows_;
     Index singles_;
     Index factor_;
+    std::array<std::vector<Index>, 2>
+        starts_; // of parts, along x and y, and where the last one ends
 };
 
 } // namespace devseg::sheet

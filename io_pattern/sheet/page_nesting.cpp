@@ -146,7 +146,22 @@ struct Sheets {
     std::vector<Index> pages;   // how many
 };
 
-Sheets find_sheets(const PageProblem& problem, const PageLayout& layout, const PageGrid& grid) {
+// The pages that each piece is printed on, ascending.
+std::vector<std::vector<Index>> find_pages(const PageLayout& layout, const PageGrid& grid) {
+    std::vector<const pack::ChartCells*> images;
+    for (const pack::ChartCells& image : layout.images)
+        images.push_back(&image);
+    const PageCover cover = grid.cover(images, layout.spots);
+    std::vector<std::vector<Index>> pages;
+    for (std::size_t i = 0; i < layout.spots.size(); ++i)
+        pages.push_back(layout.page[i] >= 0
+                            ? std::vector<Index>{layout.page[i]}
+                            : grid.pages_of(layout.images[i], layout.spots[i], cover));
+    return pages;
+}
+
+Sheets find_sheets(const PageProblem& problem, const std::vector<std::vector<Index>>& pages_of,
+                   const PageGrid& grid) {
     std::vector<Index> parent(at(grid.pages()));
     std::iota(parent.begin(), parent.end(), Index{0});
     const auto root = [&](Index page) {
@@ -154,23 +169,12 @@ Sheets find_sheets(const PageProblem& problem, const PageLayout& layout, const P
             page = parent[at(page)];
         return page;
     };
-    std::vector<std::vector<Index>> pages_of(layout.spots.size());
     std::vector<std::uint8_t> is_used(parent.size(), 0);
-    for (std::size_t i = 0; i < layout.spots.size(); ++i) {
-        if (layout.page[i] >= 0) {
-            pages_of[i] = {layout.page[i]};
-        } else {
-            std::vector<Index> cells(parent.size(), 0);
-            grid.count(layout.images[i], layout.spots[i], cells);
-            for (Index page = 0; page < grid.pages(); ++page)
-                if (cells[at(page)] > 0)
-                    pages_of[i].push_back(page);
-        }
-        for (const Index page : pages_of[i]) {
+    for (const std::vector<Index>& pages : pages_of)
+        for (const Index page : pages) {
             is_used[at(page)] = 1;
-            parent[at(root(page))] = root(pages_of[i].front());
+            parent[at(root(page))] = root(pages.front());
         }
-    }
     Sheets sheets;
     sheets.of_page.assign(parent.size(), -1);
     for (Index page = 0; page < grid.pages(); ++page) {
@@ -218,7 +222,8 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
     auto filling = progress.part(progress.left());
     const PageLayout best = search_pages(problem, filling);
     const PageGrid grid(problem, best.columns, best.rows, best.singles, 1);
-    const Sheets found = find_sheets(problem, best, grid);
+    const std::vector<std::vector<Index>> pages_of = find_pages(best, grid);
+    const Sheets found = find_sheets(problem, pages_of, grid);
     const std::vector<Index> ranks = ranks_of(found);
     PageNesting result;
     std::vector<std::array<Index, 4>> extents( // columns and rows of the board
@@ -240,14 +245,7 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
     const double origin = page.margin + border_clearance - 0.5 * piece_gap;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         pack::Spot spot = best.spots[i];
-        Index on = best.page[i];
-        if (on < 0) {
-            std::vector<Index> cells(at(grid.pages()), 0);
-            grid.count(best.images[i], spot, cells);
-            on = static_cast<Index>(
-                std::find_if(cells.begin(), cells.end(), [](Index c) { return c > 0; }) -
-                cells.begin());
-        }
+        const Index on = pages_of[i].front();
         const Index sheet = ranks[at(found.of_page[at(on)])];
         Vec2 corner = Vec2(extents[at(sheet)][0], extents[at(sheet)][2]).cwiseProduct(page.step());
         if (on >= grid.glued()) {
@@ -261,13 +259,23 @@ PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageForma
     return result;
 }
 
-Eigen::AlignedBox2d own_part(const PageFormat& page, Index column, Index row_from_below) {
+Eigen::AlignedBox2d part_box(const PatternSheet& sheet, const PageFormat& page, Index part_column,
+                             Index part_row) {
     // What ends at the border of a strip does not go on behind it.
     constexpr double touch = 1e-6; // mm
-    const Vec2 place(column, row_from_below);
-    const Vec2 low = Vec2::Constant(page.margin) + place.cwiseProduct(page.step());
-    const Vec2 strips((place.array() > 0.0).cast<double>() * (tile_overlap + touch));
-    return {low + strips, low + page.printable()};
+    Eigen::AlignedBox2d box;
+    for (const auto& [axis, part, pages] :
+         {std::tuple(0, part_column, sheet.columns), std::tuple(1, part_row, sheet.rows)}) {
+        const auto shown = pages_of_part(part);
+        const double step = page.step()[axis];
+        const double low = shown[1] * step;
+        const double high = shown[0] * step + page.printable()[axis];
+        const bool is_strip = part % 2 != 0;
+        box.min()[axis] = page.margin + low + (is_strip || part == 0 ? 0.0 : tile_overlap + touch);
+        box.max()[axis] = page.margin + high -
+                          (is_strip || part + 1 == parts_of(pages) ? 0.0 : tile_overlap + touch);
+    }
+    return box;
 }
 
 } // namespace devseg::sheet

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sheet/layout.h"
+#include "sheet/page_cover.h"
 
 namespace devseg::sheet {
 
@@ -15,17 +16,17 @@ struct PageNesting {
 };
 
 /// Pieces that fit on a page lie on one. Larger ones lie on sheets of several pages that share
-/// strips, each where it takes the fewest new pages; others fill what they leave free, clear of the
-/// strips. The order of the pieces is changed again and again, from pieces on the emptiest page
-/// on, and what takes fewer pages stays. No piece touches the border of the printable area of a
-/// page that it fits on. The work is counted, not timed. Throws InvalidParameter where a piece is
-/// larger than a page that it may not leave (`tiling`), and Cancelled. Pieces are turned as they
-/// fit: paper has no grain, and the arrow on a piece turns with it.
+/// strips; others fill what they leave free, clear of the strips. One page after the other is
+/// closed (page_search.h). No piece touches the border of the printable area of a page that it fits
+/// on. The work is counted, not timed. Throws InvalidParameter where a piece is larger than a page
+/// that it may not leave (`tiling`), and Cancelled. Pieces are turned as they fit: paper has no
+/// grain, and the arrow on a piece turns with it.
 PageNesting nest_on_pages(const std::vector<SheetPiece>& pieces, const PageFormat& page,
                           bool tiling, Progress& progress);
 
-/// The part of a sheet's page that no page before it, in rows from below and in columns from the
-/// left, shows: what lies there needs the page. Millimetres, the sheet's lower left is the origin.
-Eigen::AlignedBox2d own_part(const PageFormat& page, Index column, Index row_from_below);
+/// A part of a sheet that the same pages show (page_cover.h), counted from below and from the left.
+/// Millimetres, the sheet's lower left is the origin.
+Eigen::AlignedBox2d part_box(const PatternSheet& sheet, const PageFormat& page, Index part_column,
+                             Index part_row);
 
 } // namespace devseg::sheet

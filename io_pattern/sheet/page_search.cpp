@@ -10,86 +10,25 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/pack/nest.h"
+#include "sheet/page_fine.h"
 
 namespace devseg::sheet {
 
 namespace {
 
 struct Tuning {
-    int searches = 6;           // on sheets of other widths,
-    int best = 2;               // of which the best go on, each with one half of
-    double work = 8e9;          // cells that are looked at, some seconds
-    double board_work = 60.0;   // of a cell, for each time that pages are closed
-    double fine_work = 1e8;     // to bring what was found to the problem's cells
-    double enough = 0.4;        // of a coarse cell: pieces have room on the finer ones
-    double covered = 0.6;       // of pages, by pieces that are laid for the first time
-    int attempts = 8;           // on more and more pages
-    Index longest = 3000;       // cells of a piece: of larger ones, others are few pages
-    double full = 0.9;          // share of the paper that no nesting covers
-    double almost_empty = 0.05; // of a page: it is hardly worth the paper
+    int searches = 12;        // on sheets of other widths,
+    int best = 2;             // of which the best go on, each with one half of
+    double work = 8e9;        // cells that are looked at, some seconds
+    double board_work = 60.0; // of a cell, for each time that pages are closed
+    double enough = 0.4;      // of a coarse cell: pieces have room on the finer ones
+    double covered = 0.6;     // of pages, by pieces that are laid for the first time
+    int attempts = 8;         // on more and more pages
+    Index longest = 3000;     // cells of a piece: of larger ones, others are few pages
+    double full = 0.9;        // share of the paper that no nesting covers
 };
 constexpr Tuning tuning;
 constexpr pack::SeparationOptions coarse_moves{0, 8, 15};
-constexpr double fine_turn = 1.5 * pi / 180.0;
-constexpr int fine_turns = 2; // to each side
-constexpr pack::SeparationOptions fine_moves{7, 2 * fine_turns + 1, 40};
-
-// Where pieces lie on a grid of coarse cells.
-struct CoarseLayout {
-    Index columns = 1;
-    Index rows = 0;
-    Index singles = 0;
-    pack::Layout spots;
-    Index goal = 0; // pages, and once more those that are almost empty
-};
-
-// By the cells that pieces cover on each page.
-Index goal_of(const PageProblem& problem, const std::vector<Index>& covered, double cell) {
-    const double least = tuning.almost_empty * problem.page_area() / (cell * cell);
-    Index goal = 0;
-    for (const Index cells : covered)
-        goal += cells == 0 ? 0 : cells < least ? 2 : 1;
-    return goal;
-}
-
-using Windows = std::vector<std::vector<pack::Window>>;
-
-// On the pages that are open; the last window is that of what is closed.
-Windows windows_of(const PageProblem& problem, const PageGrid& grid,
-                   const std::vector<std::uint8_t>& is_open, const pack::ChartCells& closed,
-                   const pack::Spot& spot) {
-    std::vector<pack::Window> clear;
-    pack::Window around{grid.sheet().right, 0, grid.sheet().top, 0}; // open pages of the sheet
-    for (Index page = 0; page < grid.pages(); ++page) {
-        if (is_open[at(page)] == 0)
-            continue;
-        clear.push_back(grid.clear(page));
-        if (page >= grid.glued())
-            continue;
-        const pack::Window own = grid.own(page);
-        around = {std::min(around.left, own.left), std::max(around.right, own.right),
-                  std::min(around.bottom, own.bottom), std::max(around.top, own.top)};
-    }
-    around.right = std::min(around.right, grid.sheet().right);
-    around.top = std::min(around.top, grid.sheet().top);
-    Windows windows;
-    for (const std::uint8_t large : problem.is_large)
-        windows.push_back(large != 0 ? std::vector<pack::Window>{around} : clear);
-    windows.push_back({{spot.x, spot.x + closed.width - 1, spot.y, spot.y + closed.height - 1}});
-    return windows;
-}
-
-bool is_within(const pack::Window& window, const pack::ChartCells& image, const pack::Spot& spot) {
-    return spot.x >= window.left && spot.x + image.width <= window.right + 1 &&
-           spot.y >= window.bottom && spot.y + image.height <= window.top + 1;
-}
-
-Index page_of(const PageGrid& grid, const pack::ChartCells& image, const pack::Spot& spot) {
-    for (Index page = 0; page < grid.pages(); ++page)
-        if (is_within(grid.clear(page), image, spot))
-            return page;
-    return -1;
-}
 
 // Places of one large piece on its own, by the pages that it needs.
 struct Footprints {
@@ -115,10 +54,7 @@ Footprints find_footprints(const PageProblem& problem, const pack::ChartPoses& p
         for (Index y = 0; y < step.y(); ++y) {
             progress.check();
             for (Index x = 0; x < step.x(); ++x) {
-                std::vector<Index> cells(at(grid.glued()), 0);
-                grid.count(poses[pose], {pose, x, y}, cells);
-                const auto pages =
-                    grid.glued() - static_cast<Index>(std::count(cells.begin(), cells.end(), 0));
+                const Index pages = grid.least_pages(poses[pose], {pose, x, y});
                 if (pages < fewest) {
                     result.spots[1] = pages + 1 == fewest ? std::move(result.spots[0])
                                                           : std::vector<pack::Spot>();
@@ -176,22 +112,19 @@ private:
         return {problem_, layout.columns, layout.rows, layout.singles, problem_.factor};
     }
 
+    // Cells on each page.
     std::vector<Index> covered(const CoarseLayout& layout) const {
-        const PageGrid grid = grid_of(layout);
-        std::vector<Index> cells(at(grid.pages()), 0);
-        for (std::size_t i = 0; i < poses_.size(); ++i) {
-            const pack::ChartCells& image = poses_[i][layout.spots[i].pose];
-            if (problem_.is_large[i] != 0)
-                grid.count(image, layout.spots[i], cells);
-            else
-                cells[at(page_of(grid, image, layout.spots[i]))] += image.count;
-        }
-        return cells;
+        std::vector<const pack::ChartCells*> images;
+        for (std::size_t i = 0; i < poses_.size(); ++i)
+            images.push_back(&poses_[i][layout.spots[i].pose]);
+        return grid_of(layout).cover(images, layout.spots).cells;
     }
 
     void keep(CoarseLayout layout) {
         layout.goal = goal_of(problem_, covered(layout), problem_.factor * problem_.cell);
-        found_.push_back(std::move(layout));
+        current_ = layout;
+        if (found_.empty() || layout.goal < goal())
+            found_.push_back(std::move(layout));
     }
 
     // Pieces on open pages, apart from each other.
@@ -203,7 +136,7 @@ private:
         const pack::ChartCells& closed = charts_.back().front();
         work_ -= static_cast<std::int64_t>(tuning.board_work * closed.width * closed.height);
         pack::Separation separation(charts_, ++seed_, progress);
-        separation.confine(windows_of(problem_, grid, is_open, closed, spot));
+        separation.confine(grid.windows(is_open, closed, spot));
         pack::Layout spots = layout.spots;
         spots.push_back(spot);
         const pack::Frame frame{grid.sheet().right + 1, grid.sheet().top + 1};
@@ -254,7 +187,7 @@ private:
 
     // A large piece jumps to where it needs few pages, or none does; and one page less is open.
     void close_some(const Progress& progress) {
-        CoarseLayout next = found_.back();
+        CoarseLayout next = current_;
         const auto count_open = [](const std::vector<Index>& cells) {
             return cells.size() -
                    static_cast<std::size_t>(std::count(cells.begin(), cells.end(), 0));
@@ -276,8 +209,10 @@ private:
         for (const std::size_t page : pages)
             is_open[page] = 1;
         for (std::size_t open = pages.size(); open > wanted; --open) {
-            // Mostly one of the emptiest.
-            const std::size_t k = std::min(random_() % pages.size(), random_() % pages.size());
+            // The emptiest, or mostly one of the emptiest.
+            const std::size_t k =
+                random_() % 2 == 0 ? 0
+                                   : std::min(random_() % pages.size(), random_() % pages.size());
             is_open[pages[k]] = 0;
             pages.erase(pages.begin() + static_cast<std::ptrdiff_t>(k));
         }
@@ -315,72 +250,8 @@ private:
     int attempt_ = 0;
     std::int64_t work_ = 0;
     std::vector<CoarseLayout> found_;
+    CoarseLayout current_; // with the fewest pages, almost empty ones or not
 };
-
-// The same layout in the problem's cells, where pieces turn and move a little.
-std::optional<PageLayout> refined(const PageProblem& problem,
-                                  const std::vector<pack::ChartPoses>& coarse,
-                                  const CoarseLayout& found, const Progress& progress) {
-    const PageGrid from(problem, found.columns, found.rows, found.singles, problem.factor);
-    const PageGrid grid(problem, found.columns, found.rows, found.singles, 1);
-    std::vector<std::uint8_t> is_open(at(grid.pages()), 0);
-    std::vector<pack::ChartPoses> charts;
-    pack::Layout spots;
-    std::vector<Index> cells(at(grid.pages()), 0);
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        progress.check();
-        const pack::ChartCells& image = coarse[i][found.spots[i].pose];
-        pack::Spot spot = found.spots[i];
-        if (problem.is_large[i] != 0) {
-            from.count(image, spot, cells);
-            spot.x *= problem.factor;
-            spot.y *= problem.factor;
-        } else {
-            const Index page = page_of(from, image, spot);
-            cells[at(page)] += 1;
-            spot.x = grid.clear(page).left + problem.factor * (spot.x - from.clear(page).left);
-            spot.y = grid.clear(page).bottom + problem.factor * (spot.y - from.clear(page).bottom);
-        }
-        const double angle = std::atan2(image.sine, image.cosine);
-        charts.emplace_back();
-        for (int k = -fine_turns; k <= fine_turns; ++k)
-            charts.back().push_back(k == 0 ? problem.poses[i][spot.pose].cells
-                                           : pack::rasterize(problem.outlines[i],
-                                                             angle + k * fine_turn, problem.cell,
-                                                             0.5 * piece_gap));
-        spot.pose = fine_turns;
-        spots.push_back(spot);
-    }
-    for (std::size_t page = 0; page < cells.size(); ++page)
-        is_open[page] = cells[page] > 0 ? 1 : 0;
-    pack::Spot spot;
-    charts.push_back({grid.closed(is_open, spot)});
-    spots.push_back(spot);
-    pack::Separation separation(charts, 1, progress);
-    separation.confine(windows_of(problem, grid, is_open, charts.back().front(), spot));
-    auto work = static_cast<std::int64_t>(tuning.fine_work);
-    if (!separation.run(spots, {grid.sheet().right + 1, grid.sheet().top + 1}, fine_moves, work))
-        return {};
-    PageLayout result{found.columns, found.rows, found.singles, {}, {}, {}};
-    for (std::size_t i = 0; i < coarse.size(); ++i) {
-        result.images.push_back(charts[i][spots[i].pose]);
-        result.spots.push_back(spots[i]);
-        result.page.push_back(
-            problem.is_large[i] != 0 ? -1 : page_of(grid, result.images.back(), spots[i]));
-    }
-    return result;
-}
-
-std::vector<Index> covered_by(const PageProblem& problem, const PageLayout& layout) {
-    const PageGrid grid(problem, layout.columns, layout.rows, layout.singles, 1);
-    std::vector<Index> cells(at(grid.pages()), 0);
-    for (std::size_t i = 0; i < layout.spots.size(); ++i)
-        if (layout.page[i] >= 0)
-            cells[at(layout.page[i])] += layout.images[i].count;
-        else
-            grid.count(layout.images[i], layout.spots[i], cells);
-    return cells;
-}
 
 } // namespace
 
@@ -438,7 +309,7 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
     std::stable_sort(found.begin(), found.end(), [](const CoarseLayout* a, const CoarseLayout* b) {
         return a->goal < b->goal;
     });
-    const Index first = goal_of(problem, covered_by(problem, best), problem.cell);
+    const Index first = goal_of(problem, best);
     for (const CoarseLayout* layout : found) {
         if (layout->goal >= first)
             break;

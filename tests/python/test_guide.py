@@ -19,6 +19,7 @@ import firefox
 import meshes
 from devseg import guide
 from devseg.cli import main
+from sewing import check_order, solids
 
 PAGE_LIMIT = 5_000_000  # bytes
 SCALE = 60.0  # mm for a unit
@@ -35,30 +36,6 @@ def flattened(pymeshlab: Any) -> Any:
     return ms
 
 
-def check_order(results: dict[str, Any], order: dict[str, Any], is_closed: bool) -> None:
-    """Sews step by step, knowing only which pieces each seam joins."""
-    sides = list(zip(results["seam_first_piece"], results["seam_second_piece"], strict=True))
-    part = {name: {name} for name in order["sections"]}
-    names = list(part)
-    open_seams = {opening["seam"] for opening in order["openings"]}
-    done: set[int] = set()
-    for step in order["steps"]:
-        assert step["seams"], "a step does nothing"
-        touched = set()
-        for seam in step["seams"]:
-            assert seam not in done or (step["kind"] == "close" and seam in open_seams)
-            done.add(seam)
-            a, b = (names[int(piece)] for piece in sides[seam - 1])
-            joined = part[a] | part[b]
-            for name in joined:
-                part[name] = joined
-            touched |= {a, b}
-        assert touched <= part[next(iter(touched))], "parts that share no seam are joined"
-    assert done == set(range(1, len(sides) + 1)), "seams are left"
-    closing = [step["step"] for step in order["steps"] if step["kind"] == "close"]
-    assert closing == ([len(order["steps"])] if is_closed else [])
-
-
 def test_order_of_a_ball_to_sew(flattened: Any, tmp_path: Path) -> None:
     results = flattened.apply_filter(
         "export_pattern",
@@ -68,7 +45,7 @@ def test_order_of_a_ball_to_sew(flattened: Any, tmp_path: Path) -> None:
         step_numbers=True,
     )
     order = guide.assembly(results)
-    check_order(results, order, is_closed=True)
+    assert check_order(results, order) == [set(order["sections"])]
     (opening,) = order["openings"]
     assert 40 <= opening["to_mm"] - opening["from_mm"] <= 80
     seam = results["opening_seam"][0]
@@ -111,7 +88,7 @@ def test_what_is_open_is_not_closed(meshset: Any, tmp_path: Path) -> None:
     path = str(tmp_path / "tube.svg")
     results = ms.apply_filter("export_pattern", output_file=path, mm_per_unit=SCALE)
     order = guide.assembly(results)
-    check_order(results, order, is_closed=bool(order["openings"]))
+    assert not order["openings"] and not check_order(results, order)
 
 
 def check_both_crafts(ms: Any, folder: Path) -> None:
@@ -119,7 +96,7 @@ def check_both_crafts(ms: Any, folder: Path) -> None:
     for preset in ("Sewing", "Papercraft"):
         results = ms.apply_filter("export_pattern", output_file=path, preset=preset, height_mm=300)
         order = guide.assembly(results)
-        check_order(results, order, is_closed=True)
+        assert check_order(results, order) == [set(order["sections"])]
         openings = [opening["to_mm"] - opening["from_mm"] for opening in order["openings"]]
         assert len(openings) == (preset == "Sewing")
         assert all(40 <= length <= 80 for length in openings)
@@ -131,6 +108,22 @@ def test_order_of_a_cube(meshset: Any, tmp_path: Path) -> None:
     ms.compute_seams_charts_to_disks_per_edge()
     ms.compute_texcoord_parametrization_charts_per_wedge()
     check_both_crafts(ms, tmp_path)
+
+
+def test_order_of_several_parts(meshset: Any, tmp_path: Path) -> None:
+    """Two cubes and a tube: the solids are closed, each once, and the tube is done first."""
+    tube = meshes.joined(meshes.cube(), meshes.cylinder(radius=1.0, height=3.0), (5.0, 0.0, 0.0))
+    ms = meshset(meshes.joined(tube, meshes.cube(), (10.0, 0.0, 0.0)))
+    assert solids(ms.current_mesh().vertex_matrix(), ms.current_mesh().face_matrix()) == (2, 3)
+    ms.compute_segmentation_variational_shape_approximation_per_face(charts_number=14)
+    ms.compute_seams_charts_to_disks_per_edge()
+    ms.compute_texcoord_parametrization_charts_per_wedge()
+    for preset in ("Sewing", "Papercraft"):
+        path = str(tmp_path / "parts.svg")
+        results = ms.apply_filter("export_pattern", output_file=path, preset=preset, height_mm=300)
+        order = guide.assembly(results)
+        assert len(check_order(results, order)) == 2
+        assert len(order["openings"]) == (2 if preset == "Sewing" else 0)
 
 
 @pytest.mark.parametrize("name", ["teddy_27648", "penguin_6720", "bunny_69451"])
@@ -301,6 +294,30 @@ def test_a_seam_shows_both_sides(opened: Any) -> None:
     wait_for(lambda: opened.execute_script("return model.seams[0].every(line => line.visible)"))
     about = opened.find_element("id", "about").text
     assert "Seam 1" in about and "mm" in about and "allowance 7 mm" in about
+
+
+def test_colours_of_strain_show_most_of_it(opened: Any) -> None:
+    percent, at_the_ends = opened.execute_script(
+        "const all = DATA.pieces.flatMap((p) => [...numbers(p.strain, Uint8Array)]);"
+        "return [100 * DATA.strain, all.filter((s) => s <= 1 || s >= 255).length / all.length]"
+    )
+    assert percent in (5, 10, 20, 50, 100) and at_the_ends < 0.2
+    colors = opened.find_element("id", "colors")
+    opened.execute_script(
+        "arguments[0].value = 'byStrain'; arguments[0].dispatchEvent(new Event('change'))", colors
+    )
+    legend = opened.find_element("id", "legend").text
+    assert f"compressed {percent:g} %" in legend and f"stretched {percent:g} %" in legend
+
+
+def test_page_numbers_lie_above_the_pieces(opened: Any) -> None:
+    assert opened.execute_script(
+        "const numbers = [...document.querySelectorAll('#paper .number')];"
+        "const pieces = [...document.querySelectorAll('#paper .outline')];"
+        "const above = Node.DOCUMENT_POSITION_FOLLOWING;"
+        "return numbers.length === DATA.pages.length && numbers.every((n) =>"
+        "  pieces.every((p) => p.compareDocumentPosition(n) & above))"
+    )
 
 
 def test_measuring_is_true(opened: Any) -> None:

@@ -53,13 +53,13 @@ public:
             plan_.openings = find_openings(pattern_, graph_, progress_);
         for (const Opening& opening : plan_.openings)
             waits_[at(opening.seam)] = opening.is_whole ? 1 : 0;
+        std::vector<Component> components = find_components();
+        for (Component& component : components)
+            choose_closing(component);
         for (Index p = 0; p < graph_.piece_count; ++p)
             add_darts(p);
-        std::vector<std::vector<Index>> components(at(graph_.component_count));
-        for (Index p = 0; p < graph_.piece_count; ++p)
-            components[at(graph_.component[at(p)])].push_back(p);
-        for (Index c = 0; c < graph_.component_count; ++c)
-            plan_component(c, std::move(components[at(c)]));
+        for (const Component& component : components)
+            plan_component(component);
         for (AssemblyStep& step : plan_.steps)
             if (step.kind == StepKind::dart)
                 step.section = plan_.section[at(step.pieces.front())];
@@ -67,6 +67,40 @@ public:
     }
 
 private:
+    // What hangs together.
+    struct Component {
+        Index number = 0; // in the graph
+        std::vector<Index> pieces;
+        // Of a closed solid to glue: its last piece, or the last seam where it is of one piece.
+        Index lid = -1;
+        Index last_seam = -1;
+    };
+
+    // Solids after what stays open: the last step of all closes one.
+    std::vector<Component> find_components() const {
+        std::vector<Component> components(at(graph_.component_count));
+        for (std::size_t c = 0; c < components.size(); ++c)
+            components[c].number = static_cast<Index>(c);
+        for (Index p = 0; p < graph_.piece_count; ++p)
+            components[at(graph_.component[at(p)])].pieces.push_back(p);
+        std::stable_partition(components.begin(), components.end(), [&](const Component& c) {
+            return graph_.is_closed[at(c.number)] == 0;
+        });
+        return components;
+    }
+
+    void choose_closing(Component& component) {
+        progress_.check();
+        if (craft_ != Craft::papercraft || graph_.is_closed[at(component.number)] == 0)
+            return;
+        component.lid = choose_lid(component.pieces);
+        if (component.lid >= 0)
+            return;
+        component.last_seam = longest_seam(component.number);
+        if (component.last_seam >= 0)
+            waits_[at(component.last_seam)] = 1;
+    }
+
     void add_step(StepKind kind, Index section, std::vector<Index> seams,
                   std::vector<Index> pieces) {
         plan_.steps.push_back({kind, section, std::move(seams), std::move(pieces)});
@@ -224,26 +258,25 @@ private:
         return best;
     }
 
-    void plan_component(Index component, std::vector<Index> pieces) {
+    void plan_component(const Component& component) {
         progress_.check();
-        const bool is_glued_shut = craft_ == Craft::papercraft && graph_.is_closed[at(component)];
-        const Index lid = is_glued_shut ? choose_lid(pieces) : -1;
-        const Index last_seam = is_glued_shut && lid < 0 ? longest_seam(component) : -1;
-        if (last_seam >= 0)
-            waits_[at(last_seam)] = 1;
-        pieces.erase(std::remove(pieces.begin(), pieces.end(), lid), pieces.end());
+        std::vector<Index> pieces = component.pieces;
+        pieces.erase(std::remove(pieces.begin(), pieces.end(), component.lid), pieces.end());
         attach_all(make_sections(pieces));
-        close(component, lid, last_seam, pieces);
+        close(component, pieces);
     }
 
+    // One that is no dart, if there is any.
     Index longest_seam(Index component) const {
         Index best = -1;
-        for (std::size_t s = 0; s < pattern_.seams.size(); ++s) {
-            const pattern::Seam& seam = pattern_.seams[s];
-            if (graph_.component[at(seam.sides[0].piece)] == component && plan_.seam_step[s] == 0 &&
-                (best < 0 || seam.sides[0].length > pattern_.seams[at(best)].sides[0].length))
-                best = static_cast<Index>(s);
-        }
+        const auto rank = [&](Index s) {
+            const pattern::Seam& seam = pattern_.seams[at(s)];
+            return std::pair(!seam.is_dart, seam.sides[0].length);
+        };
+        for (Index s = 0; s < static_cast<Index>(pattern_.seams.size()); ++s)
+            if (graph_.component[at(pattern_.seams[at(s)].sides[0].piece)] == component &&
+                (best < 0 || rank(s) > rank(best)))
+                best = s;
         return best;
     }
 
@@ -296,20 +329,20 @@ private:
         }
     }
 
-    void close(Index component, Index lid, Index last_seam, const std::vector<Index>& built) {
-        if (lid >= 0) {
+    void close(const Component& component, const std::vector<Index>& built) {
+        if (const Index lid = component.lid; lid >= 0) {
             plan_.section[at(lid)] = plan_.section_count++;
             const std::vector<Index> own = own_seams(lid);
             if (!own.empty())
                 add_step(StepKind::tube, plan_.section[at(lid)], own, {lid});
             add_step(StepKind::close, plan_.section[at(lid)], seams_between(built, {lid}), {lid});
-        } else if (last_seam >= 0) {
-            const Index piece = pattern_.seams[at(last_seam)].sides[0].piece;
-            add_step(StepKind::close, plan_.section[at(piece)], {last_seam}, {});
+        } else if (component.last_seam >= 0) {
+            const Index piece = pattern_.seams[at(component.last_seam)].sides[0].piece;
+            add_step(StepKind::close, plan_.section[at(piece)], {component.last_seam}, {});
         }
         for (const Opening& opening : plan_.openings) {
             const Index piece = pattern_.seams[at(opening.seam)].sides[0].piece;
-            if (graph_.component[at(piece)] == component)
+            if (graph_.component[at(piece)] == component.number)
                 add_step(StepKind::close, plan_.section[at(piece)], {opening.seam}, {});
         }
     }

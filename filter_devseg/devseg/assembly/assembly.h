@@ -2,7 +2,8 @@
 //
 // Pieces are grouped into sections, such as limbs (sections.h). Each section is made by itself, and
 // then joined to what is built. A closed solid that is sewn keeps an opening, to turn it and stuff
-// it, which the last step closes; one that is glued keeps a piece that fingers can reach behind.
+// it, which its last step closes; one that is glued keeps a piece that fingers can reach behind. A
+// model may be of several parts that share no seam: each is made by itself, what stays open first.
 #pragma once
 
 #include <string>
@@ -51,7 +52,9 @@ constexpr double least_opening = 40.0; // mm, for a hand with stuffing
 constexpr double most_opening = 80.0;
 
 /// Every seam is done in one step, and every step but the first of each section joins pieces that
-/// share a seam with what it is joined to. The same pattern gives the same order. Throws Cancelled.
+/// share a seam with what it is joined to. Each solid is closed once, by its own last step, and
+/// where there is a solid, the last step of all closes one. The same pattern gives the same order.
+/// Throws Cancelled.
 Assembly plan_assembly(const pattern::Pattern& pattern, Craft craft, const Progress& progress);
 
 /// "A", "B", …, "Z", "AA", …

@@ -3,6 +3,7 @@
 #include "devseg/assembly/assembly.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -73,6 +74,96 @@ std::string fault_of(const pattern::Pattern& pattern, const Assembly& plan) {
     if (done.size() != pattern.seams.size())
         return "seams are left";
     return "";
+}
+
+// What hangs together by seams, told by one of its pieces.
+std::vector<Index> parts_of(const pattern::Pattern& pattern) {
+    std::vector<Index> part(pattern.pieces.size());
+    std::iota(part.begin(), part.end(), Index{0});
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const pattern::Seam& seam : pattern.seams) {
+            Index& a = part[at(seam.sides[0].piece)];
+            Index& b = part[at(seam.sides[1].piece)];
+            changed = changed || a != b;
+            a = b = std::min(a, b);
+        }
+    }
+    return part;
+}
+
+// Whether each watertight part is closed once, by its own last step, and the last step of all
+// closes one. What is left open must be open until then.
+std::string closing_fault_of(const pattern::Pattern& pattern, const Assembly& plan) {
+    const std::vector<Index> part = parts_of(pattern);
+    std::set<Index> watertight(part.begin(), part.end());
+    for (const HalfEdge h : pattern.mesh.all_half_edges())
+        if (pattern.mesh.twin[h] < 0)
+            watertight.erase(part[at(pattern.face_piece[face_of(h)])]);
+    std::set<Index> done;
+    std::set<Index> closed;
+    for (const AssemblyStep& step : plan.steps) {
+        const Index here = part[at(pattern.seams[at(step.seams.front())].sides[0].piece)];
+        if (closed.count(here) > 0)
+            return "a solid is worked on after it was closed";
+        if (step.kind == StepKind::close) {
+            closed.insert(here);
+            for (const Index s : step.seams)
+                if (done.count(s) > 0 &&
+                    std::none_of(plan.openings.begin(), plan.openings.end(),
+                                 [&](const Opening& o) { return o.seam == s && !o.is_whole; }))
+                    return "nothing was left open";
+        }
+        done.insert(step.seams.begin(), step.seams.end());
+    }
+    if (closed != watertight)
+        return "closed are " + std::to_string(closed.size()) + " of " +
+               std::to_string(watertight.size()) + " solids";
+    if (!closed.empty() && plan.steps.back().kind != StepKind::close)
+        return "the last step closes nothing";
+    return "";
+}
+
+// Both side by side.
+mesh::RawMesh beside(mesh::RawMesh all, const mesh::RawMesh& more) {
+    const auto first = static_cast<Index>(all.points.size());
+    double right = 0.0;
+    for (const Vec3& p : all.points)
+        right = std::max(right, p.x());
+    for (const Vec3& p : more.points)
+        all.points.push_back(p + Vec3(right + 2.0, 0.0, 0.0));
+    for (const Triangle& t : more.faces)
+        all.faces.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return all;
+}
+
+TEST(Assembly, EachSolidIsClosedByItsOwnLastStep) {
+    const mesh::RawMesh parts =
+        beside(beside(beside(shapes::cube(3), shapes::cylinder_tube(12, 4)), shapes::sphere(2)),
+               shapes::hemisphere(12, 4));
+    for (const Craft craft : {Craft::sewing, Craft::papercraft})
+        for (const int charts : {4, 9, 16}) {
+            const pattern::Pattern pattern = pattern_of(parts, 200.0, charts);
+            Progress progress;
+            const Assembly plan = plan_assembly(pattern, craft, progress);
+            EXPECT_EQ(fault_of(pattern, plan), "") << charts;
+            EXPECT_EQ(closing_fault_of(pattern, plan), "") << charts;
+            EXPECT_EQ(std::count_if(
+                          plan.steps.begin(), plan.steps.end(),
+                          [](const AssemblyStep& step) { return step.kind == StepKind::close; }),
+                      2);
+        }
+}
+
+TEST(Assembly, ASolidOfOnePieceIsGluedShutInTheEnd) {
+    for (const auto& raw : {shapes::sphere(2), shapes::capped_cylinder(12, 4)}) {
+        const pattern::Pattern pattern = pattern_of(raw, 200.0, 1);
+        ASSERT_EQ(pattern.pieces.size(), 1U);
+        Progress progress;
+        const Assembly plan = plan_assembly(pattern, Craft::papercraft, progress);
+        EXPECT_EQ(fault_of(pattern, plan), "");
+        EXPECT_EQ(closing_fault_of(pattern, plan), "");
+    }
 }
 
 TEST(Assembly, EveryStepJoinsWhatSharesASeam) {
