@@ -31,7 +31,10 @@ struct Tuning {
     // The same where slits may be cut: the last ones hold whole charts still, one after another.
     int most_attempts = 40;
     double attempt_share = 0.12;   // of the progress that is left: how many follow is not known
-    double most_turn_inside = 0.5; // radians: a slit leads to vertices that lack or have more
+    double most_turn_inside = 0.5; // radians: a slit leads to vertices that lack more
+    // What saddles may have too much, over what others may lack, where slits did not do yet: slits
+    // to them cost parts.
+    double saddle_turn = 2.0;
     int most_focused_rounds = 25;
     double most_in_focus = 0.5; // share of the inner vertices
     double focus_share = 0.1;
@@ -263,10 +266,12 @@ private:
     void open_vertices() {
         std::vector<std::pair<double, Index>> opened;
         const Eigen::VectorXd& defects = projection_.defects();
-        for (Index r = 0; r < defects.size(); ++r)
-            if (std::abs(defects[r]) > tuning.most_turn_inside ||
-                attempt_.opened[at(rows_[r])] != 0)
+        for (Index r = 0; r < defects.size(); ++r) {
+            const double turn = std::max(
+                defects[r], -defects[r] / (attempt_.number > 0 ? tuning.saddle_turn : 1.0));
+            if (turn > tuning.most_turn_inside || attempt_.opened[at(rows_[r])] != 0)
                 opened.emplace_back(-std::abs(defects[r]), rows_[r]);
+        }
         std::sort(opened.begin(), opened.end());
         cut_to(opened, false);
     }

@@ -1,6 +1,7 @@
 #include "devseg/develop/moved_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/plane/overlap.h"
+#include "devseg/plane/plane.h"
 
 namespace devseg::develop {
 
@@ -27,6 +29,7 @@ constexpr Tuning tuning;
 // A run of edges on the border of a part, with one chart on the other side.
 struct Hinge {
     double length = 0.0;
+    double gap = 0.0; // between both sides before they are glued
     std::vector<HalfEdge> edges;
 };
 
@@ -116,6 +119,7 @@ private:
                     if (turn * length > options_.max_displacement * diagonal_)
                         break;
                     hinge.length = length;
+                    hinge.gap = turn * length;
                     hinge.edges.push_back(edge(i));
                 }
                 if (hinge.length >= least && hinge.length > best[at(other)].length)
@@ -131,24 +135,48 @@ private:
         return found;
     }
 
-    // Whether the development of the faces, hung on one edge, lies beside itself: so it is exact.
+    // Whether the exact development of the faces, hung on the middle edge of the hinge, lies beside
+    // itself, but for what gluing the rest of it takes away.
     bool has_room(const Hinge& hinge, const std::vector<Index>& faces) const {
         std::vector<std::uint8_t> seam = result_.charts.seam;
         const HalfEdge middle = hinge.edges[hinge.edges.size() / 2];
         seam[middle] = seam[now_.twin[middle]] = 0;
-        return lies_beside_itself(now_, atlas::extract_surface(now_, faces, seam));
+        flatten::FlatChart chart;
+        chart.surface = atlas::extract_surface(now_, faces, seam);
+        if (!develop(now_, chart))
+            return false;
+        std::vector<std::array<Vec2, 2>> lines;
+        for (const HalfEdge h : chart.surface.all_half_edges())
+            if (std::find(hinge.edges.begin(), hinge.edges.end(),
+                          chart.surface.mesh_half_edge(h)) != hinge.edges.end())
+                lines.push_back(
+                    {chart.uv[chart.surface.origin(h)], chart.uv[chart.surface.target(h)]});
+        const auto is_far = [&](Index f) {
+            const Triangle& t = chart.surface.faces[at(f)];
+            return std::all_of(t.begin(), t.end(), [&](Index v) {
+                return std::all_of(lines.begin(), lines.end(), [&](const auto& line) {
+                    return plane::distance(chart.uv[at(v)], line[0], line[1]) > hinge.gap;
+                });
+            });
+        };
+        const flatten::Pairs pairs = flatten::overlapping_pairs(
+            chart.surface, chart.uv, plane::layout_tolerance(std::sqrt(now_.model_area())));
+        return std::none_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+            return is_far(pair.first) || is_far(pair.second);
+        });
+    }
+
+    static bool develop(const Mesh& mesh, flatten::FlatChart& chart) {
+        return atlas::is_sound(mesh, chart.surface) &&
+               flatten::develop(mesh, flatten::make_flattening_problem(mesh, chart.surface), chart);
     }
 
     static bool lies_beside_itself(const Mesh& mesh, atlas::ChartSurface surface) {
         flatten::FlatChart chart;
         chart.surface = std::move(surface);
-        if (!atlas::is_sound(mesh, chart.surface))
-            return false;
-        const flatten::FlatteningProblem problem =
-            flatten::make_flattening_problem(mesh, chart.surface);
-        return flatten::develop(mesh, problem, chart) &&
+        return develop(mesh, chart) &&
                !flatten::overlaps_itself(chart.surface, chart.uv,
-                                         plane::layout_tolerance(problem.model_size));
+                                         plane::layout_tolerance(std::sqrt(mesh.model_area())));
     }
 
     bool glue(const Hinge& hinge, Index part, Index other, Progress& progress) {
