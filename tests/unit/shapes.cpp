@@ -183,6 +183,22 @@ mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer,
     return mesh;
 }
 
+mesh::RawMesh zigzag_fan(Index sectors, double angle, double inner, double outer, Index rows) {
+    const double turn = 0.9 * 2.0 * pi / sectors; // between rays, seen from above
+    // cos(angle) = cos²ψ cos(turn) − sin²ψ
+    const double c = (std::cos(angle) + 1.0) / (std::cos(turn) + 1.0);
+    const double psi = std::acos(std::sqrt(c));
+    mesh::RawMesh raw = grid(sectors, rows);
+    for (Vec3& p : raw.points) {
+        const int i = static_cast<int>(std::lround(p.x() * sectors));
+        const double r = inner + (outer - inner) * p.y();
+        const double up = i % 2 == 0 ? psi : -psi;
+        p = r * Vec3(std::cos(turn * i) * std::cos(up), -std::sin(turn * i) * std::cos(up),
+                     std::sin(up));
+    }
+    return raw;
+}
+
 mesh::RawMesh folded_strip(Index folds, Index rows, double angle) {
     mesh::RawMesh mesh = grid(folds, rows);
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();

@@ -48,6 +48,11 @@ mesh::RawMesh plate_with_handle();
 /// where it makes more than one turn.
 mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise);
 
+/// Rays from the origin in a zigzag, each at the same angle (radians) from the last: a folded ring
+/// sector of so many sectors, which may be more than a full turn in the plane. Points run along
+/// rows of sectors + 1.
+mesh::RawMesh zigzag_fan(Index sectors, double angle, double inner, double outer, Index rows);
+
 /// A strip of paper, folded by the same angle (radians) along rulings whose direction varies: a
 /// tangent developable, built from its development.
 mesh::RawMesh folded_strip(Index folds, Index rows, double angle);

@@ -10,13 +10,10 @@ namespace devseg::develop {
 namespace {
 
 struct Tuning {
-    double held_back = 0.2; // factor of the ease of points that went wrong
-    // Factors of the largest defect inside, where all moved too far: by how much, within bounds.
-    double least_finer = 0.6;
-    double most_finer = 0.9;
+    double held_back = 0.2;        // factor of the ease of points that went wrong
     double relieved_defect = 0.15; // radians: what is opened around a fault at first
-    int widening = 2;              // attempts after which faults reach one ring farther
-    int still = 6;                 // attempt in which the faults' charts stop to move
+    int widening = 2;              // faulty attempts after which faults reach one ring farther
+    int still = 6;                 // faulty attempt in which the faults' charts stop to move
 };
 constexpr Tuning tuning;
 
@@ -81,6 +78,47 @@ Marks whole_charts(const Mesh& mesh, const atlas::ChartMap& charts, const Marks&
     return all;
 }
 
+// Opens the inner vertex that moved farthest of each chart that moved farther than it may in the
+// mean; of all where these have none. Returns whether there was any.
+bool open_farthest(const Mesh& mesh, const DeformOptions& options, const DeformResult& result,
+                   Attempt& attempt) {
+    const double most = options.max_mean_displacement * diagonal_of(mesh.points);
+    std::vector<double> moved(mesh.points.size());
+    for (std::size_t v = 0; v < moved.size(); ++v)
+        moved[v] = (result.points[v] - mesh.points[v]).norm();
+    std::vector<double> sum(at(result.charts.count), 0.0);
+    std::vector<double> corners(sum.size(), 0.0);
+    std::vector<Index> chart(moved.size(), -1);
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        const Index c = result.charts.chart[face_of(h)];
+        chart[mesh.origin(h)] = c;
+        sum[at(c)] += moved[mesh.origin(h)];
+        corners[at(c)] += 1.0;
+    }
+    const std::vector<Index> inner = inner_vertices(mesh, result.charts.seam);
+    std::vector<Index> farthest(sum.size(), -1);
+    Index of_all = -1;
+    const auto take = [&](Index v, Index& best) {
+        if (attempt.opened[at(v)] == 0 && (best < 0 || moved[at(v)] > moved[at(best)]))
+            best = v;
+    };
+    for (const Index v : inner) {
+        const std::size_t c = at(chart[at(v)]);
+        take(v, of_all);
+        if (sum[c] > most * corners[c])
+            take(v, farthest[c]);
+    }
+    bool any = false;
+    for (const Index v : farthest)
+        if (v >= 0) {
+            attempt.opened[at(v)] = 1;
+            any = true;
+        }
+    if (!any && of_all >= 0)
+        attempt.opened[at(of_all)] = 1;
+    return any || of_all >= 0;
+}
+
 } // namespace
 
 double diagonal_of(const std::vector<Vec3>& points) {
@@ -93,16 +131,17 @@ double diagonal_of(const std::vector<Vec3>& points) {
 bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOptions& options,
            const DeformResult& result, const Crossings& crossings, Attempt& attempt) {
     const Faults faults = find_faults(mesh, options, result, crossings);
-    const int number = attempt.number++;
+    const int number = attempt.faulty;
+    ++attempt.number;
     for (std::size_t v = 0; v < faults.moved.size(); ++v)
         if (faults.moved[v] != 0)
             attempt.ease[at(point_of[v])] =
                 std::min(attempt.ease[at(point_of[v])], std::pow(tuning.held_back, number + 1));
+    if (!options.adjust_slits || faults.any_stuck || faults.any_moved)
+        ++attempt.faulty;
     if (!options.adjust_slits)
         return faults.any_moved;
-    if (faults.mean_share > 1.0)
-        attempt.most_turn_inside *=
-            std::clamp(std::sqrt(1.0 / faults.mean_share), tuning.least_finer, tuning.most_finer);
+    const bool opened = faults.mean_share > 1.0 && open_farthest(mesh, options, result, attempt);
     Marks around = faults.moved;
     for (std::size_t v = 0; v < around.size(); ++v) {
         around[v] |= faults.stuck[v];
@@ -124,7 +163,7 @@ bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOpt
                 attempt.ease[at(point_of[v])] = 0.0;
             }
     }
-    return faults.any_stuck || faults.any_moved || faults.mean_share > 1.0;
+    return faults.any_stuck || faults.any_moved || opened;
 }
 
 } // namespace devseg::develop

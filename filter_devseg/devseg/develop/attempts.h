@@ -14,8 +14,8 @@ namespace devseg::develop {
 struct Attempt {
     std::vector<double> ease;         // by point, 0 to 1: how easily it moves
     std::vector<std::uint8_t> opened; // #V: 1 where a slit is to lead to
-    double most_turn_inside = 0.5;    // radians: a slit leads to vertices that lack more
     int number = 0;
+    int faulty = 0; // of them: with faults at places
 };
 
 /// Pairs of faces that cross after a deformation and did not before.
@@ -25,8 +25,10 @@ using Crossings = std::vector<std::pair<Index, Index>>;
 /// the tolerance, crossings, vertices that moved too far. Where slits may be cut (`adjust_slits`),
 /// vertices there are opened, farther around and with smaller defects each time, and in the end the
 /// charts that are concerned are opened at all vertices with defects and do not move at all: they
-/// are developable then. So this ends. Returns false where nothing is wrong, or nothing can be
-/// done.
+/// are developable then. So this ends. Where all moved too far in the mean, every chart that did
+/// gets a slit to the vertex that moved farthest: how much a surface has to give up does not show
+/// in the angles of its vertices, which are as small as its faces are. Returns false where nothing
+/// is wrong, or nothing can be done.
 bool learn(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOptions& options,
            const DeformResult& result, const Crossings& crossings, Attempt& attempt);
 

@@ -30,9 +30,11 @@ struct Tuning {
     int attempts = 3;       // at a surface that does not run through itself, with given slits
     // The same where slits may be cut: the last ones hold whole charts still, one after another.
     int most_attempts = 40;
-    double attempt_share = 0.12; // of the progress that is left: how many follow is not known
-    double saddle_turn = 2.0; // what saddles may have too much, over what others may lack: slits to
-                              // them cost parts
+    double attempt_share = 0.12;   // of the progress that is left: how many follow is not known
+    double most_turn_inside = 0.5; // radians: a slit leads to vertices that lack more
+    // What saddles may have too much, over what others may lack, where slits did not do yet: slits
+    // to them cost parts.
+    double saddle_turn = 2.0;
     int most_focused_rounds = 25;
     double most_in_focus = 0.5; // share of the inner vertices
     double focus_share = 0.1;
@@ -96,7 +98,7 @@ private:
         while (options_.adjust_slits && projection_.residual() <= options_.tolerance &&
                effort_ < options_.max_iterations && close_tips([&](Vertex v, double defect) {
                    return kept_open_[v] == 0 && defect < -options_.tolerance &&
-                          defect >= -attempt_.most_turn_inside;
+                          defect >= -tuning.most_turn_inside;
                }));
     }
 
@@ -267,7 +269,7 @@ private:
         for (Index r = 0; r < defects.size(); ++r) {
             const double turn = std::max(
                 defects[r], -defects[r] / (attempt_.number > 0 ? tuning.saddle_turn : 1.0));
-            if (turn > attempt_.most_turn_inside || attempt_.opened[at(rows_[r])] != 0)
+            if (turn > tuning.most_turn_inside || attempt_.opened[at(rows_[r])] != 0)
                 opened.emplace_back(-std::abs(defects[r]), rows_[r]);
         }
         std::sort(opened.begin(), opened.end());

@@ -46,6 +46,7 @@ struct DeformResult {
     Index inner_vertices = 0;
     Index added_slits = 0;
     Index closed_edges = 0;            // of slits
+    Index moved_parts = 0;             // that went to other charts (moved_parts.h)
     Index new_intersections = 0;       // pairs of faces that intersect and did not before
     double largest_displacement = 0.0; // internal units
     double mean_displacement = 0.0;

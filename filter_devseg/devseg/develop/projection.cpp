@@ -15,6 +15,8 @@ struct Tuning {
     int chords = 4;           // steps with one factorization
     double free_defect = 0.1; // radians that a defect may grow to in a step
     double least_damping = 1e-13;
+    double least_gain = 0.2; // share of the way that is left to go, for a full step
+    double faster = 0.05;    // factor of a damping that is needed no more
 };
 constexpr Tuning tuning;
 
@@ -204,7 +206,7 @@ bool Projection::chord_steps() {
             const Eigen::VectorXd after = guarded(step, true, moved);
             Eigen::VectorXd next = solver_.solve(after);
             const double left = after.dot(next);
-            if (left < size * (1.0 - 0.2 * share)) {
+            if (left < size * (1.0 - tuning.least_gain * share)) {
                 gain = left / size;
                 fast_ = fast_ || (share == 1.0 && gain < 0.1);
                 taken = share;
@@ -220,19 +222,36 @@ bool Projection::chord_steps() {
         }
     }
     if (taken >= 0.5)
-        damping_ = std::max(tuning.least_damping, damping_ * (fast_ ? 0.05 : 0.3));
+        damping_ = std::max(tuning.least_damping, damping_ * (fast_ ? tuning.faster : 0.3));
     return taken > 0.0;
 }
 
-bool Projection::step() {
-    constraints_.linearise(points_);
+bool Projection::factorize() {
     const Normal& matrix = constraints_.normal_matrix(
         mobility_, Eigen::VectorXd::Constant(constraints_.count(), damping_));
     if (!analysed_)
         solver_.analyzePattern(matrix);
     analysed_ = true;
     solver_.factorize(matrix);
-    const bool done = solver_.info() == Eigen::Success && chord_steps();
+    return solver_.info() == Eigen::Success;
+}
+
+// Whether a step could not gain enough even if all were linear: damping holds smooth defects, as
+// those of a fine sphere, where they are.
+bool Projection::is_held() const {
+    const Eigen::VectorXd lambda = solver_.solve(defects_);
+    const double left = damping_ * damping_ * lambda.dot(solver_.solve(lambda));
+    return left > (1.0 - tuning.least_gain) * defects_.dot(lambda);
+}
+
+bool Projection::step() {
+    constraints_.linearise(points_);
+    bool solved = factorize();
+    while (solved && damping_ > tuning.least_damping && is_held()) {
+        damping_ *= tuning.faster;
+        solved = factorize();
+    }
+    const bool done = solved && chord_steps();
     if (!done)
         damping_ *= 8.0;
     return done;

@@ -50,6 +50,8 @@ private:
                    const std::vector<std::uint8_t>& changed, std::vector<std::uint8_t>& bad) const;
     bool face_spoilt(std::size_t f, const Field& moved) const;
     bool edge_folded(std::size_t e, const Field& moved) const;
+    bool factorize();
+    bool is_held() const;
     bool chord_steps();
 
     const Mesh* mesh_ = nullptr;

@@ -4,6 +4,7 @@
 #include "devseg/atlas/disks.h"
 #include "devseg/declare/declare.h"
 #include "devseg/develop/deform.h"
+#include "devseg/develop/moved_parts.h"
 
 namespace devseg::filters {
 
@@ -49,15 +50,19 @@ FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& 
                         Progress& progress) {
     auto cutting = progress.part("cutting charts to disks", 0.02);
     const atlas::DiskCuts cuts = cut_for_paper(input.mesh, find_charts(input), cutting);
-    auto deforming = progress.part(0.96);
-    develop::DeformResult result = develop::deform_to_developable(
-        input.mesh, cuts.charts, shared_points(input.source_vertex), options, deforming);
+    auto deforming = progress.part(0.7);
+    const std::vector<Index> points = shared_points(input.source_vertex);
+    develop::DeformResult result =
+        develop::deform_to_developable(input.mesh, cuts.charts, points, options, deforming);
     // What was moved beside a hole may have opened it.
     Mesh moved = input.mesh;
     moved.points = result.points;
     mesh::compute_face_geometry(moved);
     auto opening = progress.part("cutting charts to disks", 0.02);
     result.charts = cut_for_paper(moved, result.charts, opening).charts;
+    auto moving = progress.part(progress.left());
+    if (options.adjust_slits && result.converged)
+        develop::move_parts(input.mesh, points, options, result, moving);
     FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {
@@ -71,6 +76,7 @@ FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& 
         {"mean_displacement", result.mean_displacement * unit},
         {"added_slits_number", result.added_slits},
         {"closed_edges_number", result.closed_edges},
+        {"moved_parts_number", result.moved_parts},
         {"added_intersections_number", result.new_intersections},
     };
     if (cuts.cut_charts > 0)
@@ -122,6 +128,8 @@ std::vector<FilterDeclaration> deformation_filters() {
             .result("mean_displacement", "over all vertices, model units")
             .result("added_slits_number", "slits that were cut")
             .result("closed_edges_number", "edges of slits that were closed")
+            .result("moved_parts_number",
+                    "parts that lay on others of their chart and went to another one")
             .result("added_intersections_number",
                     "pairs of faces that run through each other and did not before")
             .runs(run_deform)};
