@@ -10,6 +10,7 @@
 #include "devseg/base/errors.h"
 #include "devseg/graph/unions.h"
 #include "devseg/mesh/coherent_faces.h"
+#include "devseg/mesh/empty_edges.h"
 #include "devseg/mesh/empty_parts.h"
 #include "devseg/mesh/inside_out.h"
 #include "devseg/mesh/weld.h"
@@ -247,7 +248,8 @@ Index count_cut_edges(const GatedMesh& gated) {
 
 // What was worked around, as numbers.
 struct Found {
-    Index joined = 0; // vertices that there are less
+    Index joined = 0;         // vertices that there are less
+    Index drawn_together = 0; // and those less that edges without length joined
     Index repeated = 0;
     Index duplicates = 0;
     Index without_area = 0; // faces of parts without area
@@ -268,6 +270,9 @@ std::vector<std::string> notes_of(const Found& found, const GateOptions& options
          std::string(" joined with others ") +
              (options.weld > 0.0 ? "nearby" : "at the same place") +
              ", as that closes open edges ('Merge Close Vertices' does it for good)");
+    note(found.drawn_together, "vertex was", "vertices were",
+         " joined with others at the same place, as edges without length lead there ('Merge Close "
+         "Vertices' does it for good)");
     note(found.repeated, "face repeats a vertex and was", "faces repeat a vertex and were",
          " left out ('Remove Zero Area Faces' drops such faces)");
     note(found.duplicates, "face lies on the vertices of another one and was",
@@ -350,6 +355,9 @@ GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progre
     std::vector<Triangle> faces = raw.faces;
     progress.check();
     const Index welded = options.weld >= 0.0 ? weld_soup(mesh.points, tolerance, faces) : 0;
+    progress.check();
+    if (options.weld >= 0.0)
+        found.drawn_together = join_ends_of_empty_edges(mesh.points, faces);
     progress.check();
     FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
     found.repeated = selection.repeated;

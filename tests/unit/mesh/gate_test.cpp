@@ -155,7 +155,7 @@ TEST(Gate, PartsWithoutAreaAreLeftOut) {
     raw.faces.insert(raw.faces.begin(), Triangle{6, 7, 8});
     raw.faces.push_back({9, 10, 11});
     raw.faces.push_back({12, 13, 14});
-    const GatedMesh gated = gate_mesh(raw);
+    const GatedMesh gated = gate_mesh(raw, {-1.0, false});
     EXPECT_TRUE(is_valid(gated.mesh));
     EXPECT_EQ(gated.source_face, (std::vector<Index>{1, 2, 3, 4, 6}));
     EXPECT_EQ(gated.mesh.vertex_count(), 9);
@@ -316,7 +316,7 @@ TEST(Gate, RandomSoupsBecomeManifold) {
 TEST(Gate, FacesWithoutAreaTakeTheNormalOfTheirNeighbours) {
     RawMesh raw = shapes::grid(2, 2);
     raw.points[4] = raw.points[3]; // the middle vertex onto one at the side: two faces lose all
-    const Mesh mesh = checks::gated(raw);
+    const Mesh mesh = gate_mesh(raw, {-1.0, false}).mesh; // else it becomes the one at the side
     Index without_area = 0;
     for (const Face f : mesh.all_faces()) {
         without_area += mesh.face_areas[f] > 0.0 ? 0 : 1;
