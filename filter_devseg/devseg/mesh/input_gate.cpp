@@ -13,6 +13,7 @@
 #include "devseg/mesh/empty_edges.h"
 #include "devseg/mesh/empty_parts.h"
 #include "devseg/mesh/inside_out.h"
+#include "devseg/mesh/stand_ins.h"
 #include "devseg/mesh/weld.h"
 
 namespace devseg::mesh {
@@ -208,33 +209,6 @@ void drop_unused_points(Mesh& mesh, std::vector<Index>& source_vertex) {
             v = renamed[v];
 }
 
-// Source faces that were left out take the results of a face on the same vertices, or of a face
-// that shares an edge or a vertex with them.
-void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count,
-                    const std::vector<Index>& duplicate_of, GatedMesh& gated) {
-    gated.stand_in.assign(faces.size(), -1);
-    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        gated.stand_in[gated.source_face[f]] = static_cast<Index>(f);
-    if (gated.source_face.size() == faces.size())
-        return;
-    std::vector<Index> face_at_vertex(vertex_count, -1);
-    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        for (const Vertex v : faces[gated.source_face[f]])
-            face_at_vertex[v] = static_cast<Index>(f);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        Index& stand_in = gated.stand_in[f];
-        if (stand_in >= 0)
-            continue;
-        if (duplicate_of[f] >= 0)
-            stand_in = gated.stand_in[duplicate_of[f]];
-        for (const Vertex v : faces[f])
-            if (stand_in < 0)
-                stand_in = face_at_vertex[v];
-        if (stand_in < 0)
-            stand_in = 0;
-    }
-}
-
 // Edges that had to be cut.
 Index count_cut_edges(const GatedMesh& gated) {
     std::vector<std::pair<Index, Index>> edges;
@@ -338,6 +312,13 @@ void connect(bool is_soup, const GateOptions& options, double tolerance, GatedMe
 
 } // namespace
 
+const CollapsedFace* GatedMesh::find_collapsed(Index source) const {
+    const auto found =
+        std::lower_bound(collapsed.begin(), collapsed.end(), source,
+                         [](const CollapsedFace& c, Index face) { return c.source < face; });
+    return found != collapsed.end() && found->source == source ? &*found : nullptr;
+}
+
 GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progress& progress) {
     require_faces(raw);
     require_valid_indices(raw);
@@ -383,7 +364,7 @@ GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progre
                           counted(static_cast<Index>(raw.faces.size()), "face", "faces") +
                           " without any area; there is nothing to segment");
     progress.check();
-    find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
+    find_stand_ins({raw.faces, faces, selection.duplicate_of}, raw.points.size(), gated);
     gated.notes = notes_of(found, options);
     return gated;
 }
