@@ -33,8 +33,8 @@ std::vector<Index> read_chart_id(const HostMesh& host, const mesh::GatedMesh& ga
     return labels;
 }
 
-// Marks of half-edges and their twins (3 #F), from the bits of the host's faces, those that lie on an
-// edge of others included.
+// Marks of half-edges and their twins (3 #F), from the bits of the host's faces, those that lie on
+// an edge of others included.
 template <class Bits>
 std::vector<std::uint8_t> of_edges(const mesh::GatedMesh& gated, Bits bits) {
     const Mesh& mesh = gated.mesh;

@@ -21,12 +21,12 @@ struct RawMesh {
 /// an edge of the mesh, or at a vertex.
 struct CollapsedFace {
     Index source = -1;
-    std::array<HalfEdge, 3> at;         // of its corners: leaves the same vertex, in the stand-in
-    std::array<HalfEdge, 3> on;         // of its edges: on the same edge of the mesh
-    std::array<HalfEdge, 3> beside;     // of its edges: shares the source's edge with it
+    std::array<HalfEdge, 3> at;     // of its corners: leaves the same vertex, in the stand-in
+    std::array<HalfEdge, 3> on;     // of its edges: on the same edge of the mesh
+    std::array<HalfEdge, 3> beside; // of its edges: shares the source's edge with it
     std::array<Index, 3> next{-1, -1, -1}; // of its edges: place of the collapsed face that shares
                                            // it, where no face of the mesh does
-}; // −1 where there is none
+};                                         // −1 where there is none
 
 /// The checked mesh with the way back to the host's faces ("source faces").
 ///
@@ -47,7 +47,7 @@ struct GatedMesh {
     std::vector<std::uint8_t> cut;     // 3 #F: 1 on half-edges whose edge the gate had to cut
     std::vector<Index> stand_in; // #source faces: the face whose results it takes, −1 = none
     std::vector<CollapsedFace> collapsed; // by source face
-    std::vector<std::string> notes; // what was worked around, one sentence each
+    std::vector<std::string> notes;       // what was worked around, one sentence each
 
     /// Source corner of corner k of face f; a turned face swaps its last two corners.
     Index source_corner(Face f, Index k) const { return flipped[f] != 0 && k != 0 ? 3 - k : k; }

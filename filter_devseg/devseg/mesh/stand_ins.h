@@ -9,9 +9,9 @@ namespace devseg::mesh {
 
 /// All source faces.
 struct SourceFaces {
-    const std::vector<Triangle>& given;       // with the host's vertices
-    const std::vector<Triangle>& joined;      // with those that stand for others
-    const std::vector<Index>& duplicate_of;   // the earlier face on the same vertices, or −1
+    const std::vector<Triangle>& given;     // with the host's vertices
+    const std::vector<Triangle>& joined;    // with those that stand for others
+    const std::vector<Index>& duplicate_of; // the earlier face on the same vertices, or −1
 };
 
 /// Fills `stand_in` and `collapsed`. A face that was left out takes the results of the face that it

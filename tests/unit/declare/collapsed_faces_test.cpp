@@ -14,8 +14,8 @@ namespace {
 using checks::run;
 using checks::value;
 
-// A bent plate on which rows of vertices lie at the place of their neighbours: faces without area in
-// chains, between others and at the border.
+// A bent plate on which rows of vertices lie at the place of their neighbours: faces without area
+// in chains, between others and at the border.
 mesh::RawMesh creased_plate() {
     mesh::RawMesh raw = shapes::with_noise(shapes::grid(12, 12), 0.01, 3);
     for (Vec3& p : raw.points)
@@ -47,8 +47,8 @@ TEST(CollapsedFaces, AgreeWithTheirNeighboursAndHaveAnArea) {
             raw = shapes::with_random_orientations(raw, 3);
         ASSERT_GE(flat_faces(raw).size(), 12U);
         HostMesh host = checks::host_of(raw);
-        const HostResult charts = run("Segmentation: Variational Shape Approximation", host,
-                                      {{"charts_number", 9}});
+        const HostResult charts =
+            run("Segmentation: Variational Shape Approximation", host, {{"charts_number", 9}});
         checks::expect_agreement(raw, charts);
         checks::take_charts(host, charts);
         const HostResult flat = run("Charts: Flatten", host);
@@ -82,9 +82,8 @@ TEST(CollapsedFaces, HangTogetherWithTheirNeighboursInThePlane) {
 TEST(CollapsedFaces, SeamsBetweenThemAreReadWhateverIsJoined) {
     const mesh::RawMesh raw = creased_plate();
     HostMesh host = checks::host_of(raw);
-    const HostResult apart =
-        run("Segmentation: Variational Shape Approximation", host,
-            {{"charts_number", 9}, {"weld", -1.0}});
+    const HostResult apart = run("Segmentation: Variational Shape Approximation", host,
+                                 {{"charts_number", 9}, {"weld", -1.0}});
     checks::expect_agreement(raw, apart);
     checks::take_charts(host, apart);
     const HostResult read = run("Charts: Cut to Disks", host);
@@ -98,9 +97,9 @@ TEST(CollapsedFaces, SeamsBetweenThemAreReadWhateverIsJoined) {
         host.seam_edges[f] = 7.0;
         double longest = 0.0;
         for (std::size_t k = 0; k < 3; ++k)
-            longest = std::max(longest, (raw.points[raw.faces[f][k]] -
-                                         raw.points[raw.faces[f][(k + 1) % 3]])
-                                            .norm());
+            longest = std::max(
+                longest,
+                (raw.points[raw.faces[f][k]] - raw.points[raw.faces[f][(k + 1) % 3]]).norm());
         EXPECT_NEAR(value(run("Charts: Measure Segmentation", host), "seam_length"), longest, 1e-9)
             << f;
     }
