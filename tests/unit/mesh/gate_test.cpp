@@ -167,6 +167,20 @@ TEST(Gate, PartsWithoutAreaAreLeftOut) {
     EXPECT_EQ(gate_mesh(raw, {-1.0, false}).mesh.faces.size(), raw.faces.size());
 }
 
+// Both sides of a needle are counted once: faces laid out beside each other are twice as wide.
+TEST(Gate, ClosedPartsAreAsNarrowAsTheyAre) {
+    const auto with_needle = [](double width) {
+        RawMesh raw = shapes::grid(2, 1);
+        raw.points.insert(raw.points.end(),
+                          {{5, 0, 0}, {6, 0, 0}, {5.3, width, 0}, {5.7, 0, width}});
+        raw.faces.insert(raw.faces.end(), {{6, 8, 7}, {6, 7, 9}, {6, 9, 8}, {7, 8, 9}});
+        return gate_mesh(raw).mesh.face_count();
+    };
+    const double size = 6.0;
+    EXPECT_EQ(with_needle(1.1e-6 * size), 4);
+    EXPECT_EQ(with_needle(4.4e-6 * size), 8);
+}
+
 TEST(Gate, EdgesWithThreeFacesAreCut) {
     const RawMesh fins = {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                           {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}};
