@@ -11,15 +11,6 @@ int edge_bits(double value) {
     return value >= 0.0 && value <= 7.0 ? static_cast<int>(std::lround(value)) : 0;
 }
 
-std::vector<std::uint8_t> beside_collapsed(const mesh::GatedMesh& gated) {
-    std::vector<std::uint8_t> marks(gated.mesh.twin.size(), 0);
-    for (const mesh::CollapsedFace& face : gated.collapsed)
-        for (const HalfEdge h : face.beside)
-            if (h >= 0)
-                marks[h] = 1;
-    return marks;
-}
-
 void set_collapsed_seams(const mesh::GatedMesh& gated, const HostMesh& host,
                          const std::vector<std::uint8_t>& cut, HostResult& result) {
     const auto stays = [&](Index source) {

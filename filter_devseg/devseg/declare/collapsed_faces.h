@@ -12,10 +12,6 @@ namespace devseg::declare {
 /// What is written where a host keeps bits 1, 2, 4.
 int edge_bits(double value);
 
-/// 1 for half-edges (3 #F) on whose edge of the source a collapsed face lies: what is across them
-/// in the mesh is not across them in the host.
-std::vector<std::uint8_t> beside_collapsed(const mesh::GatedMesh& gated);
-
 /// Seams of the collapsed faces, once those of all others are there: as their neighbours say, and
 /// between two of them where their charts differ. `cut` (3 #F) has the others' by half-edges. Those
 /// of faces that stay are what they were, but to faces that do not.

@@ -1,5 +1,6 @@
 #include "devseg/declare/filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -159,14 +160,25 @@ int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, const
     return bits;
 }
 
-// Bits of the edges of an untouched face that lie beside others. Collapsed faces between them stay
-// with the untouched.
-int bits_to_touched(const mesh::GatedMesh& gated, const std::vector<std::uint8_t>& untouched,
-                    const std::vector<std::uint8_t>& beside_collapsed, Face f) {
+// Whether the faces on both sides share the edge in the host as well: not where the gate has joined
+// vertices, and a collapsed face may lie between.
+bool is_shared(const HostMesh& host, const mesh::GatedMesh& gated, HalfEdge h) {
+    const auto ends = [&](HalfEdge side) {
+        const Face f = face_of(side);
+        const Triangle& corners = host.geometry.faces[gated.source_face[f]];
+        const Index e = gated.source_edge(f, corner_of(side));
+        return std::minmax({corners[at(e)], corners[at((e + 1) % 3)]});
+    };
+    return ends(h) == ends(gated.mesh.twin[h]);
+}
+
+// Bits of the edges of an untouched face that lie beside others.
+int bits_to_touched(const HostMesh& host, const mesh::GatedMesh& gated,
+                    const std::vector<std::uint8_t>& untouched, Face f) {
     int bits = 0;
     for (const HalfEdge h : half_edges_of(f))
         if (const Face g = gated.mesh.across(h);
-            g >= 0 && untouched[g] == 0 && beside_collapsed[h] == 0)
+            g >= 0 && untouched[g] == 0 && is_shared(host, gated, h))
             bits |= 1 << gated.source_edge(f, corner_of(h));
     return bits;
 }
@@ -218,7 +230,7 @@ public:
     MapBack(const HostMesh& host, const mesh::GatedMesh& gated, const FilterOutput& output,
             HostResult& result)
         : host_(host), gated_(gated), output_(output), result_(result),
-          beside_collapsed_(declare::beside_collapsed(gated)), cut_(gated.mesh.twin.size(), 0) {
+          cut_(gated.mesh.twin.size(), 0) {
         if (output.uv)
             collapsed_corners_.emplace(gated, *output.uv);
     }
@@ -253,9 +265,7 @@ private:
         int bits = f.own ? seam_bits(gated_, *output_.charts, f) : 0;
         if (stays && !host_.seam_edges.empty()) // and its edges to faces that have changed
             bits = edge_bits(host_.seam_edges[source]) |
-                   (f.own ? bits & bits_to_touched(gated_, output_.untouched, beside_collapsed_,
-                                                   f.gated)
-                          : 0);
+                   (f.own ? bits & bits_to_touched(host_, gated_, output_.untouched, f.gated) : 0);
         result_.seam_edges.push_back(bits);
         for (Index e = 0; f.own && e < 3; ++e) {
             const Index edge = f.part != nullptr ? mesh::old_edge(*f.part, e) : e;
@@ -280,8 +290,7 @@ private:
     const mesh::GatedMesh& gated_;
     const FilterOutput& output_;
     HostResult& result_;
-    std::vector<std::uint8_t> beside_collapsed_; // 3 #F
-    std::vector<std::uint8_t> cut_;              // 3 #F: seams as the host's faces have them
+    std::vector<std::uint8_t> cut_; // 3 #F: seams as the host's faces have them
     std::optional<CollapsedCorners> collapsed_corners_;
 };
 
