@@ -271,8 +271,10 @@ def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[
     with progress.stage("flatten"):
         method, effort = FLATTENINGS[options.flatten], EFFORTS[options.effort]
         flat = session.apply(FLATTEN_FILTER, method=method, effort=effort, **kept)
-        if flat["overlap_cuts_number"]:
-            session.call(COLOR_FILTER)  # charts came apart, and parts are at others now
+        # Faces were split, whose parts are in other charts; or charts came apart, and parts are at
+        # others now.
+        if options.smooth_seams or flat["overlap_cuts_number"]:
+            session.call(COLOR_FILTER)
     with progress.stage("measure"):
         return {
             "segmentation": session.apply(SEGMENTATION_MEASURES),

@@ -76,8 +76,8 @@ struct Gated {
     std::vector<std::array<Vec2, 3>> uv; // #F, corners in the order of the gated face
 };
 
-Gated behind_gate(const mesh::RawMesh& raw, const declare::HostResult& result) {
-    Gated gated{mesh::gate_mesh(raw), {}, {}};
+Gated behind_gate(const mesh::RawMesh& raw, const declare::HostResult& result, double weld) {
+    Gated gated{mesh::gate_mesh(raw, {weld, false}), {}, {}};
     const mesh::GatedMesh& gate = gated.gate;
     for (const Face f : gate.mesh.all_faces()) {
         const std::size_t source = at(gate.source_face[f]);
@@ -238,11 +238,11 @@ std::optional<declare::HostResult> attempt(const declare::FilterDeclaration& fil
     return std::nullopt;
 }
 
-void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result) {
+void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result, double weld) {
     ASSERT_EQ(result.chart_id.size(), raw.faces.size());
     ASSERT_EQ(result.seam_edges.size(), raw.faces.size());
     expect_agreement(raw, result);
-    const Gated gated = behind_gate(raw, result);
+    const Gated gated = behind_gate(raw, result, weld);
     ASSERT_TRUE(is_valid(gated.gate.mesh));
     ASSERT_TRUE(is_valid(gated.gate.mesh, gated.charts));
     for (Index c = 0; c < gated.charts.count; ++c) {
@@ -261,7 +261,7 @@ void expect_valid_layout(const mesh::RawMesh& raw, const declare::HostResult& re
     if (packed) {
         EXPECT_TRUE(Eigen::AlignedBox2d(Vec2::Zero(), Vec2::Ones()).contains(box));
     }
-    const Gated gated = behind_gate(raw, result);
+    const Gated gated = behind_gate(raw, result, 0.0);
     EXPECT_EQ(flipped_faces(gated.uv), 0);
     const double extent = std::max(
         {box.sizes().maxCoeff(), box.max().cwiseAbs().maxCoeff(), box.min().cwiseAbs().maxCoeff()});

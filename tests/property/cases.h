@@ -36,8 +36,8 @@ std::optional<declare::HostResult> attempt(const declare::FilterDeclaration& fil
                                            const declare::ParameterValues& values, bool may_refuse);
 
 /// Charts 0 … n − 1, each connected and sound: a disk, or one with flat holes; both sides of a seam
-/// know of it.
-void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result);
+/// know of it. `weld`: the filter's, as it says which faces there are.
+void expect_disks(const mesh::RawMesh& raw, const declare::HostResult& result, double weld = 0.0);
 /// Finite, no face flipped or on another one; in the unit square if `packed`; and the suite's own
 /// measures agree.
 void expect_valid_layout(const mesh::RawMesh& raw, const declare::HostResult& result, bool packed);

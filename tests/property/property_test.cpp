@@ -51,7 +51,8 @@ void expect_good_atlas(declare::HostMesh& host, Random& random, bool may_refuse)
     if (!charts)
         return;
     checks::expect_complete(raw, *charts);
-    checks::expect_disks(raw, *charts);
+    const auto weld = values.find("weld");
+    checks::expect_disks(raw, *charts, weld == values.end() ? 0.0 : std::get<double>(weld->second));
     if (testing::Test::HasFatalFailure())
         return;
     checks::take_charts(host, *charts);

@@ -15,6 +15,7 @@ from devseg import pipeline
 from devseg.cli import main
 from devseg.methods import METHODS
 from devseg.pipeline import RunOptions, Session
+from devseg.ply import _face_rows
 
 FILTER = "meshing_smooth_chart_seams"
 
@@ -159,6 +160,21 @@ def test_run_smooths_patterns_to_sew_and_to_cut(
     assert (FILTER in result["parameters"]) == smooth
     if smooth:
         assert result["smoothing"]["smooth_seams_number"] > 0
+
+
+def test_parts_of_faces_have_the_colour_of_their_chart(obj: Callable, tmp_path: Path) -> None:
+    path = obj(meshes.sphere(24, 12))
+    options = ["--formats", "ply", "--seams", "smooth", "--charts", "5", "--no-picture"]
+    assert main(["run", str(path), "-o", str(tmp_path), *options]) == 0
+    result = json.loads((tmp_path / "mesh.json").read_text())
+    assert result["smoothing"]["new_faces_number"] > 0
+    assert result["method_results"]["charts_number"] == result["segmentation"]["charts_number"]
+    rows = _face_rows(tmp_path / "mesh.ply")
+    assert rows is not None
+    chart = rows["chart_id"].astype(int)
+    color = np.stack([rows[name] for name in ("red", "green", "blue")], axis=1)
+    for c in range(chart.max() + 1):
+        assert len(np.unique(color[chart == c], axis=0)) == 1
 
 
 def test_the_bound_on_charts_is_kept_while_seams_are_smoothed(tmp_path: Path) -> None:

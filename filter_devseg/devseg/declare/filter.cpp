@@ -1,5 +1,6 @@
 #include "devseg/declare/filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -8,8 +9,10 @@
 #include "devseg/base/errors.h"
 #include "devseg/base/option_checks.h"
 #include "devseg/base/worker.h"
+#include "devseg/declare/collapsed_faces.h"
 #include "devseg/declare/opening.h"
 #include "devseg/declare/part.h"
+#include "devseg/declare/refined_faces.h"
 
 namespace devseg::declare {
 
@@ -31,12 +34,8 @@ std::vector<Index> read_chart_id(const HostMesh& host, const mesh::GatedMesh& ga
     return labels;
 }
 
-// What is written where a host keeps bits 1, 2, 4.
-int edge_bits(double value) {
-    return value >= 0.0 && value <= 7.0 ? static_cast<int>(std::lround(value)) : 0;
-}
-
-// Marks of half-edges and their twins (3 #F), from the bits of the host's faces.
+// Marks of half-edges and their twins (3 #F), from the bits of the host's faces, those that lie on
+// an edge of others included.
 template <class Bits>
 std::vector<std::uint8_t> of_edges(const mesh::GatedMesh& gated, Bits bits) {
     const Mesh& mesh = gated.mesh;
@@ -46,6 +45,10 @@ std::vector<std::uint8_t> of_edges(const mesh::GatedMesh& gated, Bits bits) {
         for (Index e = 0; e < 3; ++e)
             marks[3 * f + e] = (mask >> gated.source_edge(f, e)) & 1 ? 1 : 0;
     }
+    for (const mesh::CollapsedFace& face : gated.collapsed)
+        for (Index e = 0; e < 3; ++e)
+            if (face.on[at(e)] >= 0 && ((bits(face.source) >> e) & 1) != 0)
+                marks[face.on[at(e)]] = 1;
     for (const HalfEdge h : mesh.all_half_edges())
         if (mesh.twin[h] >= 0 && marks[h] != 0)
             marks[mesh.twin[h]] = 1;
@@ -76,6 +79,11 @@ std::vector<std::uint8_t> read_selected_vertices(const HostMesh& host,
     if (host.vertex_selected.empty())
         return {};
     std::vector<std::uint8_t> selected(gated.mesh.points.size(), 0);
+    for (const mesh::CollapsedFace& face : gated.collapsed)
+        for (Index k = 0; k < 3; ++k)
+            if (face.at[at(k)] >= 0)
+                selected[gated.mesh.origin(face.at[at(k)])] |=
+                    host.vertex_selected[host.geometry.faces[face.source][at(k)]];
     for (const Face f : gated.mesh.all_faces())
         for (Index k = 0; k < 3; ++k) {
             const Triangle& corners = host.geometry.faces[gated.source_face[f]];
@@ -152,12 +160,25 @@ int seam_bits(const mesh::GatedMesh& gated, const atlas::ChartMap& charts, const
     return bits;
 }
 
+// Whether the faces on both sides share the edge in the host as well: not where the gate has joined
+// vertices, and a collapsed face may lie between.
+bool is_shared(const HostMesh& host, const mesh::GatedMesh& gated, HalfEdge h) {
+    const auto ends = [&](HalfEdge side) {
+        const Face f = face_of(side);
+        const Triangle& corners = host.geometry.faces[gated.source_face[f]];
+        const Index e = gated.source_edge(f, corner_of(side));
+        return std::minmax({corners[at(e)], corners[at((e + 1) % 3)]});
+    };
+    return ends(h) == ends(gated.mesh.twin[h]);
+}
+
 // Bits of the edges of an untouched face that lie beside others.
-int bits_to_touched(const mesh::GatedMesh& gated, const std::vector<std::uint8_t>& untouched,
-                    Face f) {
+int bits_to_touched(const HostMesh& host, const mesh::GatedMesh& gated,
+                    const std::vector<std::uint8_t>& untouched, Face f) {
     int bits = 0;
     for (const HalfEdge h : half_edges_of(f))
-        if (const Face g = gated.mesh.across(h); g >= 0 && untouched[g] == 0)
+        if (const Face g = gated.mesh.across(h);
+            g >= 0 && untouched[g] == 0 && is_shared(host, gated, h))
             bits |= 1 << gated.source_edge(f, corner_of(h));
     return bits;
 }
@@ -183,79 +204,95 @@ std::vector<OutputFace> output_faces(const mesh::GatedMesh& gated, const FilterO
     return faces;
 }
 
-// Barycentric coordinates in the host's face, whose last corners may be swapped.
-Vec3 of_source_corners(const mesh::GatedMesh& gated, Face f, const Vec3& weights) {
-    Vec3 turned;
-    for (Index k = 0; k < 3; ++k)
-        turned[gated.source_corner(f, k)] = weights[k];
-    return turned;
-}
-
-// Parts share the vertices that their faces share. Where the gate has joined vertices at one place
-// (files such as STL), each part gets its own: else the host would no longer join them.
-HostRefinement host_refinement(const HostMesh& host, const mesh::GatedMesh& gated,
-                               const mesh::Refinement& fine, const std::vector<OutputFace>& faces) {
-    HostRefinement result;
-    const auto old_count = static_cast<Index>(gated.mesh.points.size());
-    const auto host_count = static_cast<Index>(host.geometry.points.size());
-    bool apart = false;
-    for (const Face f : gated.mesh.all_faces())
-        for (Index k = 0; k < 3; ++k)
-            apart =
-                apart || host.geometry.faces[gated.source_face[f]][at(gated.source_corner(f, k))] !=
-                             gated.source_vertex[gated.mesh.faces[f][at(k)]];
-    const auto host_point = [&](const mesh::Refinement::Point& p) {
-        return HostRefinement::Point{gated.source_face[p.face],
-                                     of_source_corners(gated, p.face, p.weights)};
-    };
-    if (!apart)
-        for (const mesh::Refinement::Point& p : fine.points)
-            result.points.push_back(host_point(p));
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-        if (faces[i].part == nullptr)
-            continue;
-        const mesh::Refinement::Part& part = *faces[i].part;
-        const Index source = gated.source_face[part.source];
-        HostRefinement::Part out{static_cast<Index>(i), source, {}, {}};
-        for (Index k = 0; k < 3; ++k) {
-            const Index to = gated.source_corner(part.source, k);
-            const Vec3 weights = of_source_corners(gated, part.source, part.corners[at(k)]);
-            const Index vertex = fine.mesh.faces[part.face][at(k)];
-            Index corner = -1;
-            weights.maxCoeff(&corner);
-            out.weights[at(to)] = weights;
-            if (vertex < old_count && (!apart || i < host.geometry.faces.size()))
-                out.corners[at(to)] = host.geometry.faces[source][at(corner)];
-            else if (!apart)
-                out.corners[at(to)] = host_count + vertex - old_count;
-            else {
-                // The same place for all parts, to the last bit.
-                out.corners[at(to)] = host_count + static_cast<Index>(result.points.size());
-                result.points.push_back(vertex < old_count
-                                            ? HostRefinement::Point{source, weights}
-                                            : host_point(fine.points[at(vertex - old_count)]));
-            }
-        }
-        result.parts.push_back(out);
-    }
-    return result;
-}
-
 // Where the vertices have moved to, all that were joined alike; those that no face uses stay.
 std::vector<Vec3> moved_points(const HostMesh& host, const mesh::GatedMesh& gated,
                                const std::vector<Vec3>& points) {
     const Mesh& mesh = gated.mesh;
     std::vector<Vec3> moved = host.geometry.points;
+    const auto move = [&](Index face, Index corner, Vertex v) {
+        const std::size_t source = at(host.geometry.faces[face][at(corner)]);
+        moved[source] =
+            host.geometry.points[source] + mesh.unit_length * (points[v] - mesh.points[v]);
+    };
+    for (const mesh::CollapsedFace& face : gated.collapsed)
+        for (Index k = 0; k < 3; ++k)
+            if (face.at[at(k)] >= 0)
+                move(face.source, k, mesh.origin(face.at[at(k)]));
     for (const Face f : mesh.all_faces())
-        for (Index k = 0; k < 3; ++k) {
-            const Vertex v = mesh.faces[f][k];
-            const Triangle& corners = host.geometry.faces[gated.source_face[f]];
-            const std::size_t source = at(corners[gated.source_corner(f, k)]);
-            moved[source] =
-                host.geometry.points[source] + mesh.unit_length * (points[v] - mesh.points[v]);
-        }
+        for (Index k = 0; k < 3; ++k)
+            move(gated.source_face[f], gated.source_corner(f, k), mesh.faces[f][k]);
     return moved;
 }
+
+// What a filter says of faces, for the host's.
+class MapBack {
+public:
+    MapBack(const HostMesh& host, const mesh::GatedMesh& gated, const FilterOutput& output,
+            HostResult& result)
+        : host_(host), gated_(gated), output_(output), result_(result),
+          cut_(gated.mesh.twin.size(), 0) {
+        if (output.uv)
+            collapsed_corners_.emplace(gated, *output.uv);
+    }
+
+    void take(const std::vector<OutputFace>& faces) {
+        for (const OutputFace& f : faces) {
+            const auto source = static_cast<Index>(result_.untouched.size());
+            const bool stays = !output_.untouched.empty() &&
+                               at(source) < host_.geometry.faces.size() &&
+                               (!f.own || output_.untouched[f.gated] != 0);
+            result_.untouched.push_back(stays ? 1 : 0);
+            if (output_.charts)
+                take_charts(f, source, stays);
+            if (output_.face_quality)
+                result_.face_quality.push_back((*output_.face_quality)[f.face]);
+            if (!output_.selected.empty())
+                result_.face_selected.push_back(f.own ? output_.selected[f.face] : 0);
+            if (output_.face_color)
+                result_.face_color.push_back((*output_.face_color)[f.face]);
+            if (output_.uv)
+                result_.wedge_uv.push_back(corners_of(f, source));
+        }
+        if (output_.charts)
+            set_collapsed_seams(gated_, host_, cut_, result_);
+    }
+
+private:
+    void take_charts(const OutputFace& f, Index source, bool stays) {
+        result_.chart_id.push_back(stays && !host_.chart_id.empty()
+                                       ? static_cast<int>(std::lround(host_.chart_id[source]))
+                                       : output_.charts->chart[f.face]);
+        int bits = f.own ? seam_bits(gated_, *output_.charts, f) : 0;
+        if (stays && !host_.seam_edges.empty()) // and its edges to faces that have changed
+            bits = edge_bits(host_.seam_edges[source]) |
+                   (f.own ? bits & bits_to_touched(host_, gated_, output_.untouched, f.gated) : 0);
+        result_.seam_edges.push_back(bits);
+        for (Index e = 0; f.own && e < 3; ++e) {
+            const Index edge = f.part != nullptr ? mesh::old_edge(*f.part, e) : e;
+            if (edge >= 0 && (bits >> gated_.source_edge(f.gated, e) & 1) != 0)
+                cut_[half_edge_of(f.gated, edge)] = 1;
+        }
+    }
+
+    // Faces that were left out collapse onto one corner.
+    std::array<Vec2, 3> corners_of(const OutputFace& f, Index source) const {
+        if (const mesh::CollapsedFace* face = gated_.find_collapsed(source);
+            face != nullptr && !f.own)
+            return collapsed_corners_->of(*face);
+        std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
+        for (Index k = 0; k < 3; ++k)
+            corners[at(gated_.source_corner(f.gated, k))] =
+                (*output_.uv)[3 * f.face + (f.own ? k : 0)];
+        return corners;
+    }
+
+    const HostMesh& host_;
+    const mesh::GatedMesh& gated_;
+    const FilterOutput& output_;
+    HostResult& result_;
+    std::vector<std::uint8_t> cut_; // 3 #F: seams as the host's faces have them
+    std::optional<CollapsedCorners> collapsed_corners_;
+};
 
 HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOutput output) {
     HostResult result;
@@ -267,43 +304,19 @@ HostResult map_back(const HostMesh& host, const mesh::GatedMesh& gated, FilterOu
     result.notes = gated.notes;
     result.notes.insert(result.notes.end(), output.notes.begin(), output.notes.end());
     const std::vector<OutputFace> faces = output_faces(gated, output);
-    if (output.refinement && !output.refinement->parts.empty())
-        result.refinement = host_refinement(host, gated, *output.refinement, faces);
+    if (output.refinement && !output.refinement->parts.empty()) {
+        std::vector<const mesh::Refinement::Part*> parts;
+        for (const OutputFace& f : faces)
+            parts.push_back(f.part);
+        result.refinement = host_refinement(host, gated, *output.refinement, parts);
+    }
     if (output.fans) {
         HostRefinement opening = host_opening(host, gated, *output.fans);
         result.values.emplace_back(new_vertices_number, static_cast<int>(opening.points.size()));
         if (!opening.parts.empty())
             result.refinement = std::move(opening);
     }
-    for (const OutputFace& f : faces) {
-        const auto source = result.untouched.size();
-        const bool stays = !output.untouched.empty() && source < host.geometry.faces.size() &&
-                           (!f.own || output.untouched[f.gated] != 0);
-        result.untouched.push_back(stays ? 1 : 0);
-        if (output.charts) {
-            result.chart_id.push_back(stays && !host.chart_id.empty()
-                                          ? static_cast<int>(std::lround(host.chart_id[source]))
-                                          : output.charts->chart[f.face]);
-            int bits = f.own ? seam_bits(gated, *output.charts, f) : 0;
-            if (stays && !host.seam_edges.empty()) // and its edges to faces that have changed
-                bits = edge_bits(host.seam_edges[source]) |
-                       (f.own ? bits & bits_to_touched(gated, output.untouched, f.gated) : 0);
-            result.seam_edges.push_back(bits);
-        }
-        if (output.face_quality)
-            result.face_quality.push_back((*output.face_quality)[f.face]);
-        if (!output.selected.empty())
-            result.face_selected.push_back(f.own ? output.selected[f.face] : 0);
-        if (output.face_color)
-            result.face_color.push_back((*output.face_color)[f.face]);
-        if (output.uv) {
-            std::array<Vec2, 3> corners{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
-            for (Index k = 0; k < 3; ++k) // faces that were left out collapse onto one corner
-                corners[gated.source_corner(f.gated, k)] =
-                    (*output.uv)[3 * f.face + (f.own ? k : 0)];
-            result.wedge_uv.push_back(corners);
-        }
-    }
+    MapBack(host, gated, output, result).take(faces);
     if (output.untouched.empty())
         result.untouched.clear();
     return result;
@@ -376,8 +389,9 @@ Parameter weld_parameter() {
         weld_range.name,
         "Join vertices within",
         "Vertices at the same place are read as one where that closes open edges, as files have "
-        "them that give a vertex to each normal or texture coordinate. 0 = at the same place; "
-        "above: up to this share of the model's size; -1 = none are joined.",
+        "them that give a vertex to each normal or texture coordinate, and where an edge without "
+        "length joins them. 0 = at the same place; above: up to this share of the model's size; "
+        "-1 = none are joined.",
         ParameterKind::real,
         mesh::GateOptions().weld,
         weld_range.minimum,

@@ -10,6 +10,10 @@ namespace {
 // The fan at a corner of a source face; −1 where its stand-in has no corner there.
 Index fan_at(const HostMesh& host, const mesh::GatedMesh& gated, const std::vector<Triangle>& fans,
              Index source, Index corner) {
+    if (const mesh::CollapsedFace* face = gated.find_collapsed(source)) {
+        const HalfEdge h = face->at[at(corner)];
+        return h < 0 ? -1 : fans[face_of(h)][at(corner_of(h))];
+    }
     const Face f = gated.stand_in[at(source)];
     const Triangle& corners = host.geometry.faces[gated.source_face[f]];
     const bool own = gated.source_face[f] == source;

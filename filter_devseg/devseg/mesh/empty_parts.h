@@ -9,8 +9,8 @@
 namespace devseg::mesh {
 
 /// 1 for each face (#F) of a connected part with no more area than a strip of this width (internal
-/// units) that is as long as the part's longest edge. All 0 where there are no other parts.
-/// Reads points, faces and twins.
+/// units) that is as long as the part's longest edge, or as both sides of one where the part is
+/// closed. All 0 where there are no other parts. Reads points, faces and twins.
 std::vector<std::uint8_t> find_empty_parts(const Mesh& mesh, double width);
 
 } // namespace devseg::mesh

@@ -10,8 +10,10 @@
 #include "devseg/base/errors.h"
 #include "devseg/graph/unions.h"
 #include "devseg/mesh/coherent_faces.h"
+#include "devseg/mesh/empty_edges.h"
 #include "devseg/mesh/empty_parts.h"
 #include "devseg/mesh/inside_out.h"
+#include "devseg/mesh/stand_ins.h"
 #include "devseg/mesh/weld.h"
 
 namespace devseg::mesh {
@@ -207,33 +209,6 @@ void drop_unused_points(Mesh& mesh, std::vector<Index>& source_vertex) {
             v = renamed[v];
 }
 
-// Source faces that were left out take the results of a face on the same vertices, or of a face
-// that shares an edge or a vertex with them.
-void find_stand_ins(const std::vector<Triangle>& faces, std::size_t vertex_count,
-                    const std::vector<Index>& duplicate_of, GatedMesh& gated) {
-    gated.stand_in.assign(faces.size(), -1);
-    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        gated.stand_in[gated.source_face[f]] = static_cast<Index>(f);
-    if (gated.source_face.size() == faces.size())
-        return;
-    std::vector<Index> face_at_vertex(vertex_count, -1);
-    for (std::size_t f = 0; f < gated.source_face.size(); ++f)
-        for (const Vertex v : faces[gated.source_face[f]])
-            face_at_vertex[v] = static_cast<Index>(f);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        Index& stand_in = gated.stand_in[f];
-        if (stand_in >= 0)
-            continue;
-        if (duplicate_of[f] >= 0)
-            stand_in = gated.stand_in[duplicate_of[f]];
-        for (const Vertex v : faces[f])
-            if (stand_in < 0)
-                stand_in = face_at_vertex[v];
-        if (stand_in < 0)
-            stand_in = 0;
-    }
-}
-
 // Edges that had to be cut.
 Index count_cut_edges(const GatedMesh& gated) {
     std::vector<std::pair<Index, Index>> edges;
@@ -247,7 +222,8 @@ Index count_cut_edges(const GatedMesh& gated) {
 
 // What was worked around, as numbers.
 struct Found {
-    Index joined = 0; // vertices that there are less
+    Index joined = 0;         // vertices that there are less
+    Index drawn_together = 0; // and those less that edges without length joined
     Index repeated = 0;
     Index duplicates = 0;
     Index without_area = 0; // faces of parts without area
@@ -268,6 +244,9 @@ std::vector<std::string> notes_of(const Found& found, const GateOptions& options
          std::string(" joined with others ") +
              (options.weld > 0.0 ? "nearby" : "at the same place") +
              ", as that closes open edges ('Merge Close Vertices' does it for good)");
+    note(found.drawn_together, "vertex was", "vertices were",
+         " joined with others at the same place, as edges without length lead there ('Merge Close "
+         "Vertices' does it for good)");
     note(found.repeated, "face repeats a vertex and was", "faces repeat a vertex and were",
          " left out ('Remove Zero Area Faces' drops such faces)");
     note(found.duplicates, "face lies on the vertices of another one and was",
@@ -333,6 +312,13 @@ void connect(bool is_soup, const GateOptions& options, double tolerance, GatedMe
 
 } // namespace
 
+const CollapsedFace* GatedMesh::find_collapsed(Index source) const {
+    const auto found =
+        std::lower_bound(collapsed.begin(), collapsed.end(), source,
+                         [](const CollapsedFace& c, Index face) { return c.source < face; });
+    return found != collapsed.end() && found->source == source ? &*found : nullptr;
+}
+
 GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progress& progress) {
     require_faces(raw);
     require_valid_indices(raw);
@@ -350,6 +336,9 @@ GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progre
     std::vector<Triangle> faces = raw.faces;
     progress.check();
     const Index welded = options.weld >= 0.0 ? weld_soup(mesh.points, tolerance, faces) : 0;
+    progress.check();
+    if (options.weld >= 0.0)
+        found.drawn_together = join_ends_of_empty_edges(mesh.points, faces);
     progress.check();
     FaceSelection selection = select_proper_faces(faces, mesh.vertex_count());
     found.repeated = selection.repeated;
@@ -375,7 +364,7 @@ GatedMesh gate_mesh(const RawMesh& raw, const GateOptions& options, const Progre
                           counted(static_cast<Index>(raw.faces.size()), "face", "faces") +
                           " without any area; there is nothing to segment");
     progress.check();
-    find_stand_ins(faces, raw.points.size(), selection.duplicate_of, gated);
+    find_stand_ins({raw.faces, faces, selection.duplicate_of}, raw.points.size(), gated);
     gated.notes = notes_of(found, options);
     return gated;
 }

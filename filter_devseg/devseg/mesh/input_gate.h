@@ -1,6 +1,7 @@
 // The one place where a host's mesh becomes a Mesh: checked, cleaned inside, mapped back.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,17 @@ struct RawMesh {
     std::vector<Vec3> points;    // #V, model units
     std::vector<Triangle> faces; // #F
 };
+
+/// A source face that lost its area where its vertices were joined (mesh/empty_edges.h): it lies on
+/// an edge of the mesh, or at a vertex.
+struct CollapsedFace {
+    Index source = -1;
+    std::array<HalfEdge, 3> at;     // of its corners: leaves the same vertex, in the stand-in
+    std::array<HalfEdge, 3> on;     // of its edges: on the same edge of the mesh
+    std::array<HalfEdge, 3> beside; // of its edges: shares the source's edge with it
+    std::array<Index, 3> next{-1, -1, -1}; // of its edges: place of the collapsed face that shares
+                                           // it, where no face of the mesh does
+};                                         // −1 where there is none
 
 /// The checked mesh with the way back to the host's faces ("source faces").
 ///
@@ -33,13 +45,16 @@ struct GatedMesh {
                                        // were joined; the parts of one that was split share it
     std::vector<std::uint8_t> flipped; // #F: 1 where the orientation was turned over
     std::vector<std::uint8_t> cut;     // 3 #F: 1 on half-edges whose edge the gate had to cut
-    std::vector<Index> stand_in;    // #source faces: the face whose results it takes, −1 = none
-    std::vector<std::string> notes; // what was worked around, one sentence each
+    std::vector<Index> stand_in; // #source faces: the face whose results it takes, −1 = none
+    std::vector<CollapsedFace> collapsed; // by source face
+    std::vector<std::string> notes;       // what was worked around, one sentence each
 
     /// Source corner of corner k of face f; a turned face swaps its last two corners.
     Index source_corner(Face f, Index k) const { return flipped[f] != 0 && k != 0 ? 3 - k : k; }
     /// Source edge (edge e joins corners e and e + 1) of edge e of face f.
     Index source_edge(Face f, Index e) const { return flipped[f] != 0 ? 2 - e : e; }
+    /// Null where the source face has not collapsed.
+    const CollapsedFace* find_collapsed(Index source) const;
 };
 
 struct GateOptions {

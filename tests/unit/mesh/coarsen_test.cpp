@@ -199,7 +199,7 @@ TEST(Coarsen, FacesWithoutAreaDoNoHarm) {
     RawMesh raw = shapes::grid(20, 20);
     for (std::size_t i = 0; i < raw.points.size(); i += 7)
         raw.points[i] = raw.points[i == 0 ? 1 : i - 1];
-    const Mesh mesh = checks::gated(raw);
+    const Mesh mesh = mesh::gate_mesh(raw, {-1.0, false}).mesh;
     CoarseSurface s = coarsened(mesh, 100);
     EXPECT_TRUE(checks::is_valid(extract_coarse_mesh(mesh, s).mesh));
     while (!s.collapses.empty())

@@ -155,7 +155,7 @@ TEST(Gate, PartsWithoutAreaAreLeftOut) {
     raw.faces.insert(raw.faces.begin(), Triangle{6, 7, 8});
     raw.faces.push_back({9, 10, 11});
     raw.faces.push_back({12, 13, 14});
-    const GatedMesh gated = gate_mesh(raw);
+    const GatedMesh gated = gate_mesh(raw, {-1.0, false});
     EXPECT_TRUE(is_valid(gated.mesh));
     EXPECT_EQ(gated.source_face, (std::vector<Index>{1, 2, 3, 4, 6}));
     EXPECT_EQ(gated.mesh.vertex_count(), 9);
@@ -165,6 +165,20 @@ TEST(Gate, PartsWithoutAreaAreLeftOut) {
     raw = shapes::grid(2, 2);
     raw.points[4] = raw.points[3];
     EXPECT_EQ(gate_mesh(raw, {-1.0, false}).mesh.faces.size(), raw.faces.size());
+}
+
+// Both sides of a needle are counted once: faces laid out beside each other are twice as wide.
+TEST(Gate, ClosedPartsAreAsNarrowAsTheyAre) {
+    const auto with_needle = [](double width) {
+        RawMesh raw = shapes::grid(2, 1);
+        raw.points.insert(raw.points.end(),
+                          {{5, 0, 0}, {6, 0, 0}, {5.3, width, 0}, {5.7, 0, width}});
+        raw.faces.insert(raw.faces.end(), {{6, 8, 7}, {6, 7, 9}, {6, 9, 8}, {7, 8, 9}});
+        return gate_mesh(raw).mesh.face_count();
+    };
+    const double size = 6.0;
+    EXPECT_EQ(with_needle(1.1e-6 * size), 4);
+    EXPECT_EQ(with_needle(4.4e-6 * size), 8);
 }
 
 TEST(Gate, EdgesWithThreeFacesAreCut) {
@@ -316,7 +330,7 @@ TEST(Gate, RandomSoupsBecomeManifold) {
 TEST(Gate, FacesWithoutAreaTakeTheNormalOfTheirNeighbours) {
     RawMesh raw = shapes::grid(2, 2);
     raw.points[4] = raw.points[3]; // the middle vertex onto one at the side: two faces lose all
-    const Mesh mesh = checks::gated(raw);
+    const Mesh mesh = gate_mesh(raw, {-1.0, false}).mesh; // else it becomes the one at the side
     Index without_area = 0;
     for (const Face f : mesh.all_faces()) {
         without_area += mesh.face_areas[f] > 0.0 ? 0 : 1;

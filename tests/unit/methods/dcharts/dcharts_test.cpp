@@ -252,7 +252,7 @@ TEST(DCharts, FacesWithoutAreaAreLabelledAsWell) {
     mesh::RawMesh raw = shapes::grid(6, 6);
     for (Index i = 8; i < 13; ++i)
         raw.points[i] = raw.points[i - 7]; // a whole row collapses
-    const Mesh mesh = checks::gated(raw);
+    const Mesh mesh = mesh::gate_mesh(raw, {-1.0, false}).mesh;
     expect_promises(mesh, charts(3), segment(mesh, charts(3)));
 }
 
