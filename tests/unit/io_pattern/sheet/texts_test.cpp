@@ -125,6 +125,8 @@ std::size_t numbers_of_dart(double width) {
     seam.sides[0] = {0, 0, 1, 1, false, length, {}};
     seam.sides[1] = {0, 0, 2, 1, true, length, {}};
     pattern.seams = {seam};
+    piece.outer.edges.resize(piece.outer.points.size());
+    piece.outer.edges[1] = piece.outer.edges[2] = {0, 0, true};
     std::vector<SheetPiece> pieces{strip(60.0, 40.0)};
     pieces[0].cut = {piece.outer.points};
     EXPECT_TRUE(add_texts(pattern, {}, numbered(), pieces).seams.empty());
@@ -155,6 +157,8 @@ TEST(Texts, LinesLeadToNumbersThatLieApart) {
     seam.sides[0] = {0, 0, 3, 1, false, 1.5, {}};
     seam.sides[1] = {0, 0, 7, 1, true, 30.0, {}};
     pattern.seams = {seam};
+    piece.outer.edges.resize(piece.outer.points.size());
+    piece.outer.edges[3] = piece.outer.edges[7] = {0, 0, false};
     std::vector<SheetPiece> pieces{strip(1, 1)};
     pieces[0].cut = {piece.outer.points};
     ExportOptions options = numbered();
