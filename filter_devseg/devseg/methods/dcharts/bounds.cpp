@@ -211,7 +211,6 @@ private:
         DartOptions darts;
         darts.max_per_chart = tuning.few_darts;
         darts.worth = 0.0;
-        darts.all_or_none = true;
         darts.chart.l2 = bounds_.chart_l2 > 0.0 ? bounds_.chart_l2 : infinite;
         darts.chart.linf = bounds_.linf > 0.0 ? bounds_.linf : infinite;
         darts.chart.strain = bounds_.allowed_strain(tuning.certain);

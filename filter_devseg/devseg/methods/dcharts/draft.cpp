@@ -205,13 +205,6 @@ Dart best_dart(const Mesh& mesh, const DartOptions& options, const std::vector<I
     return best;
 }
 
-// Whether as many more darts as that, each as good as the one before, bring a chart within its
-// bound.
-bool may_reach(const DartOptions& options, double last_l2_squared, const TrialMap& map, int more) {
-    const double gain = std::max(0.0, last_l2_squared - map.l2_squared);
-    return map.l2_squared - more * gain <= options.chart.l2 * options.chart.l2;
-}
-
 // Of one chart; the cuts of other charts do not matter.
 std::vector<Dart> find_darts(const Mesh& mesh, const DartOptions& options, const Draft& draft,
                              std::size_t chart, const Progress& progress) {
@@ -225,12 +218,8 @@ std::vector<Dart> find_darts(const Mesh& mesh, const DartOptions& options, const
         if (best.path.empty())
             break;
         atlas::mark_cuts(mesh, best.path, seam);
-        const double last = map.l2_squared;
         map = best.map;
         darts.push_back(std::move(best));
-        if (options.all_or_none &&
-            !may_reach(options, last, map, options.max_per_chart - static_cast<int>(darts.size())))
-            return {};
     }
     return darts;
 }

@@ -72,9 +72,6 @@ struct DartOptions {
     double worth = 1e-3; // least drop of Σ A (l2² − 1), as a share of the surface's area, for
                          // each √area of length, for a dart that does not lower the worst spot
     int max_per_chart = 12; // darts
-    // None is cut where the rest, each as good as the last one, would not bring the chart's mean
-    // stretch within its bound.
-    bool all_or_none = false;
 };
 
 /// Cuts darts into the charts that exceed the bounds, each along a short path from the border, or

@@ -157,33 +157,6 @@ TEST(DevelopableCharts, DartsLowerTheWorstSpot) {
     EXPECT_NEAR(again.linf, draft.map.front().linf, 1e-3);
 }
 
-// A cap needs many darts for a bound that is nearly isometric: four are none, where fewer would not
-// do anyway.
-TEST(DevelopableCharts, DartsThatWillNotDoAreNotCut) {
-    const Mesh mesh = checks::gated(shapes::hemisphere(48, 12));
-    Progress progress;
-    Draft before = make_draft(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, 1.02, progress);
-    DartOptions options;
-    options.max_per_chart = 4;
-    options.worth = 0.0;
-    options.all_or_none = true;
-    options.chart = {1.0001, infinite};
-    Draft draft = before;
-    EXPECT_EQ(cut_darts(mesh, options, draft, progress), 0);
-    options.all_or_none = false;
-    draft = before;
-    EXPECT_EQ(cut_darts(mesh, options, draft, progress), 4);
-    const double reached = std::sqrt(draft.map.front().l2_squared);
-    EXPECT_LT(reached, std::sqrt(before.map.front().l2_squared));
-    options.chart.l2 = 1.001 * reached; // as far as they do
-    draft = before;
-    EXPECT_EQ(cut_darts(mesh, options, draft, progress), 4);
-    options.all_or_none = true;
-    draft = before;
-    EXPECT_EQ(cut_darts(mesh, options, draft, progress), 4);
-    EXPECT_LE(std::sqrt(draft.map.front().l2_squared), options.chart.l2);
-}
-
 // The convex hull of two unit circles through each other's centres: one developable piece with two
 // curved creases.
 Mesh oloid(int steps, int along) {
