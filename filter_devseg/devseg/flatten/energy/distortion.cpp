@@ -66,11 +66,6 @@ public:
         else
             matrix.valuePtr()[place_[next_++]] += value;
     }
-    void add_block(Vertex row, Vertex column, const Eigen::Matrix2d& block) {
-        for (int r = 0; r < 2; ++r)
-            for (int s = 0; s < 2; ++s)
-                add(2 * row + r, 2 * column + s, block(r, s));
-    }
     /// Whether the places were found now.
     bool finish() {
         if (!place_.empty())
@@ -323,48 +318,6 @@ bool line_search(const FlatteningProblem& problem,
 
 namespace {
 
-// Returns the trace.
-double add_faces(const FlatteningProblem& problem, const FaceHessian& face_hessian,
-                 const Positions& x, HessianMatrix& hessian) {
-    double trace = 0.0;
-    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
-        // J's columns are linear in the corners: ∂(J column c)/∂ corner k = weight(k, c) ·
-        // identity.
-        const Eigen::Matrix2d& inverse = problem.inverse[f];
-        Eigen::Matrix<double, 3, 2> weight;
-        weight.row(1) = inverse.row(0);
-        weight.row(2) = inverse.row(1);
-        weight.row(0) = -inverse.row(0) - inverse.row(1);
-        const Eigen::Matrix2d map = jacobian(problem, x, f);
-        Eigen::Matrix4d h = face_hessian ? face_hessian(f, map) : projected_hessian(map);
-        h *= problem.area[f] / problem.total_area;
-        const Triangle& t = problem.faces[f];
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-                const Vertex v = t[static_cast<std::size_t>(i)];
-                const Index u = t[static_cast<std::size_t>(j)];
-                if (v < u)
-                    continue;
-                Eigen::Matrix2d block = Eigen::Matrix2d::Zero();
-                for (int c = 0; c < 2; ++c)
-                    for (int d = 0; d < 2; ++d)
-                        block += weight(i, c) * weight(j, d) * h.block<2, 2>(2 * c, 2 * d);
-                hessian.add_block(v, u, block);
-                if (i == j)
-                    trace += block.trace();
-            }
-    }
-    return trace;
-}
-
-void add_spring(const Spring& spring, HessianMatrix& hessian) {
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-            if (spring.vertex[i] >= spring.vertex[j])
-                hessian.add_block(spring.vertex[i], spring.vertex[j],
-                                  spring.weight * spring.slope[i] * spring.slope[j].transpose());
-}
-
 // A stiff boundary rounds more off than the usual shift is: then shifts grow until they outweigh
 // it.
 void factorize_shifted(Eigen::SparseMatrix<double>& matrix, BlockCholesky& solver) {
@@ -390,42 +343,56 @@ struct ProjectedNewton::State {
     double boundary_stiffness = 0.0;
     HessianMatrix hessian;
     BlockCholesky solver;
-    std::vector<std::array<Vertex, 3>> tied; // by springs
-
-    // Whether these springs tie other vertices than the last ones did.
-    bool tie(const std::vector<Spring>& springs) {
-        std::vector<std::array<Vertex, 3>> ties;
-        for (const Spring& spring : springs)
-            ties.push_back(spring.vertex);
-        if (ties == tied)
-            return false;
-        tied = std::move(ties);
-        return true;
-    }
 };
 
 ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
                                  FaceHessian face_hessian, double boundary_stiffness)
     : state_(new State{
-          problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}, {}}) {}
+          problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
 void ProjectedNewton::set_boundary_stiffness(double stiffness) {
     state_->boundary_stiffness = stiffness;
 }
 
-void ProjectedNewton::factorize(const Positions& x, const std::vector<Spring>& springs) {
+Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
     const FlatteningProblem& problem = state_->problem;
     HessianMatrix& hessian = state_->hessian;
     const Index unknowns = 2 * problem.vertex_count;
-    if (state_->tie(springs))
-        hessian = {};
     hessian.begin(unknowns);
-    const double trace = add_faces(problem, state_->face_hessian, x, hessian);
+    double trace = 0.0;
+    for (std::size_t f = 0; f < problem.faces.size(); ++f) {
+        // J's columns are linear in the corners: ∂(J column c)/∂ corner k = weight(k, c) ·
+        // identity.
+        const Eigen::Matrix2d& inverse = problem.inverse[f];
+        Eigen::Matrix<double, 3, 2> weight;
+        weight.row(1) = inverse.row(0);
+        weight.row(2) = inverse.row(1);
+        weight.row(0) = -inverse.row(0) - inverse.row(1);
+        const Eigen::Matrix2d map = jacobian(problem, x, f);
+        Eigen::Matrix4d h =
+            state_->face_hessian ? state_->face_hessian(f, map) : projected_hessian(map);
+        h *= problem.area[f] / problem.total_area;
+        const Triangle& t = problem.faces[f];
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const Vertex v = t[static_cast<std::size_t>(i)];
+                const Index u = t[static_cast<std::size_t>(j)];
+                if (v < u)
+                    continue;
+                Eigen::Matrix2d block = Eigen::Matrix2d::Zero();
+                for (int c = 0; c < 2; ++c)
+                    for (int d = 0; d < 2; ++d)
+                        block += weight(i, c) * weight(j, d) * h.block<2, 2>(2 * c, 2 * d);
+                for (int r = 0; r < 2; ++r)
+                    for (int s = 0; s < 2; ++s)
+                        hessian.add(2 * v + r, 2 * u + s, block(r, s));
+                if (i == j)
+                    trace += block.trace();
+            }
+    }
     if (state_->boundary_stiffness > 0.0)
         add_boundary(problem, state_->boundary_stiffness, x, hessian);
-    for (const Spring& spring : springs)
-        add_spring(spring, hessian);
     for (Index i = 0; i < unknowns; ++i) {
         const bool stays = !state_->fixed.empty() && state_->fixed[i / 2] != 0;
         hessian.add(i, i, (stays ? tuning.locked_share : tuning.shift_share) * trace / unknowns);
@@ -433,21 +400,13 @@ void ProjectedNewton::factorize(const Positions& x, const std::vector<Spring>& s
     if (hessian.finish())
         state_->solver.analyze(hessian.matrix);
     factorize_shifted(hessian.matrix, state_->solver);
-}
-
-Positions ProjectedNewton::solve(const Positions& rhs) const {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>; // x, y, x, y …
-    const Rows rows = rhs;
-    const Eigen::VectorXd solution =
-        state_->solver.solve(Eigen::Map<const Eigen::VectorXd>(rows.data(), rows.size()));
+    const Rows descent = -gradient;
+    const Eigen::Map<const Eigen::VectorXd> rhs(descent.data(), unknowns);
+    const Eigen::VectorXd solution = state_->solver.solve(rhs);
     if (!solution.allFinite())
         throw NumericalFailure("expected a positive definite Hessian, found a singular one");
-    return Eigen::Map<const Rows>(solution.data(), rhs.rows(), 2);
-}
-
-Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
-    factorize(x);
-    return solve(-gradient);
+    return Eigen::Map<const Rows>(solution.data(), problem.vertex_count, 2);
 }
 
 } // namespace devseg::flatten

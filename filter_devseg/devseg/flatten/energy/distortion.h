@@ -2,7 +2,6 @@
 // minimisers share: Newton's directions with projected Hessians, and the line search.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -68,14 +67,6 @@ using FaceHessian = std::function<Eigen::Matrix4d(std::size_t face, const Eigen:
 /// Directions −H⁻¹ g for the symmetric Dirichlet energy, or another one, with H the sum of the
 /// faces' projected Hessians. Each direction costs a sparse factorization; the order of elimination
 /// is found once.
-/// A term ½ weight (Σ slope · step of the vertex)² of a quadratic model: a spring between three
-/// vertices.
-struct Spring {
-    std::array<Vertex, 3> vertex;
-    std::array<Vec2, 3> slope;
-    double weight = 0.0;
-};
-
 class ProjectedNewton {
 public:
     /// Vertices that are marked in `fixed` (#v, may be empty) stay where they are.
@@ -87,12 +78,7 @@ public:
     /// Another stiffness, above 0 where it was.
     void set_boundary_stiffness(double stiffness);
 
-    /// Takes H at x, springs included; throws NumericalFailure where it cannot be factorized.
-    void factorize(const Positions& x, const std::vector<Spring>& springs = {});
-    /// The step (#v by 2) whose product with H is this; throws NumericalFailure.
-    Positions solve(const Positions& rhs) const;
-
-    /// A descent direction: both.
+    /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
     Positions direction(const Positions& x, const Positions& gradient);
 
 private:
