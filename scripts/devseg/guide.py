@@ -38,8 +38,11 @@ def assembly(results: Mapping[str, Any]) -> dict[str, Any]:
     steps = []
     closing = iter(openings)
     kinds, sections = _whole(results["step_kind"]), _whole(results["step_section"])
+    seams_of: dict[int, list[int]] = {}
+    for seam, step in enumerate(done, 1):
+        seams_of.setdefault(step, []).append(seam)
     for number, (kind, section) in enumerate(zip(kinds, sections, strict=True), 1):
-        seams = [s for s, step in enumerate(done, 1) if step == number]
+        seams = seams_of.get(number, [])
         if KINDS[kind] == "close" and openings:
             seams = [int(next(closing)["seam"])]
         pieces = sorted({side[s - 1] for s in seams for side in (first, second)})

@@ -27,6 +27,7 @@ public:
     void run(Progress& progress) {
         const auto start = static_cast<double>(draft_.charts_number());
         const Index joins_before = draft_.joins;
+        proposed_ = false; // the bounds may be others
         while (draft_.charts_number() > options_.enough_charts) {
             auto trying = progress.part(0.0); // joins say how far it is
             Entry* best = nullptr;
@@ -42,6 +43,7 @@ public:
                 close(best->first, best->second);
             else if (!may_part || (partly_ && (exchanging_ || !options_.exchange_cuts)))
                 return;
+            proposed_ = false;
             exchanging_ = exchanging_ || (partly_ && best == nullptr);
             partly_ = may_part && (partly_ || best == nullptr);
             progress.update((draft_.joins - joins_before) / start);
@@ -53,6 +55,9 @@ private:
 
     // All closings that there are now, those known with their verdicts.
     void propose(const Progress& progress) {
+        if (proposed_)
+            return;
+        proposed_ = true;
         std::map<Pair, std::vector<Closing>> chains;
         std::vector<Closing> found = chains_.find(draft_);
         seams_at_corner_.clear();
@@ -163,7 +168,7 @@ private:
             propose(progress);
             for (auto few = most_promising(); !few.empty(); few = most_promising()) {
                 try_again(few, progress);
-                found = partly_; // only which parts there are depends on what others gave
+                found = partly_;
             }
         }
     }
@@ -196,6 +201,7 @@ private:
     }
 
     void try_again(const std::vector<Entry*>& entries, Progress& progress) {
+        proposed_ = proposed_ && (entries.empty() || !partly_);
         parallel_for(
             static_cast<int>(entries.size()),
             [&](int i) {
@@ -279,6 +285,7 @@ private:
                 return order.front().second;
             } else {
                 trials_.confirm(closing, verdict, progress);
+                proposed_ = proposed_ && !partly_;
             }
         }
     }
@@ -289,6 +296,7 @@ private:
         const std::vector<HalfEdge> left = left_border(mesh_, draft_, closing);
         draft_.left.insert(draft_.left.end(), left.begin(), left.end());
         draft_.left.insert(draft_.left.end(), closing.opened.begin(), closing.opened.end());
+        chains_.open(closing.opened);
         draft_.map[a] = verdict.map;
         const bool is_anew = trials_.close(closing, verdict);
         if (!open_.empty())
@@ -313,8 +321,10 @@ private:
     SeamChains chains_;
     ClosingTrials trials_;
     std::vector<std::uint8_t> open_; // of each chart; empty: all
-    bool partly_ = false;            // parts of borders are closed as well
-    bool exchanging_ = false;        // cuts are tried in other places as well
+    // Only which parts of borders there are depends on what trials of others gave.
+    bool proposed_ = false;   // all closings that there are now are known
+    bool partly_ = false;     // parts of borders are closed as well
+    bool exchanging_ = false; // cuts are tried in other places as well
     Verdicts verdicts_;
     std::vector<Entry*> untried_;
     std::map<Index, int> seams_at_corner_; // seam edges at each corner that has any

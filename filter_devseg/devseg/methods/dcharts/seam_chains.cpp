@@ -11,6 +11,9 @@ namespace devseg::dcharts {
 
 SeamChains::SeamChains(const Mesh& mesh, bool keep_corners)
     : mesh_(mesh), corner_(mesh::boundary_vertices(mesh)) {
+    for (const HalfEdge h : mesh_.all_half_edges())
+        if (mesh_.twin[h] >= 0)
+            seams_.push_back(h);
     if (!keep_corners)
         return;
     const std::vector<double> defects = mesh::angle_defects(mesh);
@@ -19,17 +22,21 @@ SeamChains::SeamChains(const Mesh& mesh, bool keep_corners)
             corner_[v] = corner;
 }
 
-std::vector<Closing> SeamChains::find(const Draft& draft) const {
-    const auto is_seam = [&](HalfEdge h) {
-        return mesh_.twin[h] >= 0 &&
-               (draft.seam[h] != 0 || draft.chart[face_of(h)] != draft.chart[mesh_.across(h)]);
+void SeamChains::open(const std::vector<Index>& edges) {
+    for (const HalfEdge h : edges)
+        for (const HalfEdge side : {h, HalfEdge(mesh_.twin[h])})
+            if (const auto place = std::lower_bound(seams_.begin(), seams_.end(), side);
+                place == seams_.end() || *place != side)
+                seams_.insert(place, side);
+}
+
+std::vector<Closing> SeamChains::find(const Draft& draft) {
+    const auto is_none = [&](HalfEdge h) {
+        return draft.seam[h] == 0 && draft.chart[face_of(h)] == draft.chart[mesh_.across(h)];
     };
-    std::vector<HalfEdge> seams;
-    for (const HalfEdge h : mesh_.all_half_edges())
-        if (is_seam(h))
-            seams.push_back(h);
+    seams_.erase(std::remove_if(seams_.begin(), seams_.end(), is_none), seams_.end());
     const Buckets<HalfEdge> leaving = make_buckets<HalfEdge>(mesh_.vertex_count(), [&](auto put) {
-        for (const HalfEdge h : seams)
+        for (const HalfEdge h : seams_)
             put(mesh_.origin(h), h);
     });
     const auto is_node = [&](Vertex v) { return corner_[v] != 0 || leaving[v].size() != 2; };
@@ -50,10 +57,10 @@ std::vector<Closing> SeamChains::find(const Draft& draft) const {
         }
         chains.push_back(std::move(chain));
     };
-    for (const HalfEdge h : seams)
+    for (const HalfEdge h : seams_)
         if (seen[h] == 0 && is_node(mesh_.origin(h)))
             trace(h);
-    for (const HalfEdge h : seams) // loops without a node
+    for (const HalfEdge h : seams_) // loops without a node
         if (seen[h] == 0)
             trace(h);
     return chains;

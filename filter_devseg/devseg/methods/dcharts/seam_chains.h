@@ -29,14 +29,19 @@ public:
     /// #V: not 0 for corners, and for vertices on the boundary.
     const std::vector<std::uint8_t>& corners() const { return corner_; }
 
-    /// Of the draft's borders and cuts, each in the order of its edges.
-    std::vector<Closing> find(const Draft& draft) const;
+    /// Of the draft's borders and cuts, each in the order of its edges. Where it was called before,
+    /// only edges that were seams then, or were opened since, are looked at.
+    std::vector<Closing> find(const Draft& draft);
+
+    /// Edges that have become seams.
+    void open(const std::vector<Index>& edges);
 
 private:
     static constexpr std::uint8_t corner = 2;
 
     const Mesh& mesh_;
     std::vector<std::uint8_t> corner_; // #V: on the boundary, or a corner
+    std::vector<HalfEdge> seams_;      // ascending; all may be seams, and no others are
 };
 
 /// The vertex at which an edge follows another one.

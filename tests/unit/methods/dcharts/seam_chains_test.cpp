@@ -57,5 +57,42 @@ TEST(SeamChains, ChainsWithTwoEndsStay) {
     EXPECT_EQ(turned, chains.front().edges);
 }
 
+void expect_same(const std::vector<Closing>& found, const std::vector<Closing>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].charts, expected[i].charts);
+        EXPECT_EQ(found[i].edges, expected[i].edges);
+    }
+}
+
+// What it remembers from one time to the next changes nothing.
+TEST(SeamChains, AreTheSameAfterJoinsAndOpenedCuts) {
+    const Mesh mesh = checks::gated(shapes::grid(9, 9));
+    std::vector<Index> label;
+    for (const Vec3& p : mesh.face_centers)
+        label.push_back((p.x() < -0.2 ? 0 : p.x() < 0.2 ? 1 : 2) + (p.y() < 0.1 ? 0 : 3));
+    Draft draft = make_untried_draft(mesh, label);
+    SeamChains chains(mesh, false);
+    std::vector<std::size_t> counts;
+    for (const Index gone : {4, 1, 5, 2}) {
+        const std::vector<Closing> found = chains.find(draft);
+        counts.push_back(found.size());
+        expect_same(found, SeamChains(mesh, false).find(draft));
+        const Index into = gone > 2 ? 3 : 0;
+        std::vector<Index> opened; // an edge within the joined chart
+        for (Index& l : draft.chart)
+            l = l == gone ? into : l;
+        for (const HalfEdge h : mesh.all_half_edges())
+            if (opened.empty() && mesh.twin[h] > h && label[face_of(h)] == gone &&
+                draft.chart[mesh.across(h)] == into)
+                opened.push_back(h);
+        ASSERT_EQ(opened.size(), 1U);
+        draft.seam[at(opened[0])] = draft.seam[at(mesh.twin[at(opened[0])])] = 1;
+        chains.open(opened);
+        expect_same(chains.find(draft), SeamChains(mesh, false).find(draft));
+    }
+    EXPECT_NE(counts.front(), counts.back());
+}
+
 } // namespace
 } // namespace devseg::dcharts
