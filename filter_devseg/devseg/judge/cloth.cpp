@@ -61,6 +61,9 @@ public:
         trial.is_sound = true;
         const auto uv = limits_.by_strain() ? by_strain(trial) : by_area(trial);
         trial.has_map = uv.has_value();
+        if (uv)
+            for (const HalfEdge h : surface_.loops.front())
+                trial.outline.push_back((*uv)[surface_.origin(h)]);
         if (details)
             describe(uv ? *uv : any_map(), trial);
         return trial;

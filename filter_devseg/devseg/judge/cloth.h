@@ -32,6 +32,7 @@ struct ClothTrial {
     bool has_map = false;        // one that sews
     double area_change = 0.0;    // largest of a face
     flatten::Strain strain;      // measured at the lengths of the seams
+    std::vector<Vec2> outline;   // of the map, counterclockwise, in internal units; of disks only
     std::vector<Index> face;     // of the mesh; with details only
     std::vector<double> change;  // of each face: area in the plane / on the surface − 1
     std::vector<double> strains; // of each face, where patches are judged by strain

@@ -158,21 +158,41 @@ bool OpenPart::is_inside(const Mesh& mesh, HalfEdge h) const {
     return is_open(face_of(h)) && (mesh.twin[h] < 0 || is_open(face_of(mesh.twin[h])));
 }
 
-OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
-                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress) {
+OpenPart mend_patches(const WorkingSurface& surface, const VertexGraph& graph,
+                      const std::vector<double>& cost, SeamMarks seam,
+                      const judge::ClothLimits& limits, Progress& progress) {
+    const Mesh& mesh = surface.mesh;
+    const std::vector<Index> label = find_patches(mesh, seam).label;
     const std::vector<std::vector<Index>> faces = patches_of(mesh, seam);
+    const auto image_of = [&](std::size_t p) {
+        return surface.is_symmetric() ? label[surface.face_image(faces[p].front())]
+                                      : static_cast<Index>(p);
+    };
     std::vector<std::optional<std::vector<Index>>> cuts(faces.size());
-    parallel_for(
-        static_cast<int>(faces.size()),
-        [&](int p) { cuts[p] = mend_patch(mesh, graph, cost, faces[p], seam, limits, progress); },
-        progress);
+    const auto mend = [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        if (image_of(p) < i)
+            return; // with the first one of the two
+        cuts[p] = mend_patch(mesh, graph, cost, faces[p], seam, limits, progress);
+        // Cuts and their images together: half of them may be enough, but rather too many.
+        if (image_of(p) != i || !surface.is_symmetric() || !cuts[p] || cuts[p]->empty())
+            return;
+        SeamMarks marks = seam;
+        mark_both(surface, *cuts[p], 1, marks);
+        for (const std::vector<Index>& patch : patches_of(mesh, marks, faces[p]))
+            if (!judge::try_cloth(mesh, patch, marks, limits, false, progress).accepted)
+                cuts[p].reset();
+    };
+    parallel_for(static_cast<int>(faces.size()), mend, progress);
     OpenPart part{std::vector<std::uint8_t>(mesh.faces.size(), 0), std::move(seam)};
-    for (std::size_t p = 0; p < faces.size(); ++p)
-        if (cuts[p])
-            mark(mesh, *cuts[p], 1, part.seam);
+    for (std::size_t p = 0; p < faces.size(); ++p) {
+        const auto& own = cuts[std::min(p, static_cast<std::size_t>(image_of(p)))];
+        if (own)
+            mark_both(surface, *own, 1, part.seam);
         else
             for (const Face f : faces[p])
                 part.faces[f] = 1;
+    }
     return part;
 }
 
@@ -209,24 +229,59 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
     return part;
 }
 
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam) {
+    for (const auto& [area, patch] : find_remnants(mesh, seam, tuning.fragment)) {
+        if (patches_of(mesh, seam, {patch.front()}).front() != patch)
+            continue;
+        // Rather where no seam loses its end.
+        std::vector<std::vector<Index>> borders = common_borders(mesh, seam, {}, patch);
+        if (borders.empty())
+            continue;
+        const std::vector<Index> degree = seam_degrees(mesh, seam);
+        const auto loose_ends = [&](const std::vector<Index>& border) {
+            std::vector<Index> left;
+            for (const HalfEdge h : border)
+                left.insert(left.end(), {mesh.origin(h), mesh.target(h)});
+            std::sort(left.begin(), left.end());
+            Index loose = 0;
+            for (std::size_t k = 0; k < left.size(); ++k)
+                if (k + 1 < left.size() && left[k] == left[k + 1] && degree[left[k]] > 2)
+                    ++loose;
+            return loose;
+        };
+        const std::vector<Index>& border =
+            *std::min_element(borders.begin(), borders.end(), [&](const auto& a, const auto& b) {
+                return loose_ends(a) < loose_ends(b);
+            });
+        mark(mesh, border, 0, seam);
+        open_what_floats(mesh, {}, patches_of(mesh, seam, {patch.front()}).front(), seam);
+    }
+    return seam;
+}
+
 Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cost, double most_area,
                       SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = setting.mesh();
     Index tried = 0;
     const auto join_along = [&](const std::vector<Index>& border) {
         SeamMarks marks = seam;
-        mark(mesh, border, 0, marks);
+        mark_both(setting.surface, border, 0, marks);
         ++tried;
         progress.check();
         const std::vector<Index> joined =
             patches_of(mesh, marks, {face_of(border.front())}).front();
-        open_what_floats(mesh, setting.hard, joined, marks);
+        for (const std::vector<Index>& patch :
+             patches_beside(mesh, marks, with_image(setting.surface, {border})))
+            open_what_floats(mesh, setting.hard, patch, marks);
         const auto cuts =
             mend_patch(mesh, setting.graph, cost, joined, marks, setting.tester.limits(), progress);
         if (!cuts || length_of(mesh, *cuts) > tuning.longest_darts * length_of(mesh, border))
             return false;
-        mark(mesh, *cuts, 1, marks);
-        if (patches_of(mesh, marks, joined).size() > 1)
+        mark_both(setting.surface, *cuts, 1, marks);
+        if (patches_of(mesh, marks, joined).size() > 1 ||
+            !setting.tester.accepts_all(
+                patches_beside(mesh, marks, with_image(setting.surface, {border})), marks,
+                progress))
             return false;
         seam = std::move(marks);
         return true;

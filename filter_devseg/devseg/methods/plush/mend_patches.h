@@ -33,9 +33,10 @@ struct OpenPart {
 };
 
 /// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the
-/// others theirs. `cost`: of paths, 3 #F.
-OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
-                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress);
+/// others theirs, and the same to mirror images. `cost`: of paths, 3 #F.
+OpenPart mend_patches(const WorkingSurface& surface, const VertexGraph& graph,
+                      const std::vector<double>& cost, SeamMarks seam,
+                      const judge::ClothLimits& limits, Progress& progress);
 
 /// Seams that are not inside the open part.
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
@@ -44,6 +45,10 @@ SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 /// mirror images.
 OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
                    const OpenPart& on_model);
+
+/// Patches that are nothing but specks, as where two paths of a transfer cross, go to a neighbour:
+/// rather to one whose border with them no other seam meets, since that would lose its end.
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam);
 
 /// Joins patches up to a share of the surface to a neighbour along all of their common border,
 /// where darts up to half as long again as that border are enough to keep the limits. `cost`: of

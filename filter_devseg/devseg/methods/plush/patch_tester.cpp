@@ -1,12 +1,13 @@
 #include "devseg/methods/plush/patch_tester.h"
+#include "devseg/methods/plush/piece_shape.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace devseg::plush {
 
-bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
-                          const Progress& progress) {
+Verdict PatchTester::judge(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
+                           const Progress& progress) {
     std::vector<Index> patch = faces;
     std::sort(patch.begin(), patch.end());
     if (surface_.is_symmetric()) {
@@ -25,11 +26,19 @@ bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std
         if (found != known_.end())
             return found->second;
     }
-    const bool accepted =
-        judge::try_cloth(surface_.mesh, patch, seam, limits_, false, progress).accepted;
+    const judge::ClothTrial trial =
+        judge::try_cloth(surface_.mesh, patch, seam, limits_, false, progress);
+    Verdict verdict{trial.accepted, least_width_};
+    if (least_width_ > 0.0 && !trial.outline.empty())
+        verdict.width = narrowest_neck(trial.outline, least_width_).width;
     const std::lock_guard<std::mutex> lock(mutex_);
-    known_.emplace(std::move(key), accepted);
-    return accepted;
+    known_.emplace(std::move(key), verdict);
+    return verdict;
+}
+
+bool PatchTester::accepts(const std::vector<Index>& faces, const std::vector<std::uint8_t>& seam,
+                          const Progress& progress) {
+    return judge(faces, seam, progress).accepted;
 }
 
 bool PatchTester::accepts_all(const std::vector<std::vector<Index>>& patches,

@@ -258,7 +258,23 @@ private:
         for (const Index p : removal.patches)
             open.insert(open.end(), network.faces[p].begin(), network.faces[p].end());
         std::sort(open.begin(), open.end());
-        return tester.accepts_all(patches_of(mesh_, marks, open), marks, progress_);
+        const std::vector<std::vector<Index>> patches = patches_of(mesh_, marks, open);
+        return tester.accepts_all(patches, marks, progress_) &&
+               makes_no_neck(network, removal, patches, marks);
+    }
+
+    // Whether none of the patches is narrower somewhere than it may be, or than one was before.
+    bool makes_no_neck(const Network& network, const Removal& removal,
+                       const std::vector<std::vector<Index>>& patches,
+                       const SeamMarks& marks) const {
+        double least = s_.tester.least_width();
+        if (least == 0.0)
+            return true;
+        for (const Index p : removal.patches)
+            least = std::min(least, s_.tester.judge(network.faces[p], seam_, progress_).width);
+        return std::all_of(patches.begin(), patches.end(), [&](const std::vector<Index>& patch) {
+            return s_.tester.judge(patch, marks, progress_).width >= least;
+        });
     }
 
     bool apply(const Network& network, const Removal& removal) {

@@ -81,6 +81,13 @@ struct Tuning {
     int patient_rounds = 15;   // after them, what is left is cut in halves
     int isoline_rounds = 4;    // of smoothing
 
+    // Shapes of pieces.
+    double outline_corners = 100.0;        // an outline is measured with about so many
+    double outline_notch = 60.0 * degrees; // turning more into the piece is kept exactly
+    // A piece's least width over the root of the smaller area beyond: joins in pairs by strain make
+    // nothing narrower.
+    double least_width = 0.35;
+
     // Removal.
     std::size_t batch = 6;    // trials that run side by side; fixed, for the same result anywhere
     int most_passes = 2;      // over all segments
@@ -99,6 +106,7 @@ struct Tuning {
     Window dart_windows[4] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
     // Transfer to the model.
+    int fit_turns = 30;         // of moving the surface onto the model, each time less smoothly
     int curve_rounds = 3;       // of smoothing, before seams become edges of the model
     double strip_width = 2.5;   // mean edges of the first surface: paths leave the line no farther
     double leaning = 2.0;       // mean edges of the second one: a path so far away costs double
@@ -109,7 +117,7 @@ struct Tuning {
     double far_margin = 0.75;
     double far_strain = 0.65;
     double own_margin = 0.95;
-    double own_strain = 0.9;
+    double own_strain = 0.9; // in pairs with each step from one surface to the next
     double tighter = 0.88;
     int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
     int most_cuts = 4;          // that mend a patch

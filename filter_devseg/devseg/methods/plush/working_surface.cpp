@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "devseg/atlas/charts.h"
@@ -40,15 +41,23 @@ void link_twins(Mesh& mesh) {
         }
 }
 
+// What lies on one side of a plane.
+struct Half {
+    Mesh mesh;
+    std::vector<Index> place; // #V: the vertex of the whole, or the nearer end of an edge cut
+};
+
 // Cuts a mesh along a plane and keeps what lies below it.
 class Slicer {
 public:
     Slicer(const Mesh& mesh, const MirrorPlane& plane)
         : mesh_(mesh), plane_(plane), crossing_(mesh.twin.size(), -1) {
         snap_vertices();
+        place_.resize(mesh.points.size());
+        std::iota(place_.begin(), place_.end(), 0);
     }
 
-    Mesh slice() {
+    Half slice() {
         Mesh half;
         half.points = points_;
         half.unit_length = mesh_.unit_length;
@@ -56,7 +65,7 @@ public:
             add_part(f, half);
         link_twins(half);
         mesh::compute_face_geometry(half);
-        return half;
+        return {std::move(half), place_};
     }
 
 private:
@@ -86,6 +95,7 @@ private:
                 crossing_[twin] = crossing_[h];
             const Vec3 p = points_[a] + t * (points_[b] - points_[a]);
             half.points.push_back(p - plane_.height(p) * plane_.normal);
+            place_.push_back(t < 0.5 ? a : b);
         }
         return crossing_[h];
     }
@@ -119,10 +129,12 @@ private:
     std::vector<Vec3> points_;
     std::vector<double> height_;  // #V
     std::vector<Index> crossing_; // 3 #F: new vertex on the edge
+    std::vector<Index> place_;    // #V of the half
 };
 
 // Without small pieces, and with one fan of faces at each vertex.
-Mesh clean_half(const Mesh& half, double surface_area) {
+Half clean_half(const Half& sliced, double surface_area) {
+    const Mesh& half = sliced.mesh;
     const mesh::FaceComponents pieces = mesh::face_components(half, [](Index) { return true; });
     std::vector<double> area(at(pieces.count), 0.0);
     for (std::size_t f = 0; f < half.faces.size(); ++f)
@@ -131,8 +143,12 @@ Mesh clean_half(const Mesh& half, double surface_area) {
     for (const Face f : half.all_faces())
         if (area[pieces.label[f]] > tuning.speck * surface_area)
             kept.push_back(f);
-    return atlas::mesh_of(
-        half, atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
+    const atlas::ChartSurface surface =
+        atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size()));
+    Half clean{atlas::mesh_of(half, surface), {}};
+    for (const Vertex v : surface.vertex)
+        clean.place.push_back(sliced.place[v]);
+    return clean;
 }
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
@@ -179,6 +195,7 @@ WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
     // To the last bit: what is measured on both sides must agree.
     for (Face f = 0; f < n; ++f)
         mesh.face_areas[f + n] = mesh.face_areas[f];
+    result.side = plane;
     return result;
 }
 
@@ -199,7 +216,7 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
     double least = infinite;
     for (const MirrorPlane& side : {plane, turned}) {
         progress.check();
-        Mesh half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
+        Mesh half = clean_half(Slicer(mesh, side).slice(), mesh.total_area).mesh;
         if (half.faces.empty())
             continue;
         const double area = 2.0 * half.total_area / mesh.total_area;
@@ -217,9 +234,30 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
     return best;
 }
 
+std::optional<MirroredModel> mirrored_model(const Mesh& mesh, const MirrorPlane& side) {
+    const Half half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
+    if (half.mesh.faces.empty())
+        return std::nullopt;
+    MirroredModel model{glue(half.mesh, side), half.place};
+    if (euler_characteristic(model.surface.mesh) != euler_characteristic(mesh))
+        return std::nullopt;
+    model.place.resize(model.surface.mesh.points.size(), -1);
+    return model;
+}
+
 void mirror_marks(const WorkingSurface& surface, SeamMarks& marks) {
     for (std::size_t h = 0; h < surface.image.size() / 2; ++h)
         marks[surface.image[h]] = marks[h];
+}
+
+std::vector<std::vector<Index>> with_image(const WorkingSurface& surface,
+                                           std::vector<std::vector<Index>> lines) {
+    for (std::size_t i = 0, count = lines.size(); i < count && surface.is_symmetric(); ++i) {
+        lines.push_back(lines[i]);
+        for (Index& h : lines.back())
+            h = surface.image[h];
+    }
+    return lines;
 }
 
 void mark_both(const WorkingSurface& surface, const std::vector<Index>& line, std::uint8_t value,
