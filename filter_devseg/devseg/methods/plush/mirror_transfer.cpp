@@ -33,8 +33,8 @@ HalfEdge edge_between(const VertexGraph& graph, Vertex a, Vertex b) {
     return HalfEdge(-1);
 }
 
-// Edges that were cut by the plane shrink to one of their ends. What a segment then runs along twice
-// is a spur, and none of it.
+// Edges that were cut by the plane shrink to one of their ends. What a segment then runs along
+// twice is a spur, and none of it.
 SeamMarks own_half(const MirroredModel& mirrored, const SeamMarks& seam, const Mesh& model,
                    const VertexGraph& graph) {
     const Mesh& mesh = mirrored.surface.mesh;
@@ -88,8 +88,8 @@ SeamMarks seams_on_model(const MirroredModel& mirrored, const Mesh& placed, cons
     zones.place = mirrored.place;
     zones.seam = own_half(mirrored, seam, model, graph);
     zones.is_smooth = true;
-    return transfer_seams(placed, seam, model, graph,
-                          std::vector<double>(model.twin.size(), 1.0), std::move(zones), progress);
+    return transfer_seams(placed, seam, model, graph, std::vector<double>(model.twin.size(), 1.0),
+                          std::move(zones), progress);
 }
 
 } // namespace devseg::plush

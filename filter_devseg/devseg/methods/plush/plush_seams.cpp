@@ -45,8 +45,8 @@ SeamMarks mended_on_model(Evidence& on_model, SeamMarks seam, const PlushOptions
                      std::move(seam), limits_of(options, 1.0, false), progress);
     if (part.has_open_faces()) {
         auto deciding = progress.part(0.6 * progress.left());
-        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
-                           deciding);
+        part.seam =
+            decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result, deciding);
     }
     auto cleaning = progress.part(progress.left());
     return without_remnants(on_model, std::move(part.seam), {}, 1.0, options, result, cleaning);
@@ -67,8 +67,7 @@ SeamMarks decide_in_pairs(Evidence& working, const MirroredModel& mirrored,
                                 cleaning);
     }
     auto weighing = progress.part("finding the skeleton", 0.02);
-    Evidence there =
-        find_evidence(mirrored.surface, options, working.skeleton, result, weighing);
+    Evidence there = find_evidence(mirrored.surface, options, working.skeleton, result, weighing);
     there.least_width = tuning.least_width;
     auto transferring = progress.part("transferring seams", 0.06);
     seam = seams_in_pairs(surface, seam, mirrored.surface, there.graph,
@@ -81,8 +80,8 @@ SeamMarks decide_in_pairs(Evidence& working, const MirroredModel& mirrored,
         std::move(seam), limits_of(options, tuning.own_strain, false), transferring);
     if (part.has_open_faces()) {
         auto deciding_again = progress.part(0.6 * progress.left());
-        part.seam = decide(there, part, fixed_seams(mirrored.surface.mesh, part),
-                           tuning.own_strain, options, result, deciding_again);
+        part.seam = decide(there, part, fixed_seams(mirrored.surface.mesh, part), tuning.own_strain,
+                           options, result, deciding_again);
     }
     auto cleaning = progress.part(progress.left());
     return without_remnants(there, std::move(part.seam), {}, tuning.own_strain, options, result,
@@ -104,16 +103,15 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     if (by_strain && surface.is_symmetric())
         if (const auto mirrored = mirrored_model(model.mesh, surface.side)) {
             auto deciding = progress.part(0.7);
-            const SeamMarks seam =
-                decide_in_pairs(working, *mirrored, options, result, deciding);
+            const SeamMarks seam = decide_in_pairs(working, *mirrored, options, result, deciding);
             auto transferring = progress.part("transferring seams", 0.06);
             Mesh placed = mirrored->surface.mesh;
             if (!std::getenv("X_RIGID"))
-                placed.points = moved_along(
-                    placed, surface.mesh,
-                    fitted_to(model.mesh, surface.mesh, working.graph, transferring));
-            SeamMarks on = seams_on_model(*mirrored, placed, seam, model.mesh, on_model.graph,
-                                          transferring);
+                placed.points =
+                    moved_along(placed, surface.mesh,
+                                fitted_to(model.mesh, surface.mesh, working.graph, transferring));
+            SeamMarks on =
+                seams_on_model(*mirrored, placed, seam, model.mesh, on_model.graph, transferring);
             on = absorb_specks(model.mesh, std::move(on));
             if (std::getenv("X_RAW"))
                 return on;
@@ -186,7 +184,8 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress)
             .weight;
-    OpenPart part = mend_patches(surface, graph, weight, std::move(seam), tester.limits(), progress);
+    OpenPart part =
+        mend_patches(surface, graph, weight, std::move(seam), tester.limits(), progress);
     result.all_developable =
         add_local_seams({surface, graph, {}, weight, tester, tester, weight, weight},
                         std::move(part.faces), part.seam, progress);

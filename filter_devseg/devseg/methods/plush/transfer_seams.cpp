@@ -38,9 +38,8 @@ public:
     SeamTransfer(const Mesh& from, const Mesh& to, const VertexGraph& graph,
                  const std::vector<double>& factor, TransferZones zones)
         : from_(from), to_(to), graph_(graph), factor_(factor), zones_(std::move(zones)),
-          search_(to),
-          normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
-          may_border_(mesh::boundary_vertices(to)),
+          search_(to), normal_(mesh::vertex_normals(from)),
+          on_border_(mesh::boundary_vertices(from)), may_border_(mesh::boundary_vertices(to)),
           reach_(tuning.strip_width * mean_edge_length(from)),
           leaning_(tuning.leaning * mean_edge_length(to) *
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "devseg/atlas/charts.h"
@@ -41,10 +40,13 @@ void link_twins(Mesh& mesh) {
         }
 }
 
+// Two vertices of the whole: the ends of an edge that the plane cuts, or twice the same one.
+using Ends = std::array<Index, 2>;
+
 // What lies on one side of a plane.
 struct Half {
     Mesh mesh;
-    std::vector<Index> place; // #V: the vertex of the whole, or the nearer end of an edge cut
+    std::vector<Ends> ends; // #V: where its vertices are on the whole
 };
 
 // Cuts a mesh along a plane and keeps what lies below it.
@@ -53,8 +55,8 @@ public:
     Slicer(const Mesh& mesh, const MirrorPlane& plane)
         : mesh_(mesh), plane_(plane), crossing_(mesh.twin.size(), -1) {
         snap_vertices();
-        place_.resize(mesh.points.size());
-        std::iota(place_.begin(), place_.end(), 0);
+        for (const Vertex v : mesh.all_vertices())
+            ends_.push_back({v, v});
     }
 
     Half slice() {
@@ -65,7 +67,7 @@ public:
             add_part(f, half);
         link_twins(half);
         mesh::compute_face_geometry(half);
-        return {std::move(half), place_};
+        return {std::move(half), ends_};
     }
 
 private:
@@ -95,7 +97,7 @@ private:
                 crossing_[twin] = crossing_[h];
             const Vec3 p = points_[a] + t * (points_[b] - points_[a]);
             half.points.push_back(p - plane_.height(p) * plane_.normal);
-            place_.push_back(t < 0.5 ? a : b);
+            ends_.push_back({a, b});
         }
         return crossing_[h];
     }
@@ -129,7 +131,7 @@ private:
     std::vector<Vec3> points_;
     std::vector<double> height_;  // #V
     std::vector<Index> crossing_; // 3 #F: new vertex on the edge
-    std::vector<Index> place_;    // #V of the half
+    std::vector<Ends> ends_;      // #V of the half
 };
 
 // Without small pieces, and with one fan of faces at each vertex.
@@ -147,8 +149,68 @@ Half clean_half(const Half& sliced, double surface_area) {
         atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size()));
     Half clean{atlas::mesh_of(half, surface), {}};
     for (const Vertex v : surface.vertex)
-        clean.place.push_back(sliced.place[v]);
+        clean.ends.push_back(sliced.ends[v]);
     return clean;
+}
+
+// One of two ends each, so that the closed line from one to the next is shortest.
+std::vector<Index> shortest_loop(const Mesh& whole, const std::vector<Ends>& ends) {
+    const std::size_t count = ends.size();
+    std::vector<Index> best;
+    double least = infinite;
+    constexpr std::array<std::size_t, 2> both{0, 1};
+    for (const std::size_t first : both) {
+        std::array<double, 2> length{infinite, infinite};
+        length[first] = 0.0;
+        std::vector<std::array<std::size_t, 2>> before(count + 1);
+        for (std::size_t i = 1; i <= count; ++i) {
+            std::array<double, 2> next{infinite, infinite};
+            for (const std::size_t from : both)
+                for (const std::size_t to : both) {
+                    const double d = length[from] + (whole.points[ends[i - 1][from]] -
+                                                     whole.points[ends[i % count][to]])
+                                                        .norm();
+                    if (d < next[to]) {
+                        next[to] = d;
+                        before[i][to] = from;
+                    }
+                }
+            length = next;
+        }
+        if (length[first] >= least)
+            continue;
+        least = length[first];
+        best.resize(count);
+        for (std::size_t i = count, end = first; i > 0; --i) {
+            end = before[i][end];
+            best[i - 1] = ends[i - 1][end];
+        }
+    }
+    return best;
+}
+
+// The vertices of the whole that those of the half are or become.
+std::vector<Index> places_of(const Mesh& whole, const Half& half) {
+    std::vector<Index> place;
+    for (const Ends& ends : half.ends)
+        place.push_back(ends[0]);
+    std::vector<std::uint8_t> is_done(half.mesh.twin.size(), 0);
+    for (const HalfEdge start : half.mesh.all_half_edges()) {
+        std::vector<Index> loop;
+        std::vector<Ends> ends;
+        for (HalfEdge h = start; half.mesh.twin[h] < 0 && is_done[h] == 0;
+             h = half.mesh.next_on_boundary(h)) {
+            is_done[h] = 1;
+            loop.push_back(half.mesh.origin(h));
+            ends.push_back(half.ends[half.mesh.origin(h)]);
+        }
+        if (loop.empty())
+            continue;
+        const std::vector<Index> chosen = shortest_loop(whole, ends);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            place[at(loop[i])] = chosen[i];
+    }
+    return place;
 }
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
@@ -238,7 +300,7 @@ std::optional<MirroredModel> mirrored_model(const Mesh& mesh, const MirrorPlane&
     const Half half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
     if (half.mesh.faces.empty())
         return std::nullopt;
-    MirroredModel model{glue(half.mesh, side), half.place};
+    MirroredModel model{glue(half.mesh, side), places_of(mesh, half)};
     if (euler_characteristic(model.surface.mesh) != euler_characteristic(mesh))
         return std::nullopt;
     model.place.resize(model.surface.mesh.points.size(), -1);

@@ -47,8 +47,9 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
 /// The part of the mesh below the plane as it is, with its mirror image.
 struct MirroredModel {
     WorkingSurface surface;
-    // #V of the surface: the vertex of the mesh that is there, on the plane the nearer end of the
-    // edge that was cut; −1 on the mirror image. Neighbours have neighbours, or the same.
+    // #V of the surface: the vertex of the mesh that is there; on the plane an end of the edge that
+    // was cut, so that lines along the plane become short; −1 on the mirror image. Neighbours have
+    // neighbours, or the same.
     std::vector<Index> place;
 };
 /// Nothing where it has another topology than the mesh.

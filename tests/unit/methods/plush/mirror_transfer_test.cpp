@@ -120,9 +120,9 @@ TEST(MirrorTransfer, OneHalfOfTheModelGetsItsSeamsEdgeByEdge) {
         ++same;
         bool found = false;
         for (const HalfEdge e : mesh.all_half_edges())
-            found = found || (marks[e] != 0 &&
-                              mesh.points[mesh.origin(e)] == half.points[half.origin(h)] &&
-                              mesh.points[mesh.target(e)] == half.points[half.target(h)]);
+            found = found ||
+                    (marks[e] != 0 && mesh.points[mesh.origin(e)] == half.points[half.origin(h)] &&
+                     mesh.points[mesh.target(e)] == half.points[half.target(h)]);
         EXPECT_TRUE(found);
     }
     EXPECT_GT(same, 20);
