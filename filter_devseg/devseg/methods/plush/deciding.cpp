@@ -51,9 +51,9 @@ std::vector<Index> limb_tips(const Evidence& evidence, const OpenPart& open) {
     return tips;
 }
 
-void mark_plane(const WorkingSurface& surface, const OpenPart& open, SeamMarks& seam) {
+void mark_plane(const WorkingSurface& surface, SeamMarks& seam) {
     for (const HalfEdge h : surface.mesh.all_half_edges())
-        if (surface.is_on_plane(h) && open.is_inside(surface.mesh, h))
+        if (surface.is_on_plane(h))
             mark(surface.mesh, h, 1, seam);
 }
 
@@ -69,7 +69,7 @@ void clean_patches(const WorkingSurface& surface, const OpenPart& open, const Se
     for (const HalfEdge h : mesh.all_half_edges())
         if (!hard.empty() && (hard[h] != 0 || !open.is_inside(mesh, h)))
             seam[h] = hard[h];
-    mark_plane(surface, open, seam);
+    mark_plane(surface, seam);
     mirror_marks(surface, seam);
 }
 
@@ -77,7 +77,7 @@ void clean_patches(const WorkingSurface& surface, const OpenPart& open, const Se
 void lay_candidates(Evidence& evidence, const OpenPart& open, const SeamMarks& hard,
                     PlushSeams& result, SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = evidence.surface.mesh;
-    mark_plane(evidence.surface, open, seam);
+    mark_plane(evidence.surface, seam);
     const std::vector<Limb> limbs =
         find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence, open), progress);
     result.limbs = std::max(result.limbs, static_cast<Index>(limbs.size()));
@@ -213,7 +213,7 @@ SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard
 
 SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
                            double share, const PlushOptions& options, PlushSeams& result,
-                           Progress& progress) {
+                           Progress& progress, bool keep_pairs) {
     const WorkingSurface& surface = evidence.surface;
     const std::vector<double>& weight = evidence.weights.weight;
     PatchTester tester(surface, limits_of(options, share, false), evidence.least_width);
@@ -230,17 +230,23 @@ SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamM
     remnants.least_neck = tuning.narrow_neck;
     const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
                                   tuning.least_thin * mean_edge_length(surface.mesh));
-    const std::vector<Pass> passes{
-        {"giving tongues away", 0.35,
-         [&](auto& seams, auto& part) { return give_tongues_away(searching, width, seams, part); }},
-        {"joining patches", 0.2,
-         [&](auto& seams, auto& part) { return join_patches(setting, remnants, seams, part); }},
+    std::vector<Pass> passes;
+    if (!keep_pairs)
+        passes = {{"giving tongues away", 0.35,
+                   [&](auto& seams, auto& part) {
+                       return give_tongues_away(searching, width, seams, part);
+                   }},
+                  {"joining patches", 0.2, [&](auto& seams, auto& part) {
+                       return join_patches(setting, remnants, seams, part);
+                   }}};
+    const std::vector<Pass> smallest{
         {"absorbing remnants", 0.25,
          [&](auto& seams, auto& part) {
              return absorb_remnants(setting, cost, tuning.small_patch / 10.0, seams, part);
          }},
         {"blunting corners", 0.2,
          [&](auto& seams, auto& part) { return blunt_acute_corners(setting, seams, part); }}};
+    passes.insert(passes.end(), smallest.begin(), smallest.end());
     return run(passes, std::move(seam), result, progress);
 }
 

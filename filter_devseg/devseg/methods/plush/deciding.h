@@ -36,9 +36,10 @@ judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_
 SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
                  const PlushOptions& options, PlushSeams& result, Progress& progress);
 
-/// Seams with which small patches and thin tongues are given to neighbours. `share`: as above.
+/// Seams with which small patches and thin tongues are given to neighbours. `share`: as above. To
+/// keep pairs, tongues stay, and only the smallest patches go.
 SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
                            double share, const PlushOptions& options, PlushSeams& result,
-                           Progress& progress);
+                           Progress& progress, bool keep_pairs = false);
 
 } // namespace devseg::plush

@@ -54,31 +54,4 @@ Mesh fitted_to(const Mesh& model, const Mesh& surface, const VertexGraph& graph,
     return fitted;
 }
 
-std::vector<Vec3> moved_along(const Mesh& mesh, const Mesh& surface, const Mesh& moved) {
-    const mesh::SurfaceSearch search(surface);
-    const std::vector<Vec3> normal = mesh::vertex_normals(mesh);
-    const auto anywhere = [](Index) { return true; };
-    std::vector<Vec3> points = mesh.points;
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        const Index near = search.vertex(points[v], normal[v], anywhere);
-        if (near < 0)
-            continue;
-        const auto [face, place] = search.on_faces(points[v], near, anywhere);
-        // The shares of its corners: areas opposite to them.
-        const Triangle& t = surface.faces[face];
-        Vec3 move = Vec3::Zero();
-        double whole = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3& a = surface.points[t[(k + 1) % 3]];
-            const Vec3& b = surface.points[t[(k + 2) % 3]];
-            const double share = (a - place).cross(b - place).norm();
-            move += share * (moved.points[t[k]] - surface.points[t[k]]);
-            whole += share;
-        }
-        if (whole > 0.0)
-            points[v] += move / whole;
-    }
-    return points;
-}
-
 } // namespace devseg::plush

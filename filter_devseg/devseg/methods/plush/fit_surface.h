@@ -1,8 +1,6 @@
 // A surface bent until it lies on another one.
 #pragma once
 
-#include <vector>
-
 #include "devseg/base/progress.h"
 #include "devseg/methods/plush/seam_network.h"
 
@@ -13,8 +11,5 @@ namespace devseg::plush {
 /// image has them. `graph`: of the surface.
 Mesh fitted_to(const Mesh& model, const Mesh& surface, const VertexGraph& graph,
                const Progress& progress);
-
-/// Points (#V of `mesh`) that are moved as those of a surface near them.
-std::vector<Vec3> moved_along(const Mesh& mesh, const Mesh& surface, const Mesh& moved);
 
 } // namespace devseg::plush

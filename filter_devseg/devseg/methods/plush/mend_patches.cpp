@@ -158,41 +158,21 @@ bool OpenPart::is_inside(const Mesh& mesh, HalfEdge h) const {
     return is_open(face_of(h)) && (mesh.twin[h] < 0 || is_open(face_of(mesh.twin[h])));
 }
 
-OpenPart mend_patches(const WorkingSurface& surface, const VertexGraph& graph,
-                      const std::vector<double>& cost, SeamMarks seam,
-                      const judge::ClothLimits& limits, Progress& progress) {
-    const Mesh& mesh = surface.mesh;
-    const std::vector<Index> label = find_patches(mesh, seam).label;
+OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
+                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress) {
     const std::vector<std::vector<Index>> faces = patches_of(mesh, seam);
-    const auto image_of = [&](std::size_t p) {
-        return surface.is_symmetric() ? label[surface.face_image(faces[p].front())]
-                                      : static_cast<Index>(p);
-    };
     std::vector<std::optional<std::vector<Index>>> cuts(faces.size());
-    const auto mend = [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        if (image_of(p) < i)
-            return; // with the first one of the two
-        cuts[p] = mend_patch(mesh, graph, cost, faces[p], seam, limits, progress);
-        // Cuts and their images together: half of them may be enough, but rather too many.
-        if (image_of(p) != i || !surface.is_symmetric() || !cuts[p] || cuts[p]->empty())
-            return;
-        SeamMarks marks = seam;
-        mark_both(surface, *cuts[p], 1, marks);
-        for (const std::vector<Index>& patch : patches_of(mesh, marks, faces[p]))
-            if (!judge::try_cloth(mesh, patch, marks, limits, false, progress).accepted)
-                cuts[p].reset();
-    };
-    parallel_for(static_cast<int>(faces.size()), mend, progress);
+    parallel_for(
+        static_cast<int>(faces.size()),
+        [&](int p) { cuts[p] = mend_patch(mesh, graph, cost, faces[p], seam, limits, progress); },
+        progress);
     OpenPart part{std::vector<std::uint8_t>(mesh.faces.size(), 0), std::move(seam)};
-    for (std::size_t p = 0; p < faces.size(); ++p) {
-        const auto& own = cuts[std::min(p, static_cast<std::size_t>(image_of(p)))];
-        if (own)
-            mark_both(surface, *own, 1, part.seam);
+    for (std::size_t p = 0; p < faces.size(); ++p)
+        if (cuts[p])
+            mark(mesh, *cuts[p], 1, part.seam);
         else
             for (const Face f : faces[p])
                 part.faces[f] = 1;
-    }
     return part;
 }
 
@@ -279,9 +259,10 @@ Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cos
             return false;
         mark_both(setting.surface, *cuts, 1, marks);
         if (patches_of(mesh, marks, joined).size() > 1 ||
-            !setting.tester.accepts_all(
-                patches_beside(mesh, marks, with_image(setting.surface, {border})), marks,
-                progress))
+            (setting.surface.is_symmetric() &&
+             !setting.tester.accepts_all(
+                 patches_beside(mesh, marks, with_image(setting.surface, {border})), marks,
+                 progress)))
             return false;
         seam = std::move(marks);
         return true;

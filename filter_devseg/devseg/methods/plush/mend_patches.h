@@ -33,10 +33,9 @@ struct OpenPart {
 };
 
 /// The patches that do not keep the limits, where a few cuts do not help: `mend_patch` gives the
-/// others theirs, and the same to mirror images. `cost`: of paths, 3 #F.
-OpenPart mend_patches(const WorkingSurface& surface, const VertexGraph& graph,
-                      const std::vector<double>& cost, SeamMarks seam,
-                      const judge::ClothLimits& limits, Progress& progress);
+/// others theirs. `cost`: of paths, 3 #F.
+OpenPart mend_patches(const Mesh& mesh, const VertexGraph& graph, const std::vector<double>& cost,
+                      SeamMarks seam, const judge::ClothLimits& limits, Progress& progress);
 
 /// Seams that are not inside the open part.
 SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);

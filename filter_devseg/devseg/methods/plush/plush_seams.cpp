@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -26,66 +25,56 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
                                     const SeamMarks& hard, bool by_strain, Progress& progress) {
     if (!hard.empty())
         return {mesh, {}};
-    if (plane)
-        if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
-            return std::move(*surface);
     const Index most = tuning.mirrored_faces * 3 / 2;
+    if (plane)
+        if (auto surface =
+                mirrored_working_surface(mesh, *plane, tuning.mirrored_faces,
+                                         by_strain ? most : tuning.mirrored_faces, progress))
+            return std::move(*surface);
     if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
     return plain_working_surface(mesh, most, progress);
 }
 
-// Patches of the model that do not keep their limits are mended, or seams are decided there again.
-SeamMarks mended_on_model(Evidence& on_model, SeamMarks seam, const PlushOptions& options,
-                          PlushSeams& result, Progress& progress) {
-    const WorkingSurface& model = on_model.surface;
-    OpenPart part =
-        mend_patches(model, on_model.graph,
-                     natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                     std::move(seam), limits_of(options, 1.0, false), progress);
+// The seams of the model: what is open is decided there, and remnants go.
+SeamMarks settled_on_model(Evidence& on_model, OpenPart part, const PlushOptions& options,
+                           PlushSeams& result, Progress& progress, bool keep_pairs = false) {
     if (part.has_open_faces()) {
         auto deciding = progress.part(0.6 * progress.left());
-        part.seam =
-            decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result, deciding);
+        part.seam = decide(on_model, part, fixed_seams(on_model.surface.mesh, part), 1.0, options,
+                           result, deciding);
     }
     auto cleaning = progress.part(progress.left());
-    return without_remnants(on_model, std::move(part.seam), {}, 1.0, options, result, cleaning);
+    return without_remnants(on_model, std::move(part.seam), {}, 1.0, options, result, cleaning,
+                            keep_pairs);
 }
 
-// The same on the model's own half and its mirror image, in pairs.
-SeamMarks decide_in_pairs(Evidence& working, const MirroredModel& mirrored,
+// Darts for patches of the model that do not keep their limits.
+OpenPart mended(const Evidence& on_model, SeamMarks seam, const PlushOptions& options,
+                Progress& progress) {
+    const Mesh& mesh = on_model.surface.mesh;
+    return mend_patches(mesh, on_model.graph,
+                        natural_lengths(mesh, on_model.weights.stray, tuning.natural_dart),
+                        std::move(seam), limits_of(options, 1.0, false), progress);
+}
+
+// The working surface is the model's own half with its mirror image: all is settled there, in
+// pairs, and the other half of the model gets the images of the seams.
+SeamMarks decide_in_pairs(Evidence& working, Evidence& on_model, const MirroredModel& mirrored,
                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
-    const WorkingSurface& surface = working.surface;
-    const bool is_coarse = surface.mesh.face_count() < mirrored.surface.mesh.face_count();
-    working.least_width = tuning.least_width;
-    auto deciding = progress.part(0.6);
-    const double share = tuning.own_strain * (is_coarse ? tuning.own_strain : 1.0);
-    SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
-    if (!is_coarse) {
-        auto cleaning = progress.part(progress.left());
-        return without_remnants(working, std::move(seam), {}, tuning.own_strain, options, result,
-                                cleaning);
-    }
-    auto weighing = progress.part("finding the skeleton", 0.02);
-    Evidence there = find_evidence(mirrored.surface, options, working.skeleton, result, weighing);
-    there.least_width = tuning.least_width;
-    auto transferring = progress.part("transferring seams", 0.06);
-    seam = seams_in_pairs(surface, seam, mirrored.surface, there.graph,
-                          transfer_factors(there, options), transferring);
-    seam = absorb_specks(mirrored.surface.mesh, std::move(seam));
-    mirror_marks(mirrored.surface, seam);
-    OpenPart part = mend_patches(
-        mirrored.surface, there.graph,
-        natural_lengths(mirrored.surface.mesh, there.weights.stray, tuning.natural_dart),
-        std::move(seam), limits_of(options, tuning.own_strain, false), transferring);
-    if (part.has_open_faces()) {
-        auto deciding_again = progress.part(0.6 * progress.left());
-        part.seam = decide(there, part, fixed_seams(mirrored.surface.mesh, part), tuning.own_strain,
-                           options, result, deciding_again);
-    }
-    auto cleaning = progress.part(progress.left());
-    return without_remnants(there, std::move(part.seam), {}, tuning.own_strain, options, result,
+    working.least_width = on_model.least_width = tuning.least_width;
+    auto deciding = progress.part(0.7);
+    SeamMarks seam = decide(working, {}, {}, tuning.own_strain, options, result, deciding);
+    auto cleaning = progress.part(0.5 * progress.left());
+    seam = without_remnants(working, std::move(seam), {}, tuning.own_strain, options, result,
                             cleaning);
+    const Mesh& model = on_model.surface.mesh;
+    auto transferring = progress.part("transferring seams", 0.1);
+    const Mesh placed = fitted_to(model, working.surface.mesh, working.graph, transferring);
+    seam = seams_on_model(mirrored, placed, seam, model, on_model.graph, transferring);
+    OpenPart part = mended(on_model, absorb_specks(model, std::move(seam)), options, transferring);
+    auto settling = progress.part(progress.left());
+    return settled_on_model(on_model, std::move(part), options, result, settling, true);
 }
 
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
@@ -99,57 +88,38 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
-    // Pieces that a person would sew come in pairs.
     if (by_strain && surface.is_symmetric())
-        if (const auto mirrored = mirrored_model(model.mesh, surface.side)) {
-            auto deciding = progress.part(0.7);
-            const SeamMarks seam = decide_in_pairs(working, *mirrored, options, result, deciding);
-            auto transferring = progress.part("transferring seams", 0.06);
-            Mesh placed = mirrored->surface.mesh;
-            if (!std::getenv("X_RIGID"))
-                placed.points =
-                    moved_along(placed, surface.mesh,
-                                fitted_to(model.mesh, surface.mesh, working.graph, transferring));
-            SeamMarks on =
-                seams_on_model(*mirrored, placed, seam, model.mesh, on_model.graph, transferring);
-            on = absorb_specks(model.mesh, std::move(on));
-            if (std::getenv("X_RAW"))
-                return on;
-            auto mending = progress.part(progress.left());
-            on_model.least_width = tuning.least_width;
-            return mended_on_model(on_model, std::move(on), options, result, mending);
-        }
+        if (const auto mirrored = mirrored_model(model.mesh, surface.side))
+            if (mirrored->surface.mesh.face_count() == surface.mesh.face_count())
+                return decide_in_pairs(working, on_model, *mirrored, options, result, progress);
     double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
     auto deciding = progress.part(0.5);
     SeamMarks seam = decide(working, {}, {}, share, options, result, deciding);
-    const auto transferred = [&](Progress& part) {
-        return transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                              transfer_factors(on_model, options), {}, part);
-    };
     // Where the model has two halves, they stay alike only as long as seams are decided on both.
     // By strain, darts and cuts on the model do better.
     const int most_rounds =
         by_strain ? 0 : tuning.second_thoughts + (surface.is_symmetric() ? 1 : 0);
-    for (int round = 0; round < most_rounds; ++round) {
+    OpenPart part;
+    for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        const OpenPart part =
-            mend_patches(model, on_model.graph,
-                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                         transferred(transferring), limits_of(options, 1.0, false), transferring);
+        part = mended(on_model,
+                      transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                     transfer_factors(on_model, options), {}, transferring),
+                      options, transferring);
+        if (!part.has_open_faces() || round == most_rounds)
+            break;
         const OpenPart again = same_part(surface, seam, model.mesh, part);
-        if (!part.has_open_faces() || !again.has_open_faces())
+        if (!again.has_open_faces())
             break;
         share *= tuning.tighter;
         auto deciding_again = progress.part(0.4 * progress.left());
         seam = decide(working, again, fixed_seams(surface.mesh, again), share, options, result,
                       deciding_again);
     }
-    auto transferring = progress.part("transferring seams", 0.06);
-    SeamMarks on = transferred(transferring);
-    auto mending = progress.part(progress.left());
-    return mended_on_model(on_model, std::move(on), options, result, mending);
+    auto settling = progress.part(progress.left());
+    return settled_on_model(on_model, std::move(part), options, result, settling);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are
@@ -184,8 +154,7 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
                      mean_curvature(mesh), {}, {}, progress)
             .weight;
-    OpenPart part =
-        mend_patches(surface, graph, weight, std::move(seam), tester.limits(), progress);
+    OpenPart part = mend_patches(mesh, graph, weight, std::move(seam), tester.limits(), progress);
     result.all_developable =
         add_local_seams({surface, graph, {}, weight, tester, tester, weight, weight},
                         std::move(part.faces), part.seam, progress);

@@ -36,15 +36,15 @@ double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
 class SeamTransfer {
 public:
     SeamTransfer(const Mesh& from, const Mesh& to, const VertexGraph& graph,
-                 const std::vector<double>& factor, TransferZones zones)
-        : from_(from), to_(to), graph_(graph), factor_(factor), zones_(std::move(zones)),
-          search_(to), normal_(mesh::vertex_normals(from)),
-          on_border_(mesh::boundary_vertices(from)), may_border_(mesh::boundary_vertices(to)),
+                 const std::vector<double>& factor, TransferRest rest)
+        : from_(from), to_(to), graph_(graph), factor_(factor), rest_(std::move(rest)), search_(to),
+          normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
+          may_border_(mesh::boundary_vertices(to)),
           reach_(tuning.strip_width * mean_edge_length(from)),
           leaning_(tuning.leaning * mean_edge_length(to) *
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
                               tuning.least_leaning, 1.0)),
-          seam_(zones_.seam), taken_(to.points.size(), 0), place_(zones_.place) {
+          seam_(rest_.seam), taken_(to.points.size(), 0), place_(rest_.place) {
         seam_.resize(to.twin.size(), 0);
         place_.resize(from.points.size(), -1);
         for (const HalfEdge h : to.all_half_edges())
@@ -55,7 +55,7 @@ public:
     }
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
-        points_ = zones_.is_smooth ? from_.points : smooth_seams(from_, seam);
+        points_ = rest_.is_smooth ? from_.points : smooth_seams(from_, seam);
         std::vector<SeamSegment> segments = find_segments(from_, seam);
         std::stable_sort(
             segments.begin(), segments.end(),
@@ -64,7 +64,7 @@ public:
         for (const SeamSegment& segment : segments)
             add_lines(segment, lines);
         for (const Line& line : lines)
-            for (const Vertex v : {line.vertices.front(), line.vertices.back()})
+            for (const Vertex v : {line.front(), line.back()})
                 if (place(v) >= 0)
                     taken_[place(v)] = 1;
         for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -75,14 +75,10 @@ public:
     }
 
 private:
-    // A part of a segment.
-    struct Line {
-        std::vector<Index> vertices;
-        std::uint8_t zone = 0;
-    };
+    using Line = std::vector<Index>; // vertices of a part of a segment
 
-    static std::uint8_t zone_of(const std::vector<std::uint8_t>& zones, Index i) {
-        return zones.empty() ? 0 : zones[at(i)];
+    static bool is_set(const std::vector<std::uint8_t>& marks, Index i) {
+        return !marks.empty() && marks[at(i)] != 0;
     }
 
     // Of a segment, in short parts.
@@ -94,52 +90,51 @@ private:
             Line line;
             for (std::size_t k = part * count / parts; k < (part + 1) * count / parts; ++k) {
                 const HalfEdge h = segment.half_edges[k];
-                const std::uint8_t zone = zone_of(zones_.line, h);
-                if (!line.vertices.empty() && zone != line.zone)
-                    add(std::exchange(line, {}), lines);
-                if (line.vertices.empty())
-                    line = {{from_.origin(h)}, zone};
-                line.vertices.push_back(from_.target(h));
+                if (is_set(rest_.edges, h)) {
+                    if (!line.empty())
+                        lines.push_back(std::exchange(line, {}));
+                    continue;
+                }
+                if (line.empty())
+                    line.push_back(from_.origin(h));
+                line.push_back(from_.target(h));
             }
-            add(std::move(line), lines);
+            if (!line.empty())
+                lines.push_back(std::move(line));
         }
-    }
-
-    static void add(Line line, std::vector<Line>& lines) {
-        if (line.zone != TransferZones::left_out)
-            lines.push_back(std::move(line));
     }
 
     Index place(Vertex v) {
         if (place_[v] < 0)
             place_[v] = search_.vertex(points_[v], normal_[v], [&](Index u) {
-                return (on_border_[v] == 0 || may_border_[u] != 0) &&
-                       zone_of(zones_.end, v) == zone_of(zones_.vertex, u);
+                return (on_border_[v] == 0 || may_border_[u] != 0) && !is_set(rest_.closed, u);
             });
         return place_[v];
     }
 
     void transfer(const Line& line, const Progress& progress) {
-        const Index start = place(line.vertices.front());
-        const Index end = place(line.vertices.back());
+        const Index start = place(line.front());
+        const Index end = place(line.back());
         if (start < 0 || end < 0 || start == end)
             return;
-        const std::vector<std::uint8_t> strip = lean_towards(line.vertices);
-        std::vector<std::uint8_t> zone(strip.size(), 0);
-        for (std::size_t v = 0; v < zone.size(); ++v)
-            zone[v] = zone_of(zones_.vertex, static_cast<Index>(v)) == line.zone ? 1 : 0;
-        std::vector<std::uint8_t> beside = zone;
-        for (std::size_t v = 0; v < zone.size(); ++v)
-            beside[v] = zone[v] != 0 && strip[v] != 0 ? 1 : 0;
+        const std::vector<std::uint8_t> strip = lean_towards(line);
+        std::vector<std::uint8_t> open(strip.size(), 1);
+        for (std::size_t v = 0; v < open.size(); ++v)
+            if (is_set(rest_.closed, static_cast<Index>(v)))
+                open[v] = 0;
+        std::vector<std::uint8_t> beside = strip;
+        for (std::size_t v = 0; v < beside.size(); ++v)
+            if (open[v] == 0)
+                beside[v] = 0;
         std::vector<std::uint8_t> free = beside;
         for (std::size_t v = 0; v < free.size(); ++v)
             if (taken_[v] != 0)
                 free[v] = 0;
-        for (std::vector<std::uint8_t>* allowed : {&zone, &beside, &free})
+        for (std::vector<std::uint8_t>* allowed : {&open, &beside, &free})
             (*allowed)[start] = (*allowed)[end] = 1;
         // Where other seams leave no room the path shares their edges.
         for (const std::vector<std::uint8_t>& allowed :
-             {free, beside, zone, std::vector<std::uint8_t>{}}) {
+             {free, beside, open, std::vector<std::uint8_t>{}}) {
             const PathTree tree = shortest_paths(graph_, cost_, {start}, progress, allowed);
             if (!std::isfinite(tree.distance[end]))
                 continue;
@@ -198,7 +193,7 @@ private:
     const Mesh& to_;
     const VertexGraph& graph_;
     const std::vector<double>& factor_; // 3 #F of to
-    const TransferZones zones_;
+    const TransferRest rest_;
     const mesh::SurfaceSearch search_;
     std::vector<Vec3> points_;                   // #V of from: on smooth seams
     const std::vector<Vec3> normal_;             // #V of from
@@ -273,9 +268,9 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
 
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& factor,
-                         TransferZones zones, Progress& progress) {
+                         TransferRest rest, Progress& progress) {
     SeamMarks transferred =
-        SeamTransfer(from, to, graph, factor, std::move(zones)).run(seam, progress);
+        SeamTransfer(from, to, graph, factor, std::move(rest)).run(seam, progress);
     cut_corners(to, transferred);
     return transferred;
 }

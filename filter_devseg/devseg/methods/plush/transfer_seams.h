@@ -12,16 +12,14 @@ namespace devseg::plush {
 /// and vertices on the mesh's boundary stay. #V; the mesh's own points elsewhere.
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam);
 
-/// Both surfaces in parts: a line keeps to its own, but for its ends. Empty: there is one.
-struct TransferZones {
-    static constexpr std::uint8_t left_out = 255;
-
-    std::vector<std::uint8_t> line;   // 3 #F of the first surface; left_out: not carried over
-    std::vector<std::uint8_t> end;    // #V of the first surface
-    std::vector<std::uint8_t> vertex; // #V of the second one
-    std::vector<Index> place;         // #V of the first one: the vertex where it is known, or −1
-    SeamMarks seam;                   // 3 #F of the second one: seams that there are already
-    bool is_smooth = false;           // lines are seams of such a surface as they are
+/// What a transfer leaves as it is.
+struct TransferRest {
+    std::vector<std::uint8_t> edges; // 3 #F of the first surface: 1 = not carried over; or empty
+    std::vector<std::uint8_t>
+        closed;               // #V of the second one: 1 = paths may only end there; or empty
+    std::vector<Index> place; // #V of the first one: its vertex where it is known, or −1
+    SeamMarks seam;           // 3 #F of the second one: seams that there are already
+    bool is_smooth = false;   // lines are carried over as they are
 };
 
 /// The seams of `from` (3 #F of it) as paths on `to`: the ends of their segments go to the nearest
@@ -30,6 +28,6 @@ struct TransferZones {
 /// along two of its edges take the third one. Returns 3 #F of `to`.
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& factor,
-                         TransferZones zones, Progress& progress);
+                         TransferRest rest, Progress& progress);
 
 } // namespace devseg::plush

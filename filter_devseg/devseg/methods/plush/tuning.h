@@ -117,7 +117,7 @@ struct Tuning {
     double far_margin = 0.75;
     double far_strain = 0.65;
     double own_margin = 0.95;
-    double own_strain = 0.9; // in pairs with each step from one surface to the next
+    double own_strain = 0.9;
     double tighter = 0.88;
     int second_thoughts = 1;    // rounds of deciding again; one more where there are two halves
     int most_cuts = 4;          // that mend a patch

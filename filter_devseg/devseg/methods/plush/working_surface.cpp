@@ -270,7 +270,8 @@ WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progres
 }
 
 std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
-                                                       Index most_faces, const Progress& progress) {
+                                                       Index most_faces, Index kept_faces,
+                                                       const Progress& progress) {
     MirrorPlane turned = plane;
     turned.normal = -plane.normal;
     turned.offset = -plane.offset;
@@ -285,7 +286,7 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
         if (std::abs(std::log(area)) >= least || area < tuning.whole_area ||
             area > 1.0 / tuning.whole_area)
             continue;
-        if (2 * half.face_count() > most_faces)
+        if (2 * half.face_count() > kept_faces)
             half = mesh::coarsen(half, most_faces / 2, progress).mesh;
         WorkingSurface surface = glue(half, side);
         if (euler_characteristic(surface.mesh) != euler_characteristic(mesh))

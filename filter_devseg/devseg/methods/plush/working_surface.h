@@ -38,11 +38,12 @@ struct WorkingSurface {
 /// The mesh with at most about `most_faces` faces, without a mirror plane.
 WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progress& progress);
 
-/// The part of the mesh on one side of the plane, coarsened to half of `most_faces`, with its
-/// mirror image, glued along the plane: the side that changes the surface's topology and area less.
-/// Nothing where both sides change the topology.
+/// The part of the mesh on one side of the plane, as it is up to half of `kept_faces`, else
+/// coarsened to half of `most_faces`, with its mirror image, glued along the plane: the side that
+/// changes the surface's topology and area less. Nothing where both sides change the topology.
 std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
-                                                       Index most_faces, const Progress& progress);
+                                                       Index most_faces, Index kept_faces,
+                                                       const Progress& progress);
 
 /// The part of the mesh below the plane as it is, with its mirror image.
 struct MirroredModel {

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include <gtest/gtest.h>
 
-#include "devseg/methods/plush/fit_surface.h"
-#include "devseg/methods/plush/mend_patches.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -73,26 +70,6 @@ TEST(MirroredModel, OwnHalfKeepsItsVertices) {
     EXPECT_GT(kept, 0.9 * pairs);
 }
 
-TEST(MirrorTransfer, SeamsOfTheCoarseSurfaceComeInPairs) {
-    const Mesh mesh = turned_ball();
-    const auto coarse = mirrored_working_surface(mesh, middle_of(mesh), 1200, Progress());
-    ASSERT_TRUE(coarse.has_value());
-    const auto model = mirrored_model(mesh, coarse->side);
-    ASSERT_TRUE(model.has_value());
-    const Mesh& to = model->surface.mesh;
-    Progress progress;
-    const SeamMarks seam =
-        seams_in_pairs(*coarse, caps(*coarse), model->surface, build_vertex_graph(to),
-                       std::vector<double>(to.twin.size(), 1.0), progress);
-    EXPECT_EQ(find_patches(to, seam).count, 4);
-    for (const HalfEdge h : to.all_half_edges()) {
-        ASSERT_EQ(seam[h], seam[model->surface.image[h]]);
-        ASSERT_EQ(seam[h], seam[to.twin[h]]);
-        if (model->surface.is_on_plane(h))
-            ASSERT_EQ(seam[h], 1);
-    }
-}
-
 TEST(MirrorTransfer, OneHalfOfTheModelGetsItsSeamsEdgeByEdge) {
     const Mesh mesh = turned_ball();
     const auto mirrored = mirrored_model(mesh, middle_of(mesh));
@@ -126,35 +103,6 @@ TEST(MirrorTransfer, OneHalfOfTheModelGetsItsSeamsEdgeByEdge) {
         EXPECT_TRUE(found);
     }
     EXPECT_GT(same, 20);
-}
-
-TEST(MendPatches, MirrorImagesGetTheSameDarts) {
-    const Mesh mesh = turned_ball();
-    const auto model = mirrored_model(mesh, middle_of(mesh));
-    ASSERT_TRUE(model.has_value());
-    const WorkingSurface& surface = model->surface;
-    const SeamMarks seam = caps(surface);
-    judge::ClothLimits limits;
-    limits.max_strain = 0.08;
-    Progress progress;
-    const OpenPart part = mend_patches(surface, build_vertex_graph(surface.mesh),
-                                       edge_lengths(surface.mesh), seam, limits, progress);
-    EXPECT_NE(part.seam, seam);
-    for (const HalfEdge h : surface.mesh.all_half_edges())
-        ASSERT_EQ(part.seam[h], part.seam[surface.image[h]]);
-    for (const Face f : surface.mesh.all_faces())
-        ASSERT_EQ(part.is_open(f), part.is_open(surface.face_image(f)));
-}
-
-TEST(FitSurface, PointsMoveAsThoseOfTheSurface) {
-    const Mesh coarse = checks::gated(shapes::sphere(2));
-    const Mesh fine = checks::gated(shapes::sphere(3));
-    Mesh moved = coarse;
-    for (Vec3& p : moved.points)
-        p += Vec3(0.1, -0.2, 0.3);
-    const std::vector<Vec3> points = moved_along(fine, coarse, moved);
-    for (std::size_t v = 0; v < points.size(); ++v)
-        EXPECT_LT((points[v] - fine.points[v] - Vec3(0.1, -0.2, 0.3)).norm(), 1e-9);
 }
 
 } // namespace

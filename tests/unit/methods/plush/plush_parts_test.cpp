@@ -121,7 +121,7 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     EXPECT_LT(plane->deviation, 1e-3);
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
     for (const Index most : {20000, 600}) {
-        const auto surface = mirrored_working_surface(mesh, *plane, most, Progress{});
+        const auto surface = mirrored_working_surface(mesh, *plane, most, most, Progress{});
         ASSERT_TRUE(surface.has_value());
         const Mesh& half = surface->mesh;
         EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));
