@@ -64,8 +64,9 @@ TEST(MirroredModel, OwnHalfKeepsItsVertices) {
         ASSERT_GE(a, 0);
         ASSERT_GE(b, 0);
         kept += half.points[half.origin(h)] == mesh.points[a] ? 1 : 0;
-        if (++pairs % 20 == 0)
+        if (++pairs % 20 == 0) {
             EXPECT_TRUE(a == b || are_neighbours(mesh, a, b));
+        }
     }
     EXPECT_GT(kept, 0.9 * pairs);
 }
