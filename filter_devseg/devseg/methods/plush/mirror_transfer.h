@@ -6,8 +6,9 @@
 
 namespace devseg::plush {
 
-/// The seams on the model: edge by edge on its own half, and on the other one as paths that keep
-/// close to the mirror images. `placed`: the surface with its image moved onto the other half.
+/// The seams on the model: edge by edge on its own half, but for teeth, and on the other one as
+/// paths that keep close to the mirror images. `placed`: the surface with its image moved onto the
+/// other half.
 SeamMarks seams_on_model(const MirroredModel& mirrored, const Mesh& placed, const SeamMarks& seam,
                          const Mesh& model, const VertexGraph& graph, Progress& progress);
 

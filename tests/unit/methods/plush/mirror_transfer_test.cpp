@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/methods/plush/seam_smoothing.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -31,12 +32,13 @@ MirrorPlane middle_of(const Mesh& mesh) {
 SeamMarks caps(const WorkingSurface& surface) {
     const Mesh& mesh = surface.mesh;
     const double cap = 0.5 * std::sqrt(mesh.total_area / (4.0 * shapes::pi));
-    const auto in_cap = [&](Face f) {
-        return std::abs(surface.side.height(mesh.face_centers[f])) > cap;
-    };
+    std::vector<Index> label; // without teeth, which a transfer takes away
+    for (const Face f : mesh.all_faces())
+        label.push_back(std::abs(surface.side.height(mesh.face_centers[f])) > cap ? 1 : 0);
+    remove_teeth(mesh, label);
     SeamMarks seam(mesh.twin.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
-        if (surface.is_on_plane(h) || in_cap(face_of(h)) != in_cap(face_of(mesh.twin[h])))
+        if (surface.is_on_plane(h) || label[face_of(h)] != label[face_of(mesh.twin[h])])
             mark(mesh, h, 1, seam);
     mirror_marks(surface, seam);
     return seam;
