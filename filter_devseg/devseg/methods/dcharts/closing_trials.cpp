@@ -132,23 +132,19 @@ StretchBounds ClosingTrials::bounds_of(const Pair& pair) const {
     return limit;
 }
 
-// Half of the charts whose parts overlap do not come apart. Where there is a coarse surface, that
-// is found out on it; final maps push overlapping parts apart themselves after that.
+// Final maps push overlapping parts apart themselves: before them it is looked at on the coarse
+// surface alone, where there is one, whether that will do.
 void ClosingTrials::confirm(const Closing& closing, Verdict& verdict, Progress& progress) const {
     TrialEffort apart;
     apart.wanted_l2 = bounds_of(closing.charts).l2;
     apart.push_apart = !options_.keep_corners;
     const bool was_overlapping = verdict.map.overlaps;
     const double expected = verdict.added - verdict.hidden;
-    const bool coarse_first = verdict.is_coarse && was_overlapping;
-    if (coarse_first) {
-        TrialEffort coarse = apart;
-        coarse.wanted_l2 = coarse_bound(apart.wanted_l2);
-        try_coarse(closing, coarse, verdict.coarse.turns, progress, verdict);
+    if (verdict.is_coarse && was_overlapping && options_.confirm) {
+        apart.wanted_l2 = coarse_bound(apart.wanted_l2);
+        try_coarse(closing, apart, verdict.coarse.turns, progress, verdict);
         verdict.map.flat = verdict.map.flat && !verdict.map.overlaps;
-    }
-    if (verdict.map.flat && (verdict.is_coarse || was_overlapping) &&
-        !(coarse_first && options_.confirm)) {
+    } else if (verdict.map.flat && (verdict.is_coarse || was_overlapping)) {
         apart.give_up = verdict.is_coarse;
         apart.push_apart = apart.push_apart && (!verdict.is_coarse || !options_.confirm);
         TrialMap map = try_fine(
