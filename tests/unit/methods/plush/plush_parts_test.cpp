@@ -10,6 +10,7 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
+#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/patch_tester.h"
 #include "devseg/methods/plush/seam_smoothing.h"
@@ -48,6 +49,67 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
     EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
 }
 
+// Two squares of a plate beside each other, and a bridge of so many rows of faces between them,
+// with a seam across it: whether the squares are joined.
+bool joins_over_bridge(int rows) {
+    mesh::RawMesh raw = shapes::grid(30, 10, 3.0, 1.0);
+    const auto is_cut_out = [&](const Triangle& t) {
+        const Vec3 c = (raw.points[t[0]] + raw.points[t[1]] + raw.points[t[2]]) / 3.0;
+        return c.x() > 1.0 && c.x() < 2.0 && c.y() > 0.1 * rows;
+    };
+    raw.faces.erase(std::remove_if(raw.faces.begin(), raw.faces.end(), is_cut_out),
+                    raw.faces.end());
+    const WorkingSurface surface{checks::gated(raw), {}};
+    const Mesh& mesh = surface.mesh;
+    std::vector<double> x;
+    for (const Vec3& p : mesh.points)
+        x.push_back(p.x());
+    const auto [least, most] = std::minmax_element(x.begin(), x.end());
+    const double middle = 0.5 * (*least + *most);
+    SeamMarks seam(mesh.twin.size(), 0);
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (std::abs(x[at(mesh.origin(h))] - middle) < 1e-6 &&
+            std::abs(x[at(mesh.target(h))] - middle) < 1e-6)
+            mark(mesh, h, 1, seam);
+    EXPECT_EQ(find_patches(mesh, seam).count, 2);
+    const VertexGraph graph = build_vertex_graph(mesh);
+    const SeamMarks hard;
+    const std::vector<double> weight(mesh.twin.size(), 1.0);
+    PatchTester tester(surface, {}, 0.35);
+    Progress progress;
+    remove_seams({surface, graph, hard, weight, tester, tester, weight, weight}, {}, seam,
+                 progress);
+    return find_patches(mesh, seam).count == 1;
+}
+
+TEST(SeamRemoval, MakesNoNarrowNecks) {
+    EXPECT_FALSE(joins_over_bridge(2));
+    EXPECT_TRUE(joins_over_bridge(8));
+}
+
+TEST(FitSurface, LimbsFollowThoseOfTheModel) {
+    mesh::RawMesh straight = shapes::sphere(3);
+    for (Vec3& p : straight.points)
+        p = Vec3(p.x(), 0.3 * p.y(), 0.3 * p.z());
+    mesh::RawMesh bent = straight;
+    for (Vec3& p : bent.points)
+        p.z() += 0.15 * p.x() * p.x();
+    const Mesh from = checks::gated(straight);
+    const Mesh model = checks::gated(bent);
+    const Mesh fitted = fitted_to(model, from, build_vertex_graph(from), Progress());
+    const auto far = [&](const Mesh& mesh) { // the model's point that is farthest from the mesh
+        double farthest = 0.0;
+        for (const Vec3& p : model.points) {
+            double nearest = infinite;
+            for (const Vec3& q : mesh.points)
+                nearest = std::min(nearest, (p - q).norm());
+            farthest = std::max(farthest, nearest);
+        }
+        return farthest;
+    };
+    EXPECT_LT(far(fitted), 0.6 * far(from));
+}
+
 TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     mesh::RawMesh raw = shapes::torus(40, 20);
     for (Vec3& p : raw.points)
@@ -59,7 +121,7 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     EXPECT_LT(plane->deviation, 1e-3);
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
     for (const Index most : {20000, 600}) {
-        const auto surface = mirrored_working_surface(mesh, *plane, most, Progress{});
+        const auto surface = mirrored_working_surface(mesh, *plane, most, most, Progress{});
         ASSERT_TRUE(surface.has_value());
         const Mesh& half = surface->mesh;
         EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));
