@@ -8,9 +8,10 @@
 
 namespace devseg::mesh {
 
-/// 1 for each face (#F) of a connected part with no more area than a strip of this width (internal
-/// units) that is as long as the part's longest edge, or as both sides of one where the part is
-/// closed. All 0 where there are no other parts. Reads points, faces and twins.
+/// 1 for each face (#F) of a connected part that is no wider than this (internal units): by its
+/// area, as a strip as long as its longest edge, or by the distances of its vertices from the line
+/// of that edge, as it may lie on itself. All 0 where there are no other parts. Reads points, faces
+/// and twins.
 std::vector<std::uint8_t> find_empty_parts(const Mesh& mesh, double width);
 
 } // namespace devseg::mesh

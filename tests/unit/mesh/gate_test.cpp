@@ -167,18 +167,22 @@ TEST(Gate, PartsWithoutAreaAreLeftOut) {
     EXPECT_EQ(gate_mesh(raw, {-1.0, false}).mesh.faces.size(), raw.faces.size());
 }
 
-// Both sides of a needle are counted once: faces laid out beside each other are twice as wide.
-TEST(Gate, ClosedPartsAreAsNarrowAsTheyAre) {
-    const auto with_needle = [](double width) {
+// Sides of a needle lie on each other: their areas say less than how far its vertices are apart.
+TEST(Gate, NeedlesAreAsNarrowAsTheyAre) {
+    const auto faces_with = [](double width, bool is_open) {
         RawMesh raw = shapes::grid(2, 1);
         raw.points.insert(raw.points.end(),
                           {{5, 0, 0}, {6, 0, 0}, {5.3, width, 0}, {5.7, 0, width}});
-        raw.faces.insert(raw.faces.end(), {{6, 8, 7}, {6, 7, 9}, {6, 9, 8}, {7, 8, 9}});
+        raw.faces.insert(raw.faces.end(), {{6, 8, 7}, {6, 7, 9}, {6, 9, 8}});
+        if (!is_open)
+            raw.faces.push_back({7, 8, 9});
         return gate_mesh(raw).mesh.face_count();
     };
     const double size = 6.0;
-    EXPECT_EQ(with_needle(1.1e-6 * size), 4);
-    EXPECT_EQ(with_needle(4.4e-6 * size), 8);
+    for (const bool is_open : {false, true}) {
+        EXPECT_EQ(faces_with(0.9e-6 * size, is_open), 4);
+        EXPECT_EQ(faces_with(2.2e-6 * size, is_open), is_open ? 7 : 8);
+    }
 }
 
 TEST(Gate, EdgesWithThreeFacesAreCut) {
