@@ -20,12 +20,6 @@ namespace devseg::develop {
 
 namespace {
 
-struct Tuning {
-    double least_hinge =
-        0.3; // length over the root of the part's area: shorter ones do not hold it
-};
-constexpr Tuning tuning;
-
 // A run of edges on the border of a part, with one chart on the other side.
 struct Hinge {
     double length = 0.0;
@@ -65,7 +59,7 @@ public:
             if (result_.charts.count <= wanted)
                 break;
             auto one = moving.part(moving.left() / static_cast<double>(parts.size()));
-            move(face, tuning.least_hinge * std::sqrt(area), one);
+            move(face, flatten::least_hinge * std::sqrt(area), one);
         }
     }
 

@@ -27,7 +27,6 @@ struct Tuning {
     double excess_factor = 1.05;
     double allowed_excess = 1e-4;
     double allowed_stretch = 1.5;
-    double least_hinge = 0.3;  // length of the edge over the root of the part's area
     double speck_share = 5e-4; // of the mesh's area: smaller parts hang on any edge
 };
 constexpr Tuning tuning;
@@ -311,7 +310,7 @@ int reattach_parts(const Mesh& mesh, FlattenResult& result, Progress& progress) 
         progress.update(0.0);
         const bool is_speck = area < tuning.speck_share * mesh.model_area();
         if (result.flat[part].developed &&
-            reattachment.hinge(part, is_speck ? 0.0 : tuning.least_hinge * std::sqrt(area)))
+            reattachment.hinge(part, is_speck ? 0.0 : least_hinge * std::sqrt(area)))
             ++number;
     }
     if (number > 0)

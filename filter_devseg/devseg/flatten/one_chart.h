@@ -8,6 +8,10 @@
 
 namespace devseg::flatten {
 
+/// What a part hangs on when it goes to another chart: at least this length over the root of the
+/// part's area, as shorter edges do not hold it on paper.
+constexpr double least_hinge = 0.3;
+
 /// Flattens chart.surface, which is sound (see atlas/holes.h), and fills in the rest of `chart`.
 /// Returns the half-edges of the mesh to cut where parts overlap in the plane and could not be
 /// pushed apart, or where there is no map around holes; nothing where the map is one-to-one.
