@@ -199,16 +199,24 @@ private:
         if (any_marked(s_.hard, opened))
             return false;
         SeamMarks marks = seam_;
-        mark(mesh_, opened, 0, marks);
-        mark(mesh_, closed, 1, marks);
+        mark_both(s_.surface, opened, 0, marks);
+        mark_both(s_.surface, closed, 1, marks);
         const std::size_t before = count_corners(seam_);
         if (count_corners(marks) >= before)
             return false;
+        // With its mirror image, a tip may be cut off.
+        if (s_.surface.is_symmetric() &&
+            find_patches(mesh_, marks).count > find_patches(mesh_, seam_).count)
+            return false;
         ++tried_;
         progress_.check();
-        const auto patches = patches_beside(mesh_, marks, {opened, closed});
-        if (may_mend ? !mend(patches, marks) || count_corners(marks) >= before
-                     : !s_.tester.accepts_all(patches, marks, progress_))
+        const std::vector<Line> lines = with_image(s_.surface, {opened, closed});
+        auto patches = patches_beside(mesh_, marks, lines);
+        if (may_mend && (!mend(patches, marks) || count_corners(marks) >= before))
+            return false;
+        if (may_mend)
+            patches = patches_beside(mesh_, marks, lines);
+        if (!s_.tester.accepts_all(patches, marks, progress_))
             return false;
         seam_ = std::move(marks);
         return true;
@@ -221,7 +229,7 @@ private:
                                          s_.tester.limits(), progress_);
             if (!cuts)
                 return false;
-            mark(mesh_, *cuts, 1, marks);
+            mark_both(s_.surface, *cuts, 1, marks);
             if (patches_of(mesh_, marks, patch).size() > 1)
                 return false;
         }

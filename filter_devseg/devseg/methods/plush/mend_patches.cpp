@@ -209,24 +209,60 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
     return part;
 }
 
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam) {
+    for (const auto& [area, patch] : find_remnants(mesh, seam, tuning.fragment)) {
+        if (patches_of(mesh, seam, {patch.front()}).front() != patch)
+            continue;
+        // Rather where no seam loses its end.
+        std::vector<std::vector<Index>> borders = common_borders(mesh, seam, {}, patch);
+        if (borders.empty())
+            continue;
+        const std::vector<Index> degree = seam_degrees(mesh, seam);
+        const auto loose_ends = [&](const std::vector<Index>& border) {
+            std::vector<Index> left;
+            for (const HalfEdge h : border)
+                left.insert(left.end(), {mesh.origin(h), mesh.target(h)});
+            std::sort(left.begin(), left.end());
+            Index loose = 0;
+            for (std::size_t k = 0; k < left.size(); ++k)
+                if (k + 1 < left.size() && left[k] == left[k + 1] && degree[left[k]] > 2)
+                    ++loose;
+            return loose;
+        };
+        const std::vector<Index>& border =
+            *std::min_element(borders.begin(), borders.end(), [&](const auto& a, const auto& b) {
+                return loose_ends(a) < loose_ends(b);
+            });
+        mark(mesh, border, 0, seam);
+        open_what_floats(mesh, {}, patches_of(mesh, seam, {patch.front()}).front(), seam);
+    }
+    return seam;
+}
+
 Index absorb_remnants(const SeamSetting& setting, const std::vector<double>& cost, double most_area,
                       SeamMarks& seam, Progress& progress) {
     const Mesh& mesh = setting.mesh();
     Index tried = 0;
     const auto join_along = [&](const std::vector<Index>& border) {
         SeamMarks marks = seam;
-        mark(mesh, border, 0, marks);
+        mark_both(setting.surface, border, 0, marks);
         ++tried;
         progress.check();
         const std::vector<Index> joined =
             patches_of(mesh, marks, {face_of(border.front())}).front();
-        open_what_floats(mesh, setting.hard, joined, marks);
+        for (const std::vector<Index>& patch :
+             patches_beside(mesh, marks, with_image(setting.surface, {border})))
+            open_what_floats(mesh, setting.hard, patch, marks);
         const auto cuts =
             mend_patch(mesh, setting.graph, cost, joined, marks, setting.tester.limits(), progress);
         if (!cuts || length_of(mesh, *cuts) > tuning.longest_darts * length_of(mesh, border))
             return false;
-        mark(mesh, *cuts, 1, marks);
-        if (patches_of(mesh, marks, joined).size() > 1)
+        mark_both(setting.surface, *cuts, 1, marks);
+        if (patches_of(mesh, marks, joined).size() > 1 ||
+            (setting.surface.is_symmetric() &&
+             !setting.tester.accepts_all(
+                 patches_beside(mesh, marks, with_image(setting.surface, {border})), marks,
+                 progress)))
             return false;
         seam = std::move(marks);
         return true;

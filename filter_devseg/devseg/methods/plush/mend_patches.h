@@ -45,6 +45,10 @@ SeamMarks fixed_seams(const Mesh& mesh, const OpenPart& part);
 OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& model,
                    const OpenPart& on_model);
 
+/// Patches that are nothing but specks, as where two paths of a transfer cross, go to a neighbour:
+/// rather to one whose border with them no other seam meets, since that would lose its end.
+SeamMarks absorb_specks(const Mesh& mesh, SeamMarks seam);
+
 /// Joins patches up to a share of the surface to a neighbour along all of their common border,
 /// where darts up to half as long again as that border are enough to keep the limits. `cost`: of
 /// paths for darts, 3 #F. Returns how many joins were tried.

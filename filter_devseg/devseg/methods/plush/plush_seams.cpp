@@ -2,35 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <utility>
 
-#include "devseg/atlas/fragments.h"
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/canonical_frame.h"
-#include "devseg/methods/plush/limbs.h"
+#include "devseg/methods/plush/deciding.h"
+#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/local_seams.h"
-#include "devseg/methods/plush/mend_patches.h"
-#include "devseg/methods/plush/seam_smoothing.h"
-#include "devseg/methods/plush/thin_tips.h"
+#include "devseg/methods/plush/mirror_transfer.h"
 #include "devseg/methods/plush/transfer_seams.h"
 #include "devseg/methods/plush/tuning.h"
 
 namespace devseg::plush {
 
 namespace {
-
-// What seams of one surface are decided by.
-struct Evidence {
-    const WorkingSurface& surface;
-    VertexGraph graph;
-    Skeleton skeleton;
-    std::vector<double> curvature; // #V
-    SeamWeights weights;
-    std::vector<Index> extrema;
-    SeamMarks limb_borders; // 3 #F, as they were found
-};
 
 // Material borders are edges of the model: then seams are decided on the model itself. So they are
 // on small models without a mirror image: what is saved would be less than what transfer costs.
@@ -39,243 +25,55 @@ WorkingSurface make_working_surface(const Mesh& mesh, const std::optional<Mirror
                                     const SeamMarks& hard, bool by_strain, Progress& progress) {
     if (!hard.empty())
         return {mesh, {}};
-    if (plane)
-        if (auto surface = mirrored_working_surface(mesh, *plane, tuning.mirrored_faces, progress))
-            return std::move(*surface);
     const Index most = tuning.mirrored_faces * 3 / 2;
+    if (plane)
+        if (auto surface =
+                mirrored_working_surface(mesh, *plane, tuning.mirrored_faces,
+                                         by_strain ? most : tuning.mirrored_faces, progress))
+            return std::move(*surface);
     if (mesh.face_count() <= (by_strain ? most : tuning.large_model / 4))
         return {mesh, {}};
     return plain_working_surface(mesh, most, progress);
 }
 
-Evidence find_evidence(const WorkingSurface& surface, const PlushOptions& options,
-                       Skeleton skeleton, PlushSeams& result, Progress& progress) {
-    const Mesh& mesh = surface.mesh;
-    if (skeleton.empty())
-        skeleton = extract_skeleton(mesh, progress);
-    BoneWeights bones;
-    if (!skeleton.empty())
-        bones = bone_weights(mesh, skeleton, progress);
-    result.bones = static_cast<Index>(skeleton.bones.size());
-    std::vector<double> curvature = mean_curvature(mesh);
-    SeamWeights weights = seam_weights(
-        mesh, {options.geodesic_weight, options.skeleton_weight, options.curvature_weight},
-        curvature, skeleton, bones, progress);
-    for (std::size_t h = 0; h < surface.image.size() / 2; ++h)
-        for (std::vector<double>* values : {&weights.weight, &weights.stray}) {
-            double& image = (*values)[surface.image[h]];
-            (*values)[h] = image = 0.5 * ((*values)[h] + image);
-        }
-    progress.update(0.9);
-    VertexGraph graph = build_vertex_graph(mesh);
-    const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh.points.size())));
-    std::vector<Index> extrema = find_extrema(graph, conformal_factor(mesh),
-                                              options.max_extrema > 0 ? options.max_extrema : most);
-    result.extrema = std::max(result.extrema, static_cast<Index>(extrema.size()));
-    return {surface,
-            std::move(graph),
-            std::move(skeleton),
-            std::move(curvature),
-            std::move(weights),
-            std::move(extrema),
-            SeamMarks(mesh.twin.size(), 0)};
-}
-
-// What the seams of the surface follow.
-SeamGuides guides_of(const Evidence& evidence) {
-    const Mesh& mesh = evidence.surface.mesh;
-    SeamGuides guides{evidence.skeleton, {}};
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (evidence.limb_borders[h] != 0)
-            guides.limb_borders.push_back(
-                {mesh.points[mesh.origin(h)], mesh.points[mesh.target(h)]});
-    return guides;
-}
-
-// Of half-edges as parts of paths that cut patches, and of paths in place of seams.
-struct PathCosts {
-    std::vector<double> cut;
-    std::vector<double> straight;
-};
-
-PathCosts path_costs(const Evidence& evidence, const PlushOptions& options) {
-    if (options.max_strain > 0.0) {
-        const std::vector<double> cost =
-            natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_cut);
-        return {cost, cost};
+// The seams of the model: what is open is decided there, and remnants go.
+SeamMarks settled_on_model(Evidence& on_model, OpenPart part, const PlushOptions& options,
+                           PlushSeams& result, Progress& progress, bool keep_pairs = false) {
+    if (part.has_open_faces()) {
+        auto deciding = progress.part(0.6 * progress.left());
+        part.seam = decide(on_model, part, fixed_seams(on_model.surface.mesh, part), 1.0, options,
+                           result, deciding);
     }
-    const std::vector<double>& weight = evidence.weights.weight;
-    std::vector<double> straight = edge_lengths(evidence.surface.mesh);
-    for (std::size_t h = 0; h < straight.size(); ++h)
-        straight[h] *= natural_factor(tuning.natural_straight, weight[h]);
-    return {weight, straight};
+    auto cleaning = progress.part(progress.left());
+    return without_remnants(on_model, std::move(part.seam), {}, 1.0, options, result, cleaning,
+                            keep_pairs);
 }
 
-// Of half-edges as parts of paths along seams of another surface: factors of their lengths.
-std::vector<double> transfer_factors(const Evidence& evidence, const PlushOptions& options) {
-    std::vector<double> factors;
-    for (const double stray : evidence.weights.stray)
-        factors.push_back(natural_factor(
-            options.max_strain > 0.0 ? tuning.strained_transfer : tuning.natural_transfer, stray));
-    return factors;
+// Darts for patches of the model that do not keep their limits.
+OpenPart mended(const Evidence& on_model, SeamMarks seam, const PlushOptions& options,
+                Progress& progress) {
+    const Mesh& mesh = on_model.surface.mesh;
+    return mend_patches(mesh, on_model.graph,
+                        natural_lengths(mesh, on_model.weights.stray, tuning.natural_dart),
+                        std::move(seam), limits_of(options, 1.0, false), progress);
 }
 
-// Extrema in the open part; those on the mirror image are left to it.
-std::vector<Index> limb_tips(const Evidence& evidence, const OpenPart& open) {
-    const WorkingSurface& surface = evidence.surface;
-    const Mesh& mesh = surface.mesh;
-    std::vector<std::uint8_t> is_left_out(mesh.points.size(), 0);
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (!open.is_open(face_of(h)) ||
-            (surface.is_symmetric() && surface.image[h] < h && !surface.starts_on_plane(h)))
-            is_left_out[mesh.origin(h)] = 1;
-    std::vector<Index> tips = evidence.extrema;
-    tips.erase(
-        std::remove_if(tips.begin(), tips.end(), [&](Vertex v) { return is_left_out[v] != 0; }),
-        tips.end());
-    return tips;
-}
-
-void mark_plane(const WorkingSurface& surface, SeamMarks& seam) {
-    for (const HalfEdge h : surface.mesh.all_half_edges())
-        if (surface.is_on_plane(h))
-            mark(surface.mesh, h, 1, seam);
-}
-
-// Patches without teeth, the same on both sides; seams inside patches go.
-void clean_patches(const WorkingSurface& surface, const OpenPart& open, const SeamMarks& hard,
-                   SeamMarks& seam) {
-    const Mesh& mesh = surface.mesh;
-    mirror_marks(surface, seam);
-    std::vector<Index> label =
-        atlas::absorb_fragments(mesh, find_patches(mesh, seam).label, tuning.fragment);
-    remove_teeth(mesh, label);
-    seam = atlas::make_chart_map(mesh, label, {}, false).seam;
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (!hard.empty() && (hard[h] != 0 || !open.is_inside(mesh, h)))
-            seam[h] = hard[h];
-    mark_plane(surface, seam);
-    mirror_marks(surface, seam);
-}
-
-// Seams along the plane, around limbs and between extrema.
-void lay_candidates(Evidence& evidence, const OpenPart& open, const SeamMarks& hard,
-                    PlushSeams& result, SeamMarks& seam, Progress& progress) {
-    const Mesh& mesh = evidence.surface.mesh;
-    mark_plane(evidence.surface, seam);
-    const std::vector<Limb> limbs =
-        find_limbs(mesh, evidence.graph, evidence.curvature, limb_tips(evidence, open), progress);
-    result.limbs = std::max(result.limbs, static_cast<Index>(limbs.size()));
-    for (const Limb& limb : limbs)
-        for (const HalfEdge h : limb_border(mesh, limb)) {
-            mark(mesh, h, 1, seam);
-            evidence.limb_borders[h] = 1;
-        }
-    mirror_marks(evidence.surface, evidence.limb_borders);
-    add_structural_seams(mesh, evidence.graph, evidence.weights.weight, evidence.extrema, seam,
-                         progress);
-    clean_patches(evidence.surface, open, hard, seam);
-}
-
-// One pass over the seams of a surface; returns how many trials it took.
-struct Pass {
-    const char* name;
-    double share; // of the time
-    std::function<Index(SeamMarks&, Progress&)> run;
-};
-
-SeamMarks run(const std::vector<Pass>& passes, SeamMarks seam, PlushSeams& result,
-              Progress& progress) {
-    for (const Pass& pass : passes) {
-        auto part = progress.part(pass.name, pass.share);
-        result.trials += pass.run(seam, part);
-    }
-    return seam;
-}
-
-// A share of what the model must keep.
-judge::ClothLimits limits_of(const PlushOptions& options, double share, bool is_search) {
-    return {share * options.max_area_change, share * options.max_strain, is_search};
-}
-
-// Seams of the open part. `hard` has all seams that are not inside of it; or is empty.
-SeamMarks decide(Evidence& evidence, const OpenPart& open, const SeamMarks& hard, double share,
-                 const PlushOptions& options, PlushSeams& result, Progress& progress) {
-    const WorkingSurface& surface = evidence.surface;
-    const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, limits_of(options, share, true));
-    PatchTester strict(surface, limits_of(options, tuning.nearly_flat * share, true));
-    const PathCosts costs = path_costs(evidence, options);
-    const SeamSetting setting{surface,   evidence.graph, hard,
-                              weight,    tester,         strict,
-                              costs.cut, costs.straight, options.max_iterations};
-    RemovalOptions any_patch;
-    any_patch.random_seed = options.random_seed;
-    RemovalOptions small_patches = any_patch;
-    small_patches.most_area = tuning.small_patch;
-    small_patches.least_neck = tuning.narrow_neck;
-    const std::vector<Pass> passes{
-        {"laying seams", 0.04,
-         [&](SeamMarks& seam, Progress& part) {
-             lay_candidates(evidence, open, hard, result, seam, part);
-             return 0;
-         }},
-        {"cutting patches", 0.03,
-         [&](SeamMarks& seam, Progress& part) {
-             add_local_seams(setting, open.faces, seam, part);
-             result.candidates +=
-                 static_cast<Index>(find_segments(surface.mesh, seam, hard).size());
-             return 0;
-         }},
-        {"removing seams", 0.35,
-         [&](auto& seam, auto& part) { return remove_seams(setting, any_patch, seam, part); }},
-        {"joining patches", 0.22,
-         [&](auto& seam, auto& part) { return join_patches(setting, any_patch, seam, part); }},
-        {"straightening seams", 0.25,
-         [&](SeamMarks& seam, Progress& part) {
-             straighten_seams(setting, seam, part);
-             return 0;
-         }},
-        {"joining patches", 0.03,
-         [&](auto& seam, auto& part) { return join_patches(setting, small_patches, seam, part); }},
-        {"shortening darts", 0.08,
-         [&](auto& seam, auto& part) { return shorten_darts(setting, seam, part); }}};
-    SeamMarks seam = open.seam;
-    seam.resize(surface.mesh.twin.size(), 0);
-    return run(passes, std::move(seam), result, progress);
-}
-
-// The seams of the model, with small patches and thin tongues given to neighbours.
-SeamMarks without_remnants(const Evidence& evidence, SeamMarks seam, const SeamMarks& hard,
-                           const PlushOptions& options, PlushSeams& result, Progress& progress) {
-    const WorkingSurface& surface = evidence.surface;
-    const std::vector<double>& weight = evidence.weights.weight;
-    PatchTester tester(surface, limits_of(options, 1.0, false));
-    PatchTester search(surface, limits_of(options, 1.0, true));
-    const std::vector<double> cost =
-        natural_lengths(evidence.surface.mesh, evidence.weights.stray, tuning.natural_dart);
-    const SeamSetting setting{surface, evidence.graph,        hard, weight, tester, tester, cost,
-                              cost,    options.max_iterations};
-    const SeamSetting searching{surface, evidence.graph,        hard, weight, search, search, cost,
-                                cost,    options.max_iterations};
-    RemovalOptions remnants;
-    remnants.random_seed = options.random_seed;
-    remnants.most_area = tuning.small_patch / 5.0;
-    remnants.least_neck = tuning.narrow_neck;
-    const double width = std::max(tuning.thin * std::sqrt(surface.mesh.total_area),
-                                  tuning.least_thin * mean_edge_length(surface.mesh));
-    const std::vector<Pass> passes{
-        {"giving tongues away", 0.35,
-         [&](auto& seams, auto& part) { return give_tongues_away(searching, width, seams, part); }},
-        {"joining patches", 0.2,
-         [&](auto& seams, auto& part) { return join_patches(setting, remnants, seams, part); }},
-        {"absorbing remnants", 0.25,
-         [&](auto& seams, auto& part) {
-             return absorb_remnants(setting, cost, tuning.small_patch / 10.0, seams, part);
-         }},
-        {"blunting corners", 0.2,
-         [&](auto& seams, auto& part) { return blunt_acute_corners(setting, seams, part); }}};
-    return run(passes, std::move(seam), result, progress);
+// The working surface is the model's own half with its mirror image: all is settled there, in
+// pairs, and the other half of the model gets the images of the seams.
+SeamMarks decide_in_pairs(Evidence& working, Evidence& on_model, const MirroredModel& mirrored,
+                          const PlushOptions& options, PlushSeams& result, Progress& progress) {
+    auto deciding = progress.part(0.7);
+    SeamMarks seam = decide(working, {}, {}, tuning.own_strain, options, result, deciding);
+    auto cleaning = progress.part(0.5 * progress.left());
+    seam = without_remnants(working, std::move(seam), {}, tuning.own_strain, options, result,
+                            cleaning);
+    const Mesh& model = on_model.surface.mesh;
+    auto transferring = progress.part("transferring seams", 0.1);
+    const Mesh placed = fitted_to(model, working.surface.mesh, working.graph, transferring);
+    seam = seams_on_model(mirrored, placed, seam, model, on_model.graph, transferring);
+    OpenPart part = mended(on_model, absorb_specks(model, std::move(seam)), options, transferring);
+    auto settling = progress.part(progress.left());
+    return settled_on_model(on_model, std::move(part), options, result, settling, true);
 }
 
 // Seams that are decided on the working surface, as smooth lines on the model. Where patches are
@@ -289,6 +87,10 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     const bool is_model =
         !surface.is_symmetric() && surface.mesh.face_count() == model.mesh.face_count();
     const bool by_strain = options.max_strain > 0.0;
+    if (by_strain && surface.is_symmetric())
+        if (const auto mirrored = mirrored_model(model.mesh, surface.side))
+            if (mirrored->surface.mesh.face_count() == surface.mesh.face_count())
+                return decide_in_pairs(working, on_model, *mirrored, options, result, progress);
     double share = by_strain  ? (is_model ? tuning.own_strain : tuning.far_strain)
                    : is_model ? tuning.own_margin
                               : tuning.far_margin;
@@ -301,12 +103,10 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
     OpenPart part;
     for (int round = 0;; ++round) {
         auto transferring = progress.part("transferring seams", 0.06);
-        part =
-            mend_patches(model.mesh, on_model.graph,
-                         natural_lengths(model.mesh, on_model.weights.stray, tuning.natural_dart),
-                         transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
-                                        transfer_factors(on_model, options), transferring),
-                         limits_of(options, 1.0, false), transferring);
+        part = mended(on_model,
+                      transfer_seams(surface.mesh, seam, model.mesh, on_model.graph,
+                                     transfer_factors(on_model, options), {}, transferring),
+                      options, transferring);
         if (!part.has_open_faces() || round == most_rounds)
             break;
         const OpenPart again = same_part(surface, seam, model.mesh, part);
@@ -317,13 +117,8 @@ SeamMarks decide_for_model(Evidence& working, const WorkingSurface& model,
         seam = decide(working, again, fixed_seams(surface.mesh, again), share, options, result,
                       deciding_again);
     }
-    if (part.has_open_faces()) {
-        auto deciding_on_model = progress.part(0.6 * progress.left());
-        part.seam = decide(on_model, part, fixed_seams(model.mesh, part), 1.0, options, result,
-                           deciding_on_model);
-    }
-    auto cleaning = progress.part(progress.left());
-    return without_remnants(on_model, std::move(part.seam), {}, options, result, cleaning);
+    auto settling = progress.part(progress.left());
+    return settled_on_model(on_model, std::move(part), options, result, settling);
 }
 
 // The same; large models get the seams of a smaller one, and patches that are not developable are
@@ -344,7 +139,7 @@ SeamMarks decide_for_any(Evidence& working, const Mesh& mesh, const PlushOptions
     const Evidence on_model = find_evidence(model, options, working.skeleton, result, weighing);
     auto transferring = progress.part("transferring seams", 0.1);
     return transfer_seams(smaller.mesh, seam, mesh, on_model.graph,
-                          transfer_factors(on_model, options), transferring);
+                          transfer_factors(on_model, options), {}, transferring);
 }
 
 // The seams with which the mesh is flattened. A map that was accepted can fail on a mesh that is
@@ -413,7 +208,7 @@ PlushSeams segment_in_canonical_frame(const Mesh& framed, const Mesh& mesh,
         auto first = deciding.part(0.8);
         seam = decide(working, {}, hard, 1.0, options, result, first);
         auto cleaning = deciding.part(0.2);
-        seam = without_remnants(working, std::move(seam), hard, options, result, cleaning);
+        seam = without_remnants(working, std::move(seam), hard, 1.0, options, result, cleaning);
     } else {
         seam = decide_for_any(working, framed, options, result, deciding);
     }

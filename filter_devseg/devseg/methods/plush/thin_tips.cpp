@@ -30,9 +30,10 @@ struct Change {
     Line opened;
     Line closed;
 
-    void apply(const Mesh& mesh, SeamMarks& marks) const {
-        mark(mesh, closed, 1, marks);
-        mark(mesh, opened, 0, marks);
+    // Of its mirror image, too.
+    void apply(const WorkingSurface& surface, SeamMarks& marks) const {
+        mark_both(surface, closed, 1, marks);
+        mark_both(surface, opened, 0, marks);
     }
 };
 
@@ -141,7 +142,9 @@ std::vector<Change> find_changes(const SeamSetting& setting, double radius, cons
 }
 
 // The changes that share no edge with one before.
-std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Change>& changes) {
+std::vector<Change> without_shared_edges(const WorkingSurface& surface,
+                                         const std::vector<Change>& changes) {
+    const Mesh& mesh = surface.mesh;
     std::vector<Change> group;
     SeamMarks is_used(mesh.twin.size(), 0);
     for (const Change& change : changes) {
@@ -149,7 +152,7 @@ std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Cha
         edges.insert(edges.end(), change.closed.begin(), change.closed.end());
         if (any_marked(is_used, edges))
             continue;
-        mark(mesh, edges, 1, is_used);
+        mark_both(surface, edges, 1, is_used);
         group.push_back(change);
     }
     return group;
@@ -159,23 +162,27 @@ std::vector<Change> without_shared_edges(const Mesh& mesh, const std::vector<Cha
 bool apply_together(const SeamSetting& setting, const std::vector<Change>& changes, SeamMarks& seam,
                     Progress& progress) {
     const Mesh& mesh = setting.mesh();
-    std::vector<Change> group = without_shared_edges(mesh, changes);
+    std::vector<Change> group = without_shared_edges(setting.surface, changes);
     while (!group.empty()) {
         SeamMarks marks = seam;
         std::vector<Line> closed;
         for (const Change& change : group) {
-            change.apply(mesh, marks);
+            change.apply(setting.surface, marks);
             closed.push_back(change.closed);
         }
-        const std::vector<std::vector<Index>> patches = patches_beside(mesh, marks, closed);
+        const std::vector<std::vector<Index>> patches =
+            patches_beside(mesh, marks, with_image(setting.surface, closed));
         std::vector<std::uint8_t> fails(mesh.faces.size(), 0);
         parallel_for(
             static_cast<int>(patches.size()),
             [&](int i) {
                 const auto& patch = patches[static_cast<std::size_t>(i)];
                 if (!setting.tester.accepts(patch, marks, progress))
-                    for (const Face f : patch)
+                    for (const Face f : patch) {
                         fails[f] = 1;
+                        if (setting.surface.is_symmetric())
+                            fails[setting.surface.face_image(f)] = 1;
+                    }
             },
             progress);
         const auto kept = std::remove_if(group.begin(), group.end(), [&](const Change& change) {
@@ -202,8 +209,9 @@ void apply_each(const SeamSetting& setting, const std::vector<Change>& changes, 
         [&](int i) {
             const auto k = static_cast<std::size_t>(i);
             SeamMarks marks = seam;
-            changes[k].apply(mesh, marks);
-            patches[k] = patches_beside(mesh, marks, {changes[k].closed});
+            changes[k].apply(setting.surface, marks);
+            patches[k] =
+                patches_beside(mesh, marks, with_image(setting.surface, {changes[k].closed}));
             is_accepted[k] = setting.tester.accepts_all(patches[k], marks, progress) ? 1 : 0;
         },
         progress);
@@ -215,7 +223,7 @@ void apply_each(const SeamSetting& setting, const std::vector<Change>& changes, 
                 is_free = is_free && is_changed[f] == 0;
         if (!is_free)
             continue;
-        changes[k].apply(mesh, seam);
+        changes[k].apply(setting.surface, seam);
         for (const auto& patch : patches[k])
             for (const Face f : patch)
                 is_changed[f] = 1;

@@ -36,29 +36,34 @@ double distance_to_line(const Vec3& p, const std::vector<Vec3>& line) {
 class SeamTransfer {
 public:
     SeamTransfer(const Mesh& from, const Mesh& to, const VertexGraph& graph,
-                 const std::vector<double>& factor)
-        : from_(from), to_(to), graph_(graph), factor_(factor), search_(to),
+                 const std::vector<double>& factor, TransferRest rest)
+        : from_(from), to_(to), graph_(graph), factor_(factor), rest_(std::move(rest)), search_(to),
           normal_(mesh::vertex_normals(from)), on_border_(mesh::boundary_vertices(from)),
           may_border_(mesh::boundary_vertices(to)),
           reach_(tuning.strip_width * mean_edge_length(from)),
           leaning_(tuning.leaning * mean_edge_length(to) *
                    std::clamp(2.0 * (mean_edge_length(from) / mean_edge_length(to) - 1.0),
                               tuning.least_leaning, 1.0)),
-          seam_(to.twin.size(), 0), taken_(to.points.size(), 0), place_(from.points.size(), -1) {
+          seam_(rest_.seam), taken_(to.points.size(), 0), place_(rest_.place) {
+        seam_.resize(to.twin.size(), 0);
+        place_.resize(from.points.size(), -1);
+        for (const HalfEdge h : to.all_half_edges())
+            if (seam_[h] != 0)
+                taken_[to.origin(h)] = taken_[to.target(h)] = 1;
         for (const HalfEdge h : to.all_half_edges())
             cost_.push_back(cost_of(h, reach_));
     }
 
     SeamMarks run(const SeamMarks& seam, Progress& progress) {
-        points_ = smooth_seams(from_, seam);
+        points_ = rest_.is_smooth ? from_.points : smooth_seams(from_, seam);
         std::vector<SeamSegment> segments = find_segments(from_, seam);
         std::stable_sort(
             segments.begin(), segments.end(),
             [](const SeamSegment& a, const SeamSegment& b) { return a.length > b.length; });
-        std::vector<std::vector<Index>> lines;
+        std::vector<Line> lines;
         for (const SeamSegment& segment : segments)
             add_lines(segment, lines);
-        for (const std::vector<Index>& line : lines)
+        for (const Line& line : lines)
             for (const Vertex v : {line.front(), line.back()})
                 if (place(v) >= 0)
                     taken_[place(v)] = 1;
@@ -70,45 +75,66 @@ public:
     }
 
 private:
-    // Vertices of a segment, in short parts.
-    void add_lines(const SeamSegment& segment, std::vector<std::vector<Index>>& lines) const {
+    using Line = std::vector<Index>; // vertices of a part of a segment
+
+    static bool is_set(const std::vector<std::uint8_t>& marks, Index i) {
+        return !marks.empty() && marks[at(i)] != 0;
+    }
+
+    // Of a segment, in short parts.
+    void add_lines(const SeamSegment& segment, std::vector<Line>& lines) const {
         const std::size_t count = segment.half_edges.size();
         const std::size_t least = segment.is_loop ? std::min<std::size_t>(3, count) : 1;
         const std::size_t parts = std::max(least, count / tuning.path_edges);
         for (std::size_t part = 0; part < parts; ++part) {
-            std::vector<Index> line;
+            Line line;
             for (std::size_t k = part * count / parts; k < (part + 1) * count / parts; ++k) {
                 const HalfEdge h = segment.half_edges[k];
+                if (is_set(rest_.edges, h)) {
+                    if (!line.empty())
+                        lines.push_back(std::exchange(line, {}));
+                    continue;
+                }
                 if (line.empty())
                     line.push_back(from_.origin(h));
                 line.push_back(from_.target(h));
             }
-            lines.push_back(std::move(line));
+            if (!line.empty())
+                lines.push_back(std::move(line));
         }
     }
 
     Index place(Vertex v) {
         if (place_[v] < 0)
             place_[v] = search_.vertex(points_[v], normal_[v], [&](Index u) {
-                return on_border_[v] == 0 || may_border_[u] != 0;
+                return (on_border_[v] == 0 || may_border_[u] != 0) && !is_set(rest_.closed, u);
             });
         return place_[v];
     }
 
-    void transfer(const std::vector<Index>& line, const Progress& progress) {
+    void transfer(const Line& line, const Progress& progress) {
         const Index start = place(line.front());
         const Index end = place(line.back());
         if (start < 0 || end < 0 || start == end)
             return;
         const std::vector<std::uint8_t> strip = lean_towards(line);
-        std::vector<std::uint8_t> free = strip;
+        std::vector<std::uint8_t> open(strip.size(), 1);
+        for (std::size_t v = 0; v < open.size(); ++v)
+            if (is_set(rest_.closed, static_cast<Index>(v)))
+                open[v] = 0;
+        std::vector<std::uint8_t> beside = strip;
+        for (std::size_t v = 0; v < beside.size(); ++v)
+            if (open[v] == 0)
+                beside[v] = 0;
+        std::vector<std::uint8_t> free = beside;
         for (std::size_t v = 0; v < free.size(); ++v)
             if (taken_[v] != 0)
                 free[v] = 0;
-        free[start] = free[end] = 1;
+        for (std::vector<std::uint8_t>* allowed : {&open, &beside, &free})
+            (*allowed)[start] = (*allowed)[end] = 1;
         // Where other seams leave no room the path shares their edges.
         for (const std::vector<std::uint8_t>& allowed :
-             {free, strip, std::vector<std::uint8_t>{}}) {
+             {free, beside, open, std::vector<std::uint8_t>{}}) {
             const PathTree tree = shortest_paths(graph_, cost_, {start}, progress, allowed);
             if (!std::isfinite(tree.distance[end]))
                 continue;
@@ -167,6 +193,7 @@ private:
     const Mesh& to_;
     const VertexGraph& graph_;
     const std::vector<double>& factor_; // 3 #F of to
+    const TransferRest rest_;
     const mesh::SurfaceSearch search_;
     std::vector<Vec3> points_;                   // #V of from: on smooth seams
     const std::vector<Vec3> normal_;             // #V of from
@@ -176,7 +203,7 @@ private:
     const double leaning_;
     SeamMarks seam_;
     std::vector<std::uint8_t> taken_; // #V of to: on a seam, or an end of one
-    std::vector<Index> place_;        // #V of from: nearest vertex of to
+    std::vector<Index> place_;        // #V of from: the vertex of to
     std::vector<double> cost_;        // 3 #F of to
     std::vector<Index> near_;         // half-edges of to that are near the line of the last turn
 };
@@ -241,8 +268,9 @@ std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
 
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& factor,
-                         Progress& progress) {
-    SeamMarks transferred = SeamTransfer(from, to, graph, factor).run(seam, progress);
+                         TransferRest rest, Progress& progress) {
+    SeamMarks transferred =
+        SeamTransfer(from, to, graph, factor, std::move(rest)).run(seam, progress);
     cut_corners(to, transferred);
     return transferred;
 }

@@ -12,12 +12,22 @@ namespace devseg::plush {
 /// and vertices on the mesh's boundary stay. #V; the mesh's own points elsewhere.
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam);
 
+/// What a transfer leaves as it is.
+struct TransferRest {
+    std::vector<std::uint8_t> edges; // 3 #F of the first surface: 1 = not carried over; or empty
+    std::vector<std::uint8_t>
+        closed;               // #V of the second one: 1 = paths may only end there; or empty
+    std::vector<Index> place; // #V of the first one: its vertex where it is known, or −1
+    SeamMarks seam;           // 3 #F of the second one: seams that there are already
+    bool is_smooth = false;   // lines are carried over as they are
+};
+
 /// The seams of `from` (3 #F of it) as paths on `to`: the ends of their segments go to the nearest
 /// vertices, and a path follows each segment closely; it leans to edges where seams look natural
 /// (`factor`, 3 #F of `to`: of a path's length, less where they do). Seams that go around a face
 /// along two of its edges take the third one. Returns 3 #F of `to`.
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& factor,
-                         Progress& progress);
+                         TransferRest rest, Progress& progress);
 
 } // namespace devseg::plush

@@ -99,6 +99,7 @@ struct Tuning {
     Window dart_windows[4] = {{0.0, 1.0}, {0.3, 1.0}, {0.55, 1.0}, {0.8, 1.0}};
 
     // Transfer to the model.
+    int fit_turns = 30;         // of moving the surface onto the model, each time less smoothly
     int curve_rounds = 3;       // of smoothing, before seams become edges of the model
     double strip_width = 2.5;   // mean edges of the first surface: paths leave the line no farther
     double leaning = 2.0;       // mean edges of the second one: a path so far away costs double

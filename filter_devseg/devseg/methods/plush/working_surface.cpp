@@ -40,15 +40,26 @@ void link_twins(Mesh& mesh) {
         }
 }
 
+// Two vertices of the whole: the ends of an edge that the plane cuts, or twice the same one.
+using Ends = std::array<Index, 2>;
+
+// What lies on one side of a plane.
+struct Half {
+    Mesh mesh;
+    std::vector<Ends> ends; // #V: where its vertices are on the whole
+};
+
 // Cuts a mesh along a plane and keeps what lies below it.
 class Slicer {
 public:
     Slicer(const Mesh& mesh, const MirrorPlane& plane)
         : mesh_(mesh), plane_(plane), crossing_(mesh.twin.size(), -1) {
         snap_vertices();
+        for (const Vertex v : mesh.all_vertices())
+            ends_.push_back({v, v});
     }
 
-    Mesh slice() {
+    Half slice() {
         Mesh half;
         half.points = points_;
         half.unit_length = mesh_.unit_length;
@@ -56,7 +67,7 @@ public:
             add_part(f, half);
         link_twins(half);
         mesh::compute_face_geometry(half);
-        return half;
+        return {std::move(half), ends_};
     }
 
 private:
@@ -86,6 +97,7 @@ private:
                 crossing_[twin] = crossing_[h];
             const Vec3 p = points_[a] + t * (points_[b] - points_[a]);
             half.points.push_back(p - plane_.height(p) * plane_.normal);
+            ends_.push_back({a, b});
         }
         return crossing_[h];
     }
@@ -119,10 +131,12 @@ private:
     std::vector<Vec3> points_;
     std::vector<double> height_;  // #V
     std::vector<Index> crossing_; // 3 #F: new vertex on the edge
+    std::vector<Ends> ends_;      // #V of the half
 };
 
 // Without small pieces, and with one fan of faces at each vertex.
-Mesh clean_half(const Mesh& half, double surface_area) {
+Half clean_half(const Half& sliced, double surface_area) {
+    const Mesh& half = sliced.mesh;
     const mesh::FaceComponents pieces = mesh::face_components(half, [](Index) { return true; });
     std::vector<double> area(at(pieces.count), 0.0);
     for (std::size_t f = 0; f < half.faces.size(); ++f)
@@ -131,8 +145,72 @@ Mesh clean_half(const Mesh& half, double surface_area) {
     for (const Face f : half.all_faces())
         if (area[pieces.label[f]] > tuning.speck * surface_area)
             kept.push_back(f);
-    return atlas::mesh_of(
-        half, atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size())));
+    const atlas::ChartSurface surface =
+        atlas::extract_surface(half, kept, std::vector<std::uint8_t>(half.twin.size()));
+    Half clean{atlas::mesh_of(half, surface), {}};
+    for (const Vertex v : surface.vertex)
+        clean.ends.push_back(sliced.ends[v]);
+    return clean;
+}
+
+// One of two ends each, so that the closed line from one to the next is shortest.
+std::vector<Index> shortest_loop(const Mesh& whole, const std::vector<Ends>& ends) {
+    const std::size_t count = ends.size();
+    std::vector<Index> best;
+    double least = infinite;
+    constexpr std::array<std::size_t, 2> both{0, 1};
+    for (const std::size_t first : both) {
+        std::array<double, 2> length{infinite, infinite};
+        length[first] = 0.0;
+        std::vector<std::array<std::size_t, 2>> before(count + 1);
+        for (std::size_t i = 1; i <= count; ++i) {
+            std::array<double, 2> next{infinite, infinite};
+            for (const std::size_t from : both)
+                for (const std::size_t to : both) {
+                    const double d = length[from] + (whole.points[ends[i - 1][from]] -
+                                                     whole.points[ends[i % count][to]])
+                                                        .norm();
+                    if (d < next[to]) {
+                        next[to] = d;
+                        before[i][to] = from;
+                    }
+                }
+            length = next;
+        }
+        if (length[first] >= least)
+            continue;
+        least = length[first];
+        best.resize(count);
+        for (std::size_t i = count, end = first; i > 0; --i) {
+            end = before[i][end];
+            best[i - 1] = ends[i - 1][end];
+        }
+    }
+    return best;
+}
+
+// The vertices of the whole that those of the half are or become.
+std::vector<Index> places_of(const Mesh& whole, const Half& half) {
+    std::vector<Index> place;
+    for (const Ends& ends : half.ends)
+        place.push_back(ends[0]);
+    std::vector<std::uint8_t> is_done(half.mesh.twin.size(), 0);
+    for (const HalfEdge start : half.mesh.all_half_edges()) {
+        std::vector<Index> loop;
+        std::vector<Ends> ends;
+        for (HalfEdge h = start; half.mesh.twin[h] < 0 && is_done[h] == 0;
+             h = half.mesh.next_on_boundary(h)) {
+            is_done[h] = 1;
+            loop.push_back(half.mesh.origin(h));
+            ends.push_back(half.ends[half.mesh.origin(h)]);
+        }
+        if (loop.empty())
+            continue;
+        const std::vector<Index> chosen = shortest_loop(whole, ends);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            place[at(loop[i])] = chosen[i];
+    }
+    return place;
 }
 
 // Half-edge h of a face, on the mirror image of the face: it turns the other way.
@@ -179,6 +257,7 @@ WorkingSurface glue(const Mesh& half, const MirrorPlane& plane) {
     // To the last bit: what is measured on both sides must agree.
     for (Face f = 0; f < n; ++f)
         mesh.face_areas[f + n] = mesh.face_areas[f];
+    result.side = plane;
     return result;
 }
 
@@ -191,7 +270,8 @@ WorkingSurface plain_working_surface(const Mesh& mesh, Index most_faces, Progres
 }
 
 std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const MirrorPlane& plane,
-                                                       Index most_faces, const Progress& progress) {
+                                                       Index most_faces, Index kept_faces,
+                                                       const Progress& progress) {
     MirrorPlane turned = plane;
     turned.normal = -plane.normal;
     turned.offset = -plane.offset;
@@ -199,14 +279,14 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
     double least = infinite;
     for (const MirrorPlane& side : {plane, turned}) {
         progress.check();
-        Mesh half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
+        Mesh half = clean_half(Slicer(mesh, side).slice(), mesh.total_area).mesh;
         if (half.faces.empty())
             continue;
         const double area = 2.0 * half.total_area / mesh.total_area;
         if (std::abs(std::log(area)) >= least || area < tuning.whole_area ||
             area > 1.0 / tuning.whole_area)
             continue;
-        if (2 * half.face_count() > most_faces)
+        if (2 * half.face_count() > kept_faces)
             half = mesh::coarsen(half, most_faces / 2, progress).mesh;
         WorkingSurface surface = glue(half, side);
         if (euler_characteristic(surface.mesh) != euler_characteristic(mesh))
@@ -217,9 +297,30 @@ std::optional<WorkingSurface> mirrored_working_surface(const Mesh& mesh, const M
     return best;
 }
 
+std::optional<MirroredModel> mirrored_model(const Mesh& mesh, const MirrorPlane& side) {
+    const Half half = clean_half(Slicer(mesh, side).slice(), mesh.total_area);
+    if (half.mesh.faces.empty())
+        return std::nullopt;
+    MirroredModel model{glue(half.mesh, side), places_of(mesh, half)};
+    if (euler_characteristic(model.surface.mesh) != euler_characteristic(mesh))
+        return std::nullopt;
+    model.place.resize(model.surface.mesh.points.size(), -1);
+    return model;
+}
+
 void mirror_marks(const WorkingSurface& surface, SeamMarks& marks) {
     for (std::size_t h = 0; h < surface.image.size() / 2; ++h)
         marks[surface.image[h]] = marks[h];
+}
+
+std::vector<std::vector<Index>> with_image(const WorkingSurface& surface,
+                                           std::vector<std::vector<Index>> lines) {
+    for (std::size_t i = 0, count = lines.size(); i < count && surface.is_symmetric(); ++i) {
+        lines.push_back(lines[i]);
+        for (Index& h : lines.back())
+            h = surface.image[h];
+    }
+    return lines;
 }
 
 void mark_both(const WorkingSurface& surface, const std::vector<Index>& line, std::uint8_t value,

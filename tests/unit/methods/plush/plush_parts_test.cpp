@@ -10,6 +10,7 @@
 
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
+#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/patch_tester.h"
 #include "devseg/methods/plush/seam_smoothing.h"
@@ -48,6 +49,29 @@ TEST(SeamRemoval, OpensAsMuchOfASeamAsItCan) {
     EXPECT_EQ(std::count(seam.begin(), seam.end(), 1), 0);
 }
 
+TEST(FitSurface, LimbsFollowThoseOfTheModel) {
+    mesh::RawMesh straight = shapes::sphere(3);
+    for (Vec3& p : straight.points)
+        p = Vec3(p.x(), 0.3 * p.y(), 0.3 * p.z());
+    mesh::RawMesh bent = straight;
+    for (Vec3& p : bent.points)
+        p.z() += 0.15 * p.x() * p.x();
+    const Mesh from = checks::gated(straight);
+    const Mesh model = checks::gated(bent);
+    const Mesh fitted = fitted_to(model, from, build_vertex_graph(from), Progress());
+    const auto far = [&](const Mesh& mesh) { // the model's point that is farthest from the mesh
+        double farthest = 0.0;
+        for (const Vec3& p : model.points) {
+            double nearest = infinite;
+            for (const Vec3& q : mesh.points)
+                nearest = std::min(nearest, (p - q).norm());
+            farthest = std::max(farthest, nearest);
+        }
+        return farthest;
+    };
+    EXPECT_LT(far(fitted), 0.6 * far(from));
+}
+
 TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     mesh::RawMesh raw = shapes::torus(40, 20);
     for (Vec3& p : raw.points)
@@ -59,7 +83,7 @@ TEST(Symmetry, MirrorPlaneOfTorusOnTwoLevels) {
     EXPECT_LT(plane->deviation, 1e-3);
     EXPECT_LT(std::abs(plane->normal.x()), 1e-3);
     for (const Index most : {20000, 600}) {
-        const auto surface = mirrored_working_surface(mesh, *plane, most, Progress{});
+        const auto surface = mirrored_working_surface(mesh, *plane, most, most, Progress{});
         ASSERT_TRUE(surface.has_value());
         const Mesh& half = surface->mesh;
         EXPECT_LE(half.face_count(), std::max<Index>(600, 2 * mesh.face_count()));

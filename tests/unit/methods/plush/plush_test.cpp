@@ -260,8 +260,9 @@ TEST(PlushSeams, SeamsAreCarriedToAFinerSurface) {
             mark(coarse, h, 1, seam);
     const mesh::FaceComponents before = find_patches(coarse, seam);
     Progress progress;
-    const SeamMarks moved = transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
-                                           std::vector<double>(fine.twin.size(), 1.0), progress);
+    const SeamMarks moved =
+        transfer_seams(coarse, seam, fine, build_vertex_graph(fine),
+                       std::vector<double>(fine.twin.size(), 1.0), {}, progress);
     EXPECT_EQ(before.count, 2);
     EXPECT_EQ(find_patches(fine, moved).count, before.count);
     const std::vector<double> even(moved.size(), 1.0);
