@@ -84,5 +84,6 @@ fi
 if ((${#failed[@]})); then
     printf 'devseg: failed so far: %s\n' "${failed[*]}"
 fi
-check pytest .venv/bin/python -m pytest tests/python
+# Files side by side: those of a file share what they have made.
+check pytest .venv/bin/python -m pytest --numprocesses "$(nproc)" --dist loadfile tests/python
 ((${#failed[@]} == 0))
