@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include "devseg/plane/plane.h"
 
@@ -54,95 +57,155 @@ bool overlap(const Corners& a, const Corners& b, double least) {
     return !separated_by_edges_of(a, b, tolerance) && !separated_by_edges_of(b, a, tolerance);
 }
 
-// A uniform grid with about one cell for each face.
-class Grid {
+// Boxes of faces in grids of cells of 1, 2, 4, … times a width: a face lies in the first one whose
+// cells are as large as its box, in at most four of them. Long faces, as those of plates with
+// holes, would lie in many cells of one grid, and meet each other in all of them.
+class BoxLevels {
 public:
-    Grid(const CornerUv& uv, const std::vector<Index>& faces) {
-        Vec2 high = uv[3 * faces.front()];
-        low_ = high;
-        for (const Index f : faces)
-            for (Index k = 0; k < 3; ++k) {
-                low_ = low_.cwiseMin(uv[3 * f + k]);
-                high = high.cwiseMax(uv[3 * f + k]);
-            }
-        const Vec2 size = (high - low_).cwiseMax(1e-12 * (high - low_).maxCoeff());
-        const double cells = std::max(1.0, static_cast<double>(faces.size()));
-        cell_ = std::sqrt(size.prod() / cells);
-        cell_ = std::max(cell_, size.maxCoeff() / (4.0 * cells));
-        columns_ = static_cast<Index>(size.x() / cell_) + 1;
-        rows_ = static_cast<Index>(size.y() / cell_) + 1;
-        begin_.assign(at(columns_ * rows_) + 1, 0);
-        for (const Index f : faces)
-            visit(corners_of(uv, f), [&](Index c) { ++begin_[at(c) + 1]; });
-        for (std::size_t c = 1; c < begin_.size(); ++c)
-            begin_[c] += begin_[c - 1];
-        items_.resize(at(begin_.back()));
-        std::vector<Index> cursor(begin_.begin(), begin_.end() - 1);
-        for (const Index f : faces)
-            visit(corners_of(uv, f), [&](Index c) { items_[cursor[c]++] = f; });
+    BoxLevels(const CornerUv& uv, const std::vector<Index>& faces) {
+        boxes_.reserve(faces.size());
+        Box all;
+        double sum = 0.0;
+        for (const Index f : faces) {
+            Box box;
+            for (Index k = 0; k < 3; ++k)
+                box.extend(uv[3 * f + k]);
+            all.extend(box);
+            sum += box.sizes().maxCoeff();
+            boxes_.push_back(box);
+        }
+        low_ = all.min();
+        const double count = static_cast<double>(faces.size());
+        // No more cells than faces.
+        width_ = std::max(
+            {sum / count, std::sqrt(all.sizes().prod() / count), all.sizes().maxCoeff() / count});
+        std::vector<std::vector<Index>> members;
+        level_.resize(faces.size());
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            std::size_t level = 0;
+            for (double w = width_; w < boxes_[i].sizes().maxCoeff(); w *= 2.0)
+                ++level;
+            level_[i] = level;
+            members.resize(std::max(members.size(), level + 1));
+            members[level].push_back(static_cast<Index>(i));
+        }
+        for (std::size_t l = 0; l < members.size(); ++l)
+            add_level(all, members[l], std::ldexp(width_, static_cast<int>(l)));
     }
-    Index cell_count() const { return columns_ * rows_; }
-    const Index* first(Index c) const { return items_.data() + begin_[c]; }
-    const Index* last(Index c) const { return items_.data() + begin_[at(c) + 1]; }
 
-    /// The cell that owns a pair of faces: the one with the lowest corner of their common box.
-    Index owner(const Corners& a, const Corners& b) const {
-        const Vec2 low = lowest(a).cwiseMax(lowest(b));
-        return column(low.x()) + columns_ * row(low.y());
+    /// Calls each(i, j) once for all pairs of boxes that meet, numbers in `faces`, until it returns
+    /// false.
+    template <class Each>
+    bool visit_pairs(Each each) const {
+        for (std::size_t i = 0; i < boxes_.size(); ++i)
+            for (std::size_t l = level_[i]; l < levels_.size(); ++l)
+                if (!visit_pairs_with(static_cast<Index>(i), l, each))
+                    return false;
+        return true;
     }
 
 private:
-    static Vec2 lowest(const Corners& t) { return t[0].cwiseMin(t[1]).cwiseMin(t[2]); }
-    static Vec2 highest(const Corners& t) { return t[0].cwiseMax(t[1]).cwiseMax(t[2]); }
-    Index column(double x) const {
-        return std::clamp(static_cast<Index>((x - low_.x()) / cell_), Index{0}, columns_ - 1);
+    using Box = Eigen::AlignedBox2d;
+
+    struct Level {
+        double width = 1.0;
+        Index columns = 1;
+        Index rows = 1;
+        std::vector<Index> begin; // of each cell in `items`
+        std::vector<Index> items;
+    };
+
+    Index column(const Level& level, double x) const {
+        return std::clamp(static_cast<Index>((x - low_.x()) / level.width), Index{0},
+                          level.columns - 1);
     }
-    Index row(double y) const {
-        return std::clamp(static_cast<Index>((y - low_.y()) / cell_), Index{0}, rows_ - 1);
+    Index row(const Level& level, double y) const {
+        return std::clamp(static_cast<Index>((y - low_.y()) / level.width), Index{0},
+                          level.rows - 1);
     }
+
     template <class Visit>
-    void visit(const Corners& t, Visit each) const {
-        const Vec2 low = lowest(t);
-        const Vec2 high = highest(t);
-        for (Index y = row(low.y()); y <= row(high.y()); ++y)
-            for (Index x = column(low.x()); x <= column(high.x()); ++x)
-                each(x + columns_ * y);
+    bool visit_cells(const Level& level, const Box& box, Visit each) const {
+        const Index last_row = row(level, box.max().y());
+        const Index last_column = column(level, box.max().x());
+        for (Index y = row(level, box.min().y()); y <= last_row; ++y)
+            for (Index x = column(level, box.min().x()); x <= last_column; ++x)
+                if (!each(x + level.columns * y))
+                    return false;
+        return true;
+    }
+
+    void add_level(const Box& all, const std::vector<Index>& members, double width) {
+        Level level;
+        level.width = width;
+        level.columns = static_cast<Index>(all.sizes().x() / width) + 1;
+        level.rows = static_cast<Index>(all.sizes().y() / width) + 1;
+        if (!members.empty()) {
+            level.begin.assign(at(level.columns * level.rows) + 1, 0);
+            const auto visit_all = [&](const auto& each) {
+                for (const Index i : members)
+                    visit_cells(level, boxes_[at(i)], [&](Index c) {
+                        each(i, at(c));
+                        return true;
+                    });
+            };
+            visit_all([&](Index, std::size_t c) { ++level.begin[c + 1]; });
+            for (std::size_t c = 1; c < level.begin.size(); ++c)
+                level.begin[c] += level.begin[c - 1];
+            level.items.resize(at(level.begin.back()));
+            std::vector<Index> cursor(level.begin.begin(), level.begin.end() - 1);
+            visit_all([&](Index i, std::size_t c) { level.items[at(cursor[c]++)] = i; });
+        }
+        levels_.push_back(std::move(level));
+    }
+
+    // With those of a level, which are larger, or as large and come later.
+    template <class Each>
+    bool visit_pairs_with(Index i, std::size_t l, Each each) const {
+        const Level& level = levels_[l];
+        if (level.items.empty())
+            return true;
+        const Box& box = boxes_[at(i)];
+        const bool same = level_[at(i)] == l;
+        return visit_cells(level, box, [&](Index c) {
+            for (Index k = level.begin[at(c)]; k < level.begin[at(c) + 1]; ++k) {
+                const Index j = level.items[at(k)];
+                const Box& other = boxes_[at(j)];
+                if ((same && j <= i) || !box.intersects(other))
+                    continue;
+                // The cell with the lowest corner of their common box has the pair.
+                const Vec2 low = box.min().cwiseMax(other.min());
+                if (column(level, low.x()) + level.columns * row(level, low.y()) == c &&
+                    !each(i, j))
+                    return false;
+            }
+            return true;
+        });
     }
 
     Vec2 low_;
-    double cell_ = 1.0;
-    Index columns_ = 1;
-    Index rows_ = 1;
-    std::vector<Index> begin_;
-    std::vector<Index> items_;
+    double width_ = 1.0;
+    std::vector<Box> boxes_;
+    std::vector<std::size_t> level_; // of each box
+    std::vector<Level> levels_;
 };
-
-} // namespace
-
-namespace {
 
 // Calls each({f, g}), f < g, of the pairs that overlap, in no order, until it returns false.
 template <class Each>
 void visit_overlapping_pairs(const CornerUv& corners, double tolerance, Each each) {
     std::vector<Index> faces;
+    std::vector<Corners> triangles;
     for (Index f = 0; f < static_cast<Index>(corners.size() / 3); ++f)
-        if (std::abs(uv_area(corners, f)) > 0.0) // false for NaN as well
+        if (std::abs(uv_area(corners, f)) > 0.0) { // false for NaN as well
             faces.push_back(f);
+            triangles.push_back(corners_of(corners, f));
+        }
     if (faces.empty())
         return;
-    const Grid grid(corners, faces);
-    std::vector<Corners> in_cell;
-    for (Index c = 0; c < grid.cell_count(); ++c) {
-        in_cell.clear();
-        for (const Index* f = grid.first(c); f != grid.last(c); ++f)
-            in_cell.push_back(corners_of(corners, *f));
-        for (std::size_t i = 0; i < in_cell.size(); ++i)
-            for (std::size_t j = i + 1; j < in_cell.size(); ++j)
-                if (grid.owner(in_cell[i], in_cell[j]) == c &&
-                    overlap(in_cell[i], in_cell[j], tolerance) &&
-                    !each(std::minmax(grid.first(c)[i], grid.first(c)[j])))
-                    return;
-    }
+    BoxLevels(corners, faces).visit_pairs([&](Index i, Index j) {
+        return !overlap(triangles[at(i)], triangles[at(j)], tolerance) ||
+               each(std::minmax(faces[at(i)], faces[at(j)]));
+    });
 }
 
 } // namespace
