@@ -22,38 +22,42 @@ constexpr double rounding_steps = 4.0;
 
 using Corners = std::array<Vec2, 3>;
 
-Corners corners_of(const CornerUv& uv, Index f) {
-    Corners t{uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]};
-    if (uv_area(uv, f) < 0.0)
-        std::swap(t[1], t[2]);
-    return t;
-}
+// A face counterclockwise, with what many tests ask of it.
+struct Triangle {
+    Triangle(const CornerUv& uv, Index f) : corners{uv[3 * f], uv[3 * f + 1], uv[3 * f + 2]} {
+        if (uv_area(uv, f) < 0.0)
+            std::swap(corners[1], corners[2]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 edge = corners[(k + 1) % 3] - corners[k];
+            const double length = edge.norm();
+            inward[k] = length > 0.0 ? Vec2(-edge.y() / length, edge.x() / length) : Vec2::Zero();
+        }
+        for (const Vec2& p : corners)
+            box.extend(p);
+    }
+    double extent() const { return box.sizes().maxCoeff(); }
 
-double extent(const Corners& t) {
-    const Vec2 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]);
-    const Vec2 high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
-    return (high - low).maxCoeff();
-}
+    Corners corners;
+    std::array<Vec2, 3> inward; // unit normals of the edges; 0 for edges without length
+    Eigen::AlignedBox2d box;
+};
 
 // True when the line along one of a's edges separates the triangles.
-bool separated_by_edges_of(const Corners& a, const Corners& b, double tolerance) {
+bool separated_by_edges_of(const Triangle& a, const Triangle& b, double tolerance) {
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2 edge = a[(k + 1) % 3] - a[k];
-        const double length = edge.norm();
-        if (!(length > 0.0))
+        if (a.inward[k].isZero(0.0))
             continue;
-        const Vec2 inward(-edge.y() / length, edge.x() / length);
         double reach = -std::numeric_limits<double>::max(); // of b to a's side of the edge
-        for (const Vec2& p : b)
-            reach = std::max(reach, inward.dot(p - a[k]));
+        for (const Vec2& p : b.corners)
+            reach = std::max(reach, a.inward[k].dot(p - a.corners[k]));
         if (reach <= tolerance)
             return true;
     }
     return false;
 }
 
-bool overlap(const Corners& a, const Corners& b, double least) {
-    const double tolerance = std::max(least, touch_tolerance * std::min(extent(a), extent(b)));
+bool overlap(const Triangle& a, const Triangle& b, double least) {
+    const double tolerance = std::max(least, touch_tolerance * std::min(a.extent(), b.extent()));
     return !separated_by_edges_of(a, b, tolerance) && !separated_by_edges_of(b, a, tolerance);
 }
 
@@ -62,17 +66,14 @@ bool overlap(const Corners& a, const Corners& b, double least) {
 // holes, would lie in many cells of one grid, and meet each other in all of them.
 class BoxLevels {
 public:
-    BoxLevels(const CornerUv& uv, const std::vector<Index>& faces) {
+    explicit BoxLevels(const std::vector<Triangle>& faces) {
         boxes_.reserve(faces.size());
         Box all;
         double sum = 0.0;
-        for (const Index f : faces) {
-            Box box;
-            for (Index k = 0; k < 3; ++k)
-                box.extend(uv[3 * f + k]);
-            all.extend(box);
-            sum += box.sizes().maxCoeff();
-            boxes_.push_back(box);
+        for (const Triangle& face : faces) {
+            all.extend(face.box);
+            sum += face.extent();
+            boxes_.push_back(face.box);
         }
         low_ = all.min();
         const double count = static_cast<double>(faces.size());
@@ -113,6 +114,7 @@ private:
         Index rows = 1;
         std::vector<Index> begin; // of each cell in `items`
         std::vector<Index> items;
+        std::vector<Box> boxes; // of the items, side by side
     };
 
     Index column(const Level& level, double x) const {
@@ -155,6 +157,8 @@ private:
             level.items.resize(at(level.begin.back()));
             std::vector<Index> cursor(level.begin.begin(), level.begin.end() - 1);
             visit_all([&](Index i, std::size_t c) { level.items[at(cursor[c]++)] = i; });
+            for (const Index i : level.items)
+                level.boxes.push_back(boxes_[at(i)]);
         }
         levels_.push_back(std::move(level));
     }
@@ -168,11 +172,16 @@ private:
         const Box& box = boxes_[at(i)];
         const bool same = level_[at(i)] == l;
         return visit_cells(level, box, [&](Index c) {
-            for (Index k = level.begin[at(c)]; k < level.begin[at(c) + 1]; ++k) {
-                const Index j = level.items[at(k)];
-                const Box& other = boxes_[at(j)];
-                if ((same && j <= i) || !box.intersects(other))
+            const auto first = level.items.begin() + level.begin[at(c)];
+            const auto last = level.items.begin() + level.begin[at(c) + 1];
+            // In their order in each cell.
+            for (auto item = same ? std::upper_bound(first, last, i) : first; item != last;
+                 ++item) {
+                const Box& other =
+                    level.boxes[static_cast<std::size_t>(item - level.items.begin())];
+                if (!box.intersects(other))
                     continue;
+                const Index j = *item;
                 // The cell with the lowest corner of their common box has the pair.
                 const Vec2 low = box.min().cwiseMax(other.min());
                 if (column(level, low.x()) + level.columns * row(level, low.y()) == c &&
@@ -194,15 +203,15 @@ private:
 template <class Each>
 void visit_overlapping_pairs(const CornerUv& corners, double tolerance, Each each) {
     std::vector<Index> faces;
-    std::vector<Corners> triangles;
+    std::vector<Triangle> triangles;
     for (Index f = 0; f < static_cast<Index>(corners.size() / 3); ++f)
         if (std::abs(uv_area(corners, f)) > 0.0) { // false for NaN as well
             faces.push_back(f);
-            triangles.push_back(corners_of(corners, f));
+            triangles.emplace_back(corners, f);
         }
     if (faces.empty())
         return;
-    BoxLevels(corners, faces).visit_pairs([&](Index i, Index j) {
+    BoxLevels(triangles).visit_pairs([&](Index i, Index j) {
         return !overlap(triangles[at(i)], triangles[at(j)], tolerance) ||
                each(std::minmax(faces[at(i)], faces[at(j)]));
     });
