@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from devseg import collada, gltf, gltf_triangles, host, obj, ply, scene, stl
+from devseg import collada, gltf, gltf_triangles, host, obj, ply, scene, stl, threemf
 from devseg.apart import limited_reading
 from devseg.errors import DevsegError, host_message
 from devseg.frame import Frame, read_frame
@@ -131,6 +131,8 @@ def _for_the_host(path: Path) -> Iterator[tuple[Path, list[str]]]:
             yield gltf_triangles.rewritten(path, Path(folder))
         elif extension == ".dae":
             yield collada.rewritten(path, Path(folder))
+        elif extension == ".3mf":
+            yield threemf.rewritten(path, Path(folder))
         elif extension == ".stl":
             yield stl.rewritten(path, Path(folder)), []
         else:

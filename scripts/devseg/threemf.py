@@ -22,6 +22,11 @@ _UNITS = {
     "foot": 304.8,
     "meter": 1000.0,
 }
+# A triangle that names a corner twice.
+_REPEATED = re.compile(
+    rb"<(?:\w+:)?triangle\s[^>]*?"
+    rb'(?:v1="(\d+)"\s+v2="\1"|v2="(\d+)"\s+v3="\2"|v1="(\d+)"\s+v2="\d+"\s+v3="\3")[^>]*/>'
+)
 _TAG = re.compile(rb"<(?:\w+:)?(model)\b([^>]*)>")
 
 
@@ -33,6 +38,37 @@ def read_unit(path: Path) -> float | None:
     head = _TAG.search(model)
     unit = _attribute(head[2], b"unit") if head else ""
     return _UNITS.get(unit or "millimeter")
+
+
+def rewritten(path: Path, folder: Path) -> tuple[Path, list[str]]:
+    """The file, or one without triangles that name a corner twice: the host reads no others.
+
+    Args:
+        path: of the file.
+        folder: for another one.
+
+    Returns:
+        The file to read, and what it leaves out.
+    """
+    import zipfile
+
+    try:
+        with zipfile.ZipFile(path) as archive:
+            parts = {name: archive.read(name) for name in archive.namelist()}
+    except (zipfile.BadZipFile, OSError):
+        return path, []  # the host says what is wrong
+    left_out = 0
+    for name, part in parts.items():
+        if name.endswith(".model"):
+            parts[name], count = _REPEATED.subn(b"", part)
+            left_out += count
+    if left_out == 0:
+        return path, []
+    copy = folder / path.name
+    with zipfile.ZipFile(copy, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, part in parts.items():
+            archive.writestr(name, part)
+    return copy, [f"{left_out} triangles name a corner twice and were left out"]
 
 
 @dataclass(frozen=True)
@@ -105,7 +141,7 @@ def _runs(
     for part in one.iter():
         if _kind(part) == "component" and (other := objects.get(_text(part, "objectid"))):
             runs += _runs(other, objects, materials, depth + 1)
-        if _kind(part) != "triangle":
+        if _kind(part) != "triangle" or len({part.get(f"v{k}") for k in (1, 2, 3)}) < 3:
             continue
         get = part.get
         group = get("pid", own[0])

@@ -70,6 +70,24 @@ def test_materials_of_3mf(tmp_path: Path) -> None:
     assert library.startswith("newmtl Red felt\nKd 1 0 0\n") and "Kd 0 0 0.501961" in library
 
 
+def test_triangles_of_3mf_that_name_a_corner_twice_are_left_out(tmp_path: Path) -> None:
+    vertices, faces = meshes.cube()
+    rows = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*(90 * v)) for v in vertices)
+    repeated = [(0, 0, 1), (0, 1, 1), (1, 0, 1)]
+    cells = [
+        '<triangle v1="{}" v2="{}" v3="{}"/>'.format(*f)
+        for f in [*faces[:4], *repeated, *faces[4:]]
+    ]
+    content = (
+        f'<resources><object id="1" type="model"><mesh><vertices>{rows}</vertices>'
+        f"<triangles>{''.join(cells)}</triangles></mesh></object></resources>"
+        '<build><item objectid="1"/></build>'
+    )
+    loaded = load_mesh(write_3mf(tmp_path / "a.3mf", "", content))
+    assert loaded.meshes.current_mesh().face_number() == len(faces)
+    assert loaded.warnings == ["3 triangles name a corner twice and were left out"]
+
+
 def test_all_solids_of_a_text_are_read_with_their_names(tmp_path: Path) -> None:
     vertices, faces = meshes.cube()
     path = tmp_path / "a.stl"
