@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "devseg/atlas/charts.h"
@@ -31,5 +32,9 @@ std::vector<std::uint8_t> flat_holes(const Mesh& mesh, const ChartSurface& surfa
 /// Whether a chart can be flattened and cut out as it is: a disk, or a disk with holes that lie
 /// flat with it.
 bool is_sound(const Mesh& mesh, const ChartSurface& surface, const HoleRule& rule = {});
+
+/// The flat holes of a chart that is sound, nothing where it is not.
+std::optional<std::vector<std::uint8_t>> sound_holes(const Mesh& mesh, const ChartSurface& surface,
+                                                     const HoleRule& rule = {});
 
 } // namespace devseg::atlas

@@ -38,14 +38,17 @@ public:
     Trial(const atlas::ChartSurface& surface, const flatten::FlatteningProblem& problem,
           const TrialEffort& effort, const Progress& progress)
         : surface_(surface), problem_(problem), effort_(effort), progress_(progress),
-          laplacian_(problem), excess_(effort.wanted_l2 * effort.wanted_l2 - 1.0) {}
+          excess_(effort.wanted_l2 * effort.wanted_l2 - 1.0) {}
 
     // Near an isometry l2² − 1 is 1.5 to 2 times the excess of the symmetric Dirichlet energy over
     // 1, depending on how much of the distortion is shear: an energy whose excess is that of the
     // wanted l2² is hopeless; so is such an energy of stitched faces, which is about the same where
     // it is small. Empty where there is no map worth looking at.
-    std::vector<Vec2> flatten(const std::vector<Vec2>& turns) const {
+    std::vector<Vec2> flatten(const std::vector<Vec2>& turns) {
         std::vector<Vec2> start;
+        if (turns.empty() && effort_.only_near)
+            return {};
+        laplacian_.emplace(problem_);
         if (!turns.empty()) {
             const auto stitched = stitch(turns);
             if (stitched && stitched->empty())
@@ -74,7 +77,7 @@ private:
         if (effort_.give_up)
             options.give_up_energy = excess_;
         return flatten::attempt(
-            [&] { return std::optional(flatten::stitch(problem_, laplacian_, turns, options)); });
+            [&] { return std::optional(flatten::stitch(problem_, *laplacian_, turns, options)); });
     }
 
     // Parts that overlap in a map so near to the best one are not going to come apart.
@@ -90,7 +93,7 @@ private:
         options.max_iterations = gain < tuning.coarsest ? tuning.many_rounds : tuning.few_rounds;
         if (effort_.give_up)
             options.give_up_energy = 1.0 + excess_;
-        options.laplacian = &laplacian_;
+        options.laplacian = &*laplacian_;
         return flatten::minimise_symmetric_dirichlet(problem_, start, options, progress_).uv;
     }
 
@@ -98,8 +101,8 @@ private:
     const flatten::FlatteningProblem& problem_;
     const TrialEffort& effort_;
     const Progress& progress_;
-    flatten::Laplacian laplacian_;
-    double excess_; // wanted
+    std::optional<flatten::Laplacian> laplacian_; // needed where there is a start
+    double excess_;                               // wanted
 };
 
 // Faces that are stretched more than all faces around them.

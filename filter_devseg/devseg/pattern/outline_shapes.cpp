@@ -16,6 +16,10 @@ constexpr int motion_rounds = 12;
 // Sooner when the squared distance falls no more below this share of it.
 constexpr double settled = 0.98;
 
+// Corners that lie within the tolerance may have sides between them whose points are twice as far
+// away: squared.
+constexpr double sloping = 4.0;
+
 // Beginnings along an outline that are tried with its waves.
 constexpr std::size_t begins = places;
 
@@ -27,19 +31,6 @@ Complex number(const Vec2& p) {
 
 Vec2 point(const Complex& z) {
     return {z.real(), z.imag()};
-}
-
-Vec2 nearest_on(const std::vector<Vec2>& outline, const Vec2& p) {
-    Vec2 best = outline.front();
-    double least = infinite;
-    for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
-        const Vec2 q = plane::nearest_point(p, outline[j], outline[i]);
-        if ((p - q).squaredNorm() < least) {
-            least = (p - q).squaredNorm();
-            best = q;
-        }
-    }
-    return best;
 }
 
 // The rigid motion that brings from[i] nearest to to[(i + offset) mod n], in the mean square.
@@ -55,9 +46,10 @@ Motion fit_motion(const std::vector<Vec2>& from, const std::vector<Vec2>& to, st
     }
     Complex product{0.0, 0.0};
     double spread = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0, j = offset; i < n; ++i, ++j) {
+        j = j < n ? j : 0;
         const Complex a = number(from[i]) - mean_from;
-        const Complex b = number(to[(i + offset) % n]) - mean_to;
+        const Complex b = number(to[j]) - mean_to;
         product += std::conj(a) * b;
         spread += std::norm(a) + std::norm(b);
     }
@@ -85,33 +77,38 @@ std::vector<std::vector<Vec2>> outlines_of(const PatternPiece& piece, bool mirro
     return outlines;
 }
 
-// Whether all of `a`, moved, lies on an outline of `b`.
-bool lies_on(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
-             const Motion& motion, double tolerance) {
-    for (const std::vector<Vec2>& outline : a)
-        for (const Vec2& p : outline) {
-            const Vec2 moved = motion(p);
-            bool near = false;
-            for (const std::vector<Vec2>& other : b)
-                near = near || (nearest_on(other, moved) - moved).norm() <= tolerance;
-            if (!near)
-                return false;
-        }
-    return true;
+// Whether all points, moved, lie on one of the outlines.
+bool lie_on(const std::vector<Vec2>& points, const std::vector<Sides>& outlines,
+            const Motion& motion, double tolerance) {
+    return std::all_of(points.begin(), points.end(), [&](const Vec2& p) {
+        const Vec2 moved = motion(p);
+        return std::any_of(outlines.begin(), outlines.end(), [&](const Sides& sides) {
+            return (sides.nearest(moved) - moved).norm() <= tolerance;
+        });
+    });
+}
+
+bool lies_on(const Shape& a, const Shape& b, const Motion& motion, double tolerance) {
+    return std::all_of(a.outlines.begin(), a.outlines.end(), [&](const std::vector<Vec2>& outline) {
+        return lie_on(outline, b.sides, motion, tolerance);
+    });
 }
 
 // Brings the points to the nearest ones of the other outline, again and again.
-bool fits_from(const std::vector<std::vector<Vec2>>& a, const std::vector<std::vector<Vec2>>& b,
-               const std::vector<Vec2>& even, Motion& motion, double tolerance) {
+bool fits_from(const Shape& a, const Shape& b, Motion& motion, double tolerance) {
     double last = infinite;
+    const double most = static_cast<double>(a.even.size()) * sloping * tolerance * tolerance;
+    std::vector<Vec2> nearest(a.even.size());
     for (int round = 0; round < motion_rounds; ++round) {
-        std::vector<Vec2> nearest;
-        for (const Vec2& p : even)
-            nearest.push_back(nearest_on(b.front(), motion(p)));
+        std::transform(a.even.begin(), a.even.end(), nearest.begin(),
+                       [&](const Vec2& p) { return b.sides.front().nearest(motion(p)); });
         double error = 0.0;
-        motion = fit_motion(even, nearest, 0, error);
+        motion = fit_motion(a.even, nearest, 0, error);
         if (!(error < settled * last))
             break;
+        // Rounds gain less and less.
+        if (error - (motion_rounds - round - 1) * (last - error) > most)
+            return false;
         last = error;
     }
     return lies_on(a, b, motion, tolerance) && lies_on(b, a, motion.inverse(), tolerance);
@@ -153,12 +150,12 @@ double least_distance(const Shape::Waves& a, const Shape::Waves& b, std::size_t&
         Complex sum{0.0, 0.0};
         for (std::size_t w = 0; w < Shape::frequencies; ++w, forth *= step)
             sum += forth * products[w] + std::conj(forth) * products[Shape::frequencies + w];
-        if (std::abs(sum) > most) {
-            most = std::abs(sum);
+        if (std::norm(sum) > most) {
+            most = std::norm(sum);
             begin = i;
         }
     }
-    return std::sqrt(std::max(0.0, spread - 2.0 * most));
+    return std::sqrt(std::max(0.0, spread - 2.0 * std::sqrt(most)));
 }
 
 } // namespace
@@ -169,6 +166,29 @@ Vec2 Motion::operator()(const Vec2& p) const {
 
 Motion Motion::inverse() const {
     return {std::conj(turn), -std::conj(turn) * shift};
+}
+
+Sides::Sides(const std::vector<Vec2>& outline) {
+    for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {
+        const Vec2 along = outline[i] - outline[j];
+        const double length = along.squaredNorm();
+        sides_.push_back({outline[j], along, length > 0.0 ? Vec2(along / length) : Vec2(0.0, 0.0)});
+    }
+}
+
+Vec2 Sides::nearest(const Vec2& p) const {
+    Vec2 best = sides_.front().start;
+    double least = infinite;
+    for (const Side& side : sides_) {
+        const Vec2 from_start = p - side.start;
+        const double share = std::min(1.0, std::max(0.0, from_start.dot(side.measure)));
+        const double distance = (from_start - share * side.along).squaredNorm();
+        if (distance < least) {
+            least = distance;
+            best = side.start + share * side.along;
+        }
+    }
+    return best;
 }
 
 std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t count) {
@@ -188,8 +208,8 @@ std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t coun
 }
 
 Shape::Shape(const PatternPiece& piece, bool mirrored)
-    : outlines(outlines_of(piece, mirrored)), even(even_points(outlines.front(), places)),
-      waves(waves_of(even)) {}
+    : outlines(outlines_of(piece, mirrored)), sides(outlines.begin(), outlines.end()),
+      even(even_points(outlines.front(), places)), waves(waves_of(even)) {}
 
 std::optional<Motion> same_shape(const Shape& a, const Shape& b, double longer, double around,
                                  double tolerance) {
@@ -202,8 +222,8 @@ std::optional<Motion> same_shape(const Shape& a, const Shape& b, double longer, 
         return std::nullopt;
     double error = 0.0;
     Motion motion = fit_motion(a.even, b.even, begin, error);
-    if (!lies_on({a.even}, {b.outlines.front()}, motion, 2.0 * apart) ||
-        !fits_from(a.outlines, b.outlines, a.even, motion, tolerance))
+    if (!lie_on(a.even, {b.sides.front()}, motion, 2.0 * apart) ||
+        !fits_from(a, b, motion, tolerance))
         return std::nullopt;
     return motion;
 }

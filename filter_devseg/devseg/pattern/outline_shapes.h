@@ -23,6 +23,20 @@ struct Motion {
     Motion inverse() const;
 };
 
+/// The sides of a closed outline, for the points of it that are nearest to many others.
+class Sides {
+public:
+    explicit Sides(const std::vector<Vec2>& outline);
+    Vec2 nearest(const Vec2& p) const;
+
+private:
+    struct Side {
+        Vec2 start, along;
+        Vec2 measure; // along, over its squared length: 0 where it has none
+    };
+    std::vector<Side> sides_;
+};
+
 /// The outlines of a piece around the middle of its box, as they are or mirrored, so that they turn
 /// the same way. Fourier descriptors are of evenly spaced points of the first one: the shares that
 /// turn once, twice, …, forth and then back.
@@ -31,6 +45,7 @@ struct Shape {
     using Waves = std::array<std::complex<double>, 2 * frequencies>;
 
     std::vector<std::vector<Vec2>> outlines;
+    std::vector<Sides> sides; // of each outline
     std::vector<Vec2> even;
     Waves waves;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "devseg/plane/plane.h"
 
@@ -57,21 +59,38 @@ bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& 
                std::min(length_raggedness * of_a.around, 2.0 * tolerance * edges);
 }
 
+// The pieces that others are compared with, found by the length of their outlines.
+struct Models {
+    std::vector<Known> known;
+    std::multimap<double, std::size_t> by_length;
+    double most_edges = 0.0; // of an outline
+
+    void add(Known model, const PatternPiece& piece) {
+        by_length.emplace(model.signature.around, known.size());
+        most_edges = std::max(most_edges, static_cast<double>(piece.outer.points.size()));
+        known.push_back(std::move(model));
+    }
+};
+
 // The models that are most similar, in their order.
-std::vector<std::size_t> closest(const std::vector<Known>& models,
-                                 const std::vector<PatternPiece>& pieces, const PatternPiece& piece,
-                                 const Signature& signature, double tolerance) {
+std::vector<std::size_t> closest(const Models& models, const std::vector<PatternPiece>& pieces,
+                                 const PatternPiece& piece, const Signature& signature,
+                                 double tolerance) {
+    const double edges =
+        std::max(models.most_edges, static_cast<double>(piece.outer.points.size()));
+    const double longer = std::min(length_raggedness * signature.around, 2.0 * tolerance * edges);
     std::vector<std::pair<double, std::size_t>> found;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        const Known& model = models[m];
+    const auto end = models.by_length.upper_bound(signature.around + longer);
+    for (auto it = models.by_length.lower_bound(signature.around - longer); it != end; ++it) {
+        const Known& model = models.known[it->second];
         if (!may_be_same(piece, pieces[model.piece], signature, model.signature, tolerance))
             continue;
-        const double distance = signature.squared_distance(model.signature);
-        if (found.size() == closest_models && !(distance < found.back().first))
+        const std::pair<double, std::size_t> entry{signature.squared_distance(model.signature),
+                                                   it->second};
+        if (found.size() == closest_models && !(entry < found.back()))
             continue;
         if (found.size() == closest_models)
             found.pop_back();
-        const std::pair<double, std::size_t> entry{distance, m};
         found.insert(std::upper_bound(found.begin(), found.end(), entry), entry);
     }
     std::vector<std::size_t> result;
@@ -116,7 +135,7 @@ std::optional<MirrorAxis> find_mirror_axis(const PatternPiece& piece, double tol
 
 std::vector<Likeness> find_likenesses(const std::vector<PatternPiece>& pieces, double tolerance_mm,
                                       double share, const Progress& progress) {
-    std::vector<Known> models;
+    Models models;
     std::vector<Likeness> result(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         progress.check();
@@ -127,9 +146,10 @@ std::vector<Likeness> find_likenesses(const std::vector<PatternPiece>& pieces, d
         const Signature signature(piece, straight);
         const Shape mirrored(piece, true);
         for (const std::size_t m : closest(models, pieces, piece, signature, tolerance)) {
-            const double longer = std::abs(signature.around - models[m].signature.around);
+            const Known& model = models.known[m];
+            const double longer = std::abs(signature.around - model.signature.around);
             const auto motion_of = [&](const Shape& shape) {
-                return same_shape(shape, models[m].shape, longer, signature.around, tolerance);
+                return same_shape(shape, model.shape, longer, signature.around, tolerance);
             };
             std::optional<Motion> motion = motion_of(straight);
             const bool same = motion.has_value();
@@ -137,11 +157,11 @@ std::vector<Likeness> find_likenesses(const std::vector<PatternPiece>& pieces, d
                 motion = motion_of(mirrored);
             if (!motion)
                 continue;
-            result[i] = {models[m].piece, !same, *motion};
+            result[i] = {model.piece, !same, *motion};
             break;
         }
         if (result[i].model == i)
-            models.push_back({i, std::move(straight), signature});
+            models.add({i, std::move(straight), signature}, piece);
     }
     return result;
 }

@@ -83,6 +83,27 @@ TEST(FlatHoles, AreNoneWhereTheSurfaceBendsAroundThem) {
     EXPECT_FALSE(is_sound(nearly, whole(nearly), HoleRule::exact()));
 }
 
+// Around the ends of a slit there are full turns, whatever rounding makes of them.
+TEST(FlatHoles, ASlitIsOne) {
+    mesh::RawMesh raw = shapes::grid(7, 5);
+    for (Vec3& p : raw.points)
+        p = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.8, 0.5).normalized()) * p;
+    const Mesh mesh = checks::gated(raw);
+    const std::vector<std::uint8_t> rim = mesh::boundary_vertices(mesh);
+    int slits = 0;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        if (rim[mesh.origin(h)] != 0 || rim[mesh.target(h)] != 0)
+            continue;
+        std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+        seam[h] = seam[mesh.twin[h]] = 1;
+        const ChartSurface cut_open = extract_surface(mesh, whole(mesh).face, seam);
+        ASSERT_EQ(cut_open.loops.size(), 2U);
+        EXPECT_TRUE(is_sound(mesh, cut_open, HoleRule::exact()));
+        ++slits;
+    }
+    EXPECT_GT(slits, 20);
+}
+
 TEST(FlatHoles, ABoxWithTwoHolesHasNoRim) {
     mesh::RawMesh raw = shapes::cube(3);
     raw.faces.erase(std::remove_if(raw.faces.begin(), raw.faces.end(),

@@ -7,6 +7,7 @@
 #include "devseg/pattern/alike.h"
 #include "devseg/pattern/outlines.h"
 #include "devseg/pattern/same_pieces.h"
+#include "unit/mesh_edits.h"
 
 namespace devseg::pattern {
 namespace {
@@ -68,6 +69,38 @@ double depth_of_dart(const PatternPiece& piece, const Vec2& middle) {
     for (const Vec2& p : piece.outer.points)
         least = std::min(least, (p - middle).norm());
     return least;
+}
+
+// Stars of random rays: no two of one shape, but for noise, unless one is a copy of the other.
+Ring star(shapes::Random& random) {
+    Ring ring;
+    for (int i = 0; i < 14; ++i)
+        ring.push_back(random.uniform(10.0, 40.0) *
+                       Vec2(std::cos(2.0 * pi * i / 14.0), std::sin(2.0 * pi * i / 14.0)));
+    return ring;
+}
+
+TEST(SamePieces, CopiesAreFoundAmongManyOthers) {
+    shapes::Random random(5);
+    const std::size_t count = 150;
+    std::vector<PatternPiece> pieces;
+    std::vector<Ring> rings;
+    for (std::size_t i = 0; i < count; ++i) {
+        rings.push_back(star(random));
+        pieces.push_back(piece_of(rings.back(), 0.0, Vec2(0.0, 0.0), false));
+    }
+    for (std::size_t i = count; i-- > 0;) { // ragged by less than the tolerance
+        for (Vec2& p : rings[i])
+            p += Vec2(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+        pieces.push_back(piece_of(rings[i], random.uniform(0.0, 6.0), Vec2(50.0, 9.0), i % 2 == 1));
+    }
+    find_same_pieces(pieces, 0.1, Progress());
+    for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(pieces[i].quantity + pieces[i].mirrored_quantity, 2) << i;
+        const PatternPiece& copy = pieces[2 * count - 1 - i];
+        EXPECT_EQ(copy.model, static_cast<Index>(i));
+        EXPECT_EQ(copy.mirrored, i % 2 == 1);
+    }
 }
 
 TEST(Alike, MirroredPiecesGetTheMeanOfTheirOutlines) {

@@ -56,7 +56,8 @@ RestTriangle make_rest_triangle(std::array<double, 3> length, double floor) {
 }
 
 FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSurface& surface) {
-    if (!atlas::is_sound(mesh, surface))
+    const auto is_hole = atlas::sound_holes(mesh, surface);
+    if (!is_hole)
         throw NumericalFailure("expected a chart that is a disk, or one with flat holes, found one "
                                "with " +
                                std::to_string(surface.loops.size()) +
@@ -66,13 +67,12 @@ FlatteningProblem make_flattening_problem(const Mesh& mesh, const atlas::ChartSu
     problem.faces = surface.faces;
     problem.twin = surface.twin;
     problem.model_size = std::sqrt(mesh.model_area());
-    const std::vector<std::uint8_t> is_hole = atlas::flat_holes(mesh, surface);
     for (std::size_t l = 0; l < surface.loops.size(); ++l) {
         std::vector<Index>& ring =
-            is_hole[l] != 0 ? problem.holes.emplace_back() : problem.boundary;
+            (*is_hole)[l] != 0 ? problem.holes.emplace_back() : problem.boundary;
         for (const HalfEdge h : surface.loops[l]) {
             ring.push_back(surface.origin(h));
-            if (is_hole[l] == 0)
+            if ((*is_hole)[l] == 0)
                 problem.boundary_edge.push_back(mesh.edge_length(surface.mesh_half_edge(h)));
         }
     }
