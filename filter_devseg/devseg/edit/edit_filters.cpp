@@ -43,7 +43,8 @@ using DartOptions = Options<DartFields>;
 constexpr const char* join_help =
     "Joins the charts that the selected faces touch to one, and judges that by flattening it. It is "
     "refused, with the stretch that it would cost, where the joined chart stretches by more than a "
-    "bound, or would lie on itself. A joined chart that is no disk is cut open.<br>"
+    "bound, or would lie on itself. A joined chart that is no disk is cut open. One of more than 8,000 "
+    "faces is decimated to so many to judge it.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Scripts name charts by their numbers on the pattern. "
     "Flatten the charts afterwards.";
@@ -127,7 +128,7 @@ Declare<O> edit(const char* menu_name, const char* python_name, const char* help
         .writes(writes_charts | writes_color)
         .result("charts_number", "charts, those that nothing has changed included")
         .result("changed_charts_number", "charts that are new or other than they were")
-        .result("l2_stretch", "L2 stretch of the worst of these when it is flattened, no unit")
+        .result("l2_stretch", "L2 stretch of the worst of these, flattened in one piece, no unit")
         .result("linf_stretch", "stretch of their worst spot, no unit")
         .result("cut_length", "length of darts, and of cuts that made disks of them, model units")
         .result("seam_length", "length of all cut edges, model units");

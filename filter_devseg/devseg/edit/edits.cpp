@@ -11,6 +11,7 @@
 #include "devseg/atlas/fragments.h"
 #include "devseg/base/errors.h"
 #include "devseg/edit/given_charts.h"
+#include "devseg/edit/judging.h"
 #include "devseg/judge/final_map.h"
 #include "devseg/mesh/angle_defects.h"
 #include "devseg/mesh/coarsen.h"
@@ -63,7 +64,7 @@ std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
                               Progress& progress) {
     try {
         const std::vector<std::vector<Index>> faces = faces_of(charts, which);
-        return effort != nullptr ? judge::whole_maps(mesh, faces, charts.seam, *effort, progress)
+        return effort != nullptr ? quick_maps(mesh, faces, charts.seam, *effort, progress)
                                  : judge::final_maps(mesh, faces, charts.seam, progress);
     } catch (const NumericalFailure& error) {
         refuse(std::string("the chart cannot be flattened: ") + error.what());
@@ -89,9 +90,17 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
     return maps;
 }
 
+// The same where nothing is refused for charts that lie on themselves: nothing needs to be pushed.
+std::vector<TrialMap> finish_unpushed(const Mesh& mesh, const std::vector<Index>& which, Edit& edit,
+                                      Progress& progress) {
+    const WholeEffort effort{0.0, false};
+    std::vector<TrialMap> maps = finish(mesh, which, &effort, edit, progress);
+    if (!std::isfinite(edit.l2_stretch)) // some chart has no map in one piece
+        maps = finish(mesh, which, nullptr, edit, progress);
+    return maps;
+}
+
 void check_joined(const std::vector<TrialMap>& maps, const EditBounds& bounds) {
-    if (bounds.force)
-        return;
     for (const TrialMap& map : maps) {
         const double l2 = std::sqrt(map.l2_squared);
         if (!std::isfinite(l2))
@@ -172,8 +181,12 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
             changed.push_back(edit.charts.chart[face_of(h)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    if (bounds.force) {
+        finish_unpushed(mesh, changed, edit, progress);
+        return edit;
+    }
     const WholeEffort effort{bounds.max_chart_l2_stretch};
-    check_joined(finish(mesh, changed, bounds.force ? nullptr : &effort, edit, progress), bounds);
+    check_joined(finish(mesh, changed, &effort, edit, progress), bounds);
     return edit;
 }
 
@@ -239,12 +252,7 @@ Edit split_charts(const Mesh& mesh, const ChartMap& charts, const std::vector<In
             changed.push_back(edit.charts.chart[at(f)]);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    // Whether parts lie on themselves is no reason to refuse: nothing needs to be pushed or cut.
-    const WholeEffort effort{0.0, false};
-    std::vector<TrialMap> maps = finish(mesh, changed, &effort, edit, progress);
-    if (!std::isfinite(edit.l2_stretch)) // some part has no map in one piece
-        maps = finish(mesh, changed, nullptr, edit, progress);
-    for (const TrialMap& map : maps)
+    for (const TrialMap& map : finish_unpushed(mesh, changed, edit, progress))
         if (!bounds.force && map.area < tuning.least_part * mesh.total_area)
             refuse("a part would be a sliver, of " + text_of(100.0 * map.area / mesh.total_area) +
                    " % of the surface; select more faces, or switch force on");

@@ -1,5 +1,6 @@
 // Changing charts one at a time: joining, splitting, removing seams, cutting darts. Every change is
-// judged by the maps that 'Charts: Flatten' would make, and refused where these are no good.
+// judged by the maps that 'Charts: Flatten' would make, and refused where these are no good. Large
+// charts that are joined or split are judged on coarse versions of them (see judging.h).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "devseg/base/errors.h"
 #include "devseg/base/parallel.h"
@@ -220,6 +221,27 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
     }
 }
 
+// Colours of the faces of the finer mesh, where every chart had one colour: parts of split faces go
+// to other charts, whose colour they take. Nothing where faces have colours of their own.
+std::optional<std::vector<Color>> colors_of_charts(const std::vector<Color>& color,
+                                                   const atlas::ChartMap& charts,
+                                                   const atlas::ChartMap& finer) {
+    if (color.empty())
+        return std::nullopt;
+    std::vector<Color> of_chart(at(charts.count));
+    const Buckets<Index> faces = atlas::group_faces(charts);
+    for (Index c = 0; c < charts.count; ++c) {
+        of_chart[at(c)] = color[at(*faces[c].begin())];
+        for (const Index f : faces[c])
+            if (color[at(f)] != of_chart[at(c)])
+                return std::nullopt;
+    }
+    std::vector<Color> result;
+    for (const Index c : finer.chart)
+        result.push_back(of_chart[at(c)]);
+    return result;
+}
+
 FilterOutput run_smooth(const FilterInput& input, const Options& options, Progress& progress) {
     const atlas::ChartMap charts = find_charts(input);
     int kept_charts = 0;
@@ -238,6 +260,7 @@ FilterOutput run_smooth(const FilterInput& input, const Options& options, Progre
     if (options.symmetric && !made.has_plane)
         output.notes.emplace_back("the model is not its own mirror image: both sides got seams of "
                                   "their own");
+    output.face_color = colors_of_charts(input.color, charts, made.charts);
     output.charts = std::move(made.charts);
     output.charts_go_on = true;
     output.refinement = std::move(made.refinement);
@@ -270,7 +293,7 @@ std::vector<FilterDeclaration> smooth_filters() {
                   "The same for cloth: seams of a chart stay where smooth ones strain 99 % of its "
                   "area by more than this share in any direction. 0 = none.")
             .on_part()
-            .writes(writes_charts | writes_mesh)
+            .writes(writes_charts | writes_color | writes_mesh)
             .result("charts_number", "charts, as many as before")
             .result("kept_charts_number",
                     "charts whose seams stay nearer to edges because of a bound")

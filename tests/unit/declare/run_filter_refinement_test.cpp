@@ -1,5 +1,6 @@
 // Faces that a filter splits, as the host gets them.
 #include <algorithm>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -131,6 +132,30 @@ TEST(RefinedFaces, OfSeparateTrianglesStaySeparate) {
         for (const Index v : t)
             EXPECT_EQ(++uses[v], 1);
     expect_readable(host, made);
+}
+
+// Parts of split faces that go to another chart take its colour, unless colours are not the
+// charts'.
+TEST(RefinedFaces, HaveTheColoursOfTheirCharts) {
+    HostMesh host = with_charts(noisy_torus());
+    host.face_color = checks::run("Charts: Colorize", host).face_color;
+    std::map<int, Color> color;
+    for (std::size_t f = 0; f < host.face_color.size(); ++f)
+        color[static_cast<int>(host.chart_id[f])] = host.face_color[f];
+    const HostResult made = checks::run("Charts: Smooth Seams", host);
+    ASSERT_TRUE(made.refinement);
+    ASSERT_EQ(made.face_color.size(), checks::refined(host.geometry, made).faces.size());
+    for (std::size_t f = 0; f < made.face_color.size(); ++f)
+        EXPECT_EQ(made.face_color[f], color.at(made.chart_id[f]));
+    int moved = 0;
+    for (const HostRefinement::Part& part : made.refinement->parts)
+        moved += made.face_color[part.face] != host.face_color[part.source] ? 1 : 0;
+    EXPECT_GT(moved, 0);
+
+    host.face_color[7] = {1, 2, 3};
+    EXPECT_TRUE(checks::run("Charts: Smooth Seams", host).face_color.empty());
+    host.face_color.clear();
+    EXPECT_TRUE(checks::run("Charts: Smooth Seams", host).face_color.empty());
 }
 
 // Faces that the gate leaves out keep their place and take the results of others.
