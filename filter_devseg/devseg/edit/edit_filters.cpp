@@ -44,7 +44,7 @@ constexpr const char* join_help =
     "Joins the charts that the selected faces touch to one, and judges that by flattening it. It is "
     "refused, with the stretch that it would cost, where the joined chart stretches by more than a "
     "bound, or would lie on itself. A joined chart that is no disk is cut open. One of more than 8,000 "
-    "faces is decimated to so many to judge it.<br>"
+    "faces is judged decimated to so many first.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Scripts name charts by their numbers on the pattern. "
     "Flatten the charts afterwards.";

@@ -71,6 +71,13 @@ std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
     }
 }
 
+void measure(const std::vector<TrialMap>& maps, Edit& edit) {
+    edit.l2_stretch = worst_l2(maps);
+    edit.linf_stretch = 1.0;
+    for (const TrialMap& map : maps)
+        edit.linf_stretch = std::max(edit.linf_stretch, map.linf);
+}
+
 // Cuts the charts open where they are no disks, flattens and measures them.
 std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
                              const WholeEffort* effort, Edit& edit, Progress& progress) {
@@ -80,13 +87,10 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
             atlas::cut_to_disk(mesh, std::move(surface), edit.charts.seam, progress,
                                &edit.cut_length);
     }
-    auto judging = progress.part("flattening what has changed", progress.left());
+    auto judging = progress.part("flattening what has changed", 0.6 * progress.left());
     std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, effort, judging);
     edit.changed = static_cast<Index>(which.size());
-    edit.l2_stretch = worst_l2(maps);
-    edit.linf_stretch = 1.0;
-    for (const TrialMap& map : maps)
-        edit.linf_stretch = std::max(edit.linf_stretch, map.linf);
+    measure(maps, edit);
     return maps;
 }
 
@@ -186,7 +190,12 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
         return edit;
     }
     const WholeEffort effort{bounds.max_chart_l2_stretch};
-    check_joined(finish(mesh, changed, &effort, edit, progress), bounds);
+    std::vector<TrialMap> maps = finish(mesh, changed, &effort, edit, progress);
+    check_joined(maps, bounds);
+    auto confirming = progress.part("flattening what has changed", progress.left());
+    confirm_maps(mesh, faces_of(edit.charts, changed), edit.charts.seam, effort, maps, confirming);
+    check_joined(maps, bounds);
+    measure(maps, edit);
     return edit;
 }
 

@@ -20,6 +20,10 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
+bool is_large(const std::vector<Index>& faces) {
+    return faces.size() > at(tuning.most_faces);
+}
+
 TrialMap coarse_map(const Mesh& mesh, const std::vector<Index>& faces,
                     const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
                     Progress& progress) {
@@ -46,9 +50,6 @@ TrialMap coarse_map(const Mesh& mesh, const std::vector<Index>& faces,
 std::vector<TrialMap> quick_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                                  const std::vector<std::uint8_t>& seam,
                                  const judge::WholeEffort& effort, Progress& progress) {
-    const auto is_large = [](const std::vector<Index>& faces) {
-        return faces.size() > at(tuning.most_faces);
-    };
     std::vector<std::vector<Index>> small;
     std::copy_if(charts.begin(), charts.end(), std::back_inserter(small),
                  [&](const auto& faces) { return !is_large(faces); });
@@ -63,6 +64,18 @@ std::vector<TrialMap> quick_maps(const Mesh& mesh, const std::vector<std::vector
                                            : std::move(*next++));
     }
     return maps;
+}
+
+void confirm_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                  const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
+                  std::vector<TrialMap>& maps, Progress& progress) {
+    std::vector<std::vector<Index>> large;
+    std::copy_if(charts.begin(), charts.end(), std::back_inserter(large), is_large);
+    std::vector<TrialMap> of_large = judge::whole_maps(mesh, large, seam, effort, progress);
+    auto next = of_large.begin();
+    for (std::size_t c = 0; c < charts.size(); ++c)
+        if (is_large(charts[c]))
+            maps[c] = std::move(*next++);
 }
 
 } // namespace devseg::edit
