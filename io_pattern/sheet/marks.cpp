@@ -333,17 +333,9 @@ bool is_ambiguous(const std::string& number) {
 
 namespace {
 
-// Of the middles of both sides of a dart: where they are nearer, one number stands for both.
-constexpr double narrow_dart = 10.0; // mm
-
-std::size_t numbers_of(const pattern::Pattern& pattern, const pattern::Seam& seam) {
-    const auto middle = [&](const pattern::SeamSide& side) {
-        return place_on(pattern.pieces[side.piece].path(side.path), side, 0.5 * side.length)
-            .position;
-    };
-    const bool is_narrow =
-        seam.is_dart && (middle(seam.sides[0]) - middle(seam.sides[1])).norm() <= narrow_dart;
-    return is_narrow ? 1 : seam.sides.size();
+// Both sides of a dart meet at its tip: one number stands for both.
+std::size_t numbers_of(const pattern::Seam& seam) {
+    return seam.is_dart ? 1 : seam.sides.size();
 }
 
 } // namespace
@@ -370,8 +362,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
         for (const Index seam : source.seams()) {
             const std::size_t s = at(seam);
             for (const pattern::SeamSide& side : pattern.seams[s].sides) {
-                if (side.piece != piece.piece ||
-                    written[s].size() == numbers_of(pattern, pattern.seams[s]))
+                if (side.piece != piece.piece || written[s].size() == numbers_of(pattern.seams[s]))
                     continue;
                 ++wanted[s];
                 NumberWriter number(source.path(side.path), side,
@@ -385,7 +376,7 @@ LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& ass
         }
     }
     for (std::size_t s = 0; s < written.size() && options.edge_numbers; ++s) {
-        if (written[s].size() < std::min(wanted[s], numbers_of(pattern, pattern.seams[s]))) {
+        if (written[s].size() < std::min(wanted[s], numbers_of(pattern.seams[s]))) {
             left_out.seams.push_back(static_cast<Index>(s));
             continue;
         }

@@ -52,7 +52,7 @@ struct LeftOut {
 /// Texts are upright, 2.5 mm high at least, and touch neither lines nor each other; where there is
 /// no room for that, they may cross folds and notches. A number stands beside its seam, inside the
 /// piece or on the allowance or tab, or at the end of a line that leads to it. Every seam gets its
-/// number on both sides or on none, and narrow darts on one.
+/// number on both sides or on none, and darts on one.
 /// Openings are named as well. `borders`: for each sheet, lines that no text may cross; or nothing.
 LeftOut add_texts(const pattern::Pattern& pattern, const assembly::Assembly& assembly,
                   const ExportOptions& options, std::vector<SheetPiece>& pieces,

@@ -216,7 +216,7 @@ def length_cut_twice(layer: Layer, grid: float = 0.01) -> float:
 
 
 def wrong_counts(texts: list[str], seams: int, unnumbered: int = 0) -> dict[int, int]:
-    """Seam numbers that are not written twice, or once at narrow darts; none on so many seams."""
+    """Seam numbers that are not written twice, or once at darts; none on so many seams."""
     counts = Counter(int(text) for text in texts)
     wrong = {n: counts[n] for n in range(1, seams + 1) if counts[n] not in (1, 2)}
     missing = [n for n, count in wrong.items() if count == 0]

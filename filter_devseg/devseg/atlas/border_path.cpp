@@ -15,6 +15,7 @@ struct Tuning {
     // on a fold.
     double through_flat = 10.0;
     double flat_cosine = 1.0 - 0.5e-6;
+    double uncut = 1e6; // the same for edges that are not to be cut: no way round costs as much
 };
 constexpr Tuning tuning;
 
@@ -34,7 +35,8 @@ double cut_cost(const Mesh& mesh, HalfEdge h) {
 }
 
 std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
-                                  const std::vector<std::uint8_t>& seam, Vertex vertex) {
+                                  const std::vector<std::uint8_t>& seam, Vertex vertex,
+                                  const std::vector<std::uint8_t>& uncut) {
     const ChartSurface s = extract_surface(mesh, faces, enclose(mesh, faces, seam));
     std::vector<std::uint8_t> goal(s.vertex.size(), 0);
     for (const std::vector<Index>& loop : s.loops)
@@ -57,7 +59,9 @@ std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& fa
         }
         for (const HalfEdge e : edges[v]) {
             const HalfEdge h = s.mesh_half_edge(e);
-            paths.reach(s.target(e), distance + crease_factor(mesh, h) * cut_cost(mesh, h), e);
+            const double factor = !uncut.empty() && uncut[h] != 0 ? tuning.uncut : 1.0;
+            paths.reach(s.target(e), distance + factor * crease_factor(mesh, h) * cut_cost(mesh, h),
+                        e);
         }
         return true;
     });

@@ -14,10 +14,12 @@ double crease_factor(const Mesh& mesh, HalfEdge half_edge);
 double cut_cost(const Mesh& mesh, HalfEdge half_edge);
 
 /// The half-edges of the shortest path within the faces from a vertex to their border or to a cut;
-/// creases count less, and edges within a plane more. Empty where the vertex is on the border, or
+/// creases count less, and edges within a plane more. Half-edges that `uncut` marks (3 #F, or
+/// empty) are taken only where there is no other way. Empty where the vertex is on the border, or
 /// not among the faces.
 std::vector<Index> path_to_border(const Mesh& mesh, const std::vector<Index>& faces,
-                                  const std::vector<std::uint8_t>& seam, Vertex vertex);
+                                  const std::vector<std::uint8_t>& seam, Vertex vertex,
+                                  const std::vector<std::uint8_t>& uncut = {});
 
 /// Marks the half-edges and their twins as cuts.
 void mark_cuts(const Mesh& mesh, const std::vector<Index>& half_edges,

@@ -5,6 +5,7 @@
 
 #include "devseg/atlas/border_path.h"
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/join_loops.h"
 #include "devseg/atlas/slit_closing.h"
 #include "devseg/graph/unions.h"
 #include "devseg/mesh/angle_defects.h"
@@ -22,17 +23,22 @@ bool is_inner_cut(const Mesh& mesh, const ChartMap& charts, HalfEdge h) {
            charts.chart[face_of(h)] == charts.chart[mesh.across(h)];
 }
 
-std::vector<double> costs_of_cuts(const Mesh& mesh, const ChartMap& charts) {
-    std::vector<double> costs(at(charts.count), 0.0);
+// By chart: the length of its cuts through flat faces, and what all of them cost.
+std::vector<std::pair<double, double>>
+costs_of_cuts(const Mesh& mesh, const std::vector<std::uint8_t>& within, const ChartMap& charts) {
+    std::vector<std::pair<double, double>> costs(at(charts.count), {0.0, 0.0});
     for (const HalfEdge h : mesh.all_half_edges())
-        if (is_inner_cut(mesh, charts, h))
-            costs[at(charts.chart[face_of(h)])] += cut_cost(mesh, h);
+        if (is_inner_cut(mesh, charts, h)) {
+            auto& [through, all] = costs[at(charts.chart[face_of(h)])];
+            through += within[h] != 0 ? mesh.edge_length(h) : 0.0;
+            all += cut_cost(mesh, h);
+        }
     return costs;
 }
 
 // Without cuts through flat faces: loops and vertices may have no cut any more that need one.
-ChartMap glued_over_flat_faces(const Mesh& mesh, const ChartMap& charts) {
-    const std::vector<std::uint8_t> within = mesh::within_flat_regions(mesh, flat_share);
+ChartMap glued_over_flat_faces(const Mesh& mesh, const std::vector<std::uint8_t>& within,
+                               const ChartMap& charts) {
     ChartMap glued = charts;
     for (const HalfEdge h : mesh.all_half_edges())
         if (within[h] != 0 && is_inner_cut(mesh, charts, h))
@@ -64,6 +70,45 @@ void hinge_parts(const Mesh& mesh, const std::vector<Index>& label,
 
 } // namespace
 
+std::vector<std::uint8_t> within_flat_faces(const Mesh& mesh) {
+    return mesh::within_flat_regions(mesh, flat_share);
+}
+
+std::vector<std::vector<Index>> flat_faces_with_holes(const Mesh& mesh) {
+    return mesh::flat_regions_with_holes(mesh, flat_share);
+}
+
+std::vector<std::uint8_t> rims_of_flat_faces(const Mesh& mesh) {
+    std::vector<std::uint8_t> rims(mesh.twin.size(), 0);
+    for (const std::vector<Index>& faces : flat_faces_with_holes(mesh)) {
+        const ChartSurface region = extract_surface(
+            mesh, faces, enclose(mesh, faces, std::vector<std::uint8_t>(mesh.twin.size(), 0)));
+        std::vector<std::pair<double, std::size_t>> loops; // by length
+        for (std::size_t l = 0; l < region.loops.size(); ++l)
+            loops.emplace_back(loop_length(mesh, region, region.loops[l]), l);
+        std::sort(loops.begin(), loops.end());
+        loops.pop_back();
+        for (const auto& [length, l] : loops)
+            for (const HalfEdge local : region.loops[l]) {
+                const HalfEdge h = region.mesh_half_edge(local);
+                if (mesh.twin[h] >= 0)
+                    rims[h] = rims[mesh.twin[h]] = 1;
+            }
+    }
+    const mesh::FaceComponents parts =
+        mesh::face_components(mesh, [&](HalfEdge h) { return rims[h] == 0; });
+    std::vector<double> area(at(parts.count), 0.0);
+    for (const Face f : mesh.all_faces())
+        area[parts.label[f]] += mesh.face_areas[f];
+    const auto is_small = [&](Face f) {
+        return area[parts.label[f]] < flat_share * mesh.total_area;
+    };
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (rims[h] != 0 && (is_small(face_of(h)) || is_small(mesh.across(h))))
+            rims[h] = rims[mesh.twin[h]] = 0;
+    return rims;
+}
+
 ChartMap keep_flat_faces_whole(const Mesh& mesh, const ChartMap& charts) {
     std::vector<Index> label = charts.chart;
     mesh::keep_regions_whole(mesh, flat_share, label);
@@ -84,7 +129,8 @@ ChartMap keep_flat_faces_whole(const Mesh& mesh, const ChartMap& charts) {
 
 void lead_around_flat_faces(const Mesh& mesh, const std::vector<double>& cost, double flat,
                             ChartMap& charts, Progress& progress) {
-    ChartMap other = glued_over_flat_faces(mesh, charts);
+    const std::vector<std::uint8_t> within = within_flat_faces(mesh);
+    ChartMap other = glued_over_flat_faces(mesh, within, charts);
     if (other.seam == charts.seam)
         return;
     const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(mesh);
@@ -101,12 +147,12 @@ void lead_around_flat_faces(const Mesh& mesh, const std::vector<double>& cost, d
             continue;
         progress.check();
         const Span<Index> faces = groups[charts.chart[face_of(leaving[v])]];
-        mark_cuts(mesh, path_to_border(mesh, {faces.begin(), faces.end()}, other.seam, v),
+        mark_cuts(mesh, path_to_border(mesh, {faces.begin(), faces.end()}, other.seam, v, within),
                   other.seam);
     }
     other = cut_charts_to_disks(mesh, other, progress).charts;
-    const std::vector<double> old_costs = costs_of_cuts(mesh, charts);
-    const std::vector<double> new_costs = costs_of_cuts(mesh, other);
+    const auto old_costs = costs_of_cuts(mesh, within, charts);
+    const auto new_costs = costs_of_cuts(mesh, within, other);
     for (const HalfEdge h : mesh.all_half_edges()) {
         const std::size_t c = at(charts.chart[face_of(h)]);
         if (new_costs[c] < old_costs[c])

@@ -39,7 +39,8 @@ public:
     PartMover(const Mesh& mesh, const std::vector<Index>& point_of, const DeformOptions& options,
               DeformResult& result)
         : mesh_(mesh), point_of_(point_of), options_(options), result_(result),
-          now_(with_points(mesh, result.points)), diagonal_(diagonal_of(mesh.points)) {}
+          now_(with_points(mesh, result.points)), defect_(mesh::angle_defects(now_)),
+          boundary_(mesh::boundary_vertices(mesh)), diagonal_(diagonal_of(mesh.points)) {}
 
     void run(Progress& progress) {
         const Index wanted = result_.charts.count;
@@ -84,9 +85,7 @@ private:
 
     // The longest one to each neighbour that may be glued, the longest of all first.
     std::vector<Hinge> find_hinges(const atlas::ChartSurface& part, double least) const {
-        const std::vector<double> defect = mesh::angle_defects(now_);
         const std::vector<Index> cuts = atlas::cut_edges_at_vertices(now_, result_.charts.seam);
-        const std::vector<std::uint8_t> boundary = mesh::boundary_vertices(now_);
         const auto other_of = [&](HalfEdge h) {
             return now_.twin[h] < 0 ? -1 : result_.charts.chart[now_.across(h)];
         };
@@ -105,9 +104,9 @@ private:
                 for (std::size_t i = first; i < first + n - 1 && other_of(edge(i)) == other; ++i) {
                     const Vertex v = now_.origin(edge(i));
                     if (i > first) {
-                        if (boundary[v] != 0 || cuts[v] != 2)
+                        if (boundary_[v] != 0 || cuts[v] != 2)
                             break;
-                        turn += std::abs(defect[v]);
+                        turn += std::abs(defect_[v]);
                     }
                     const double length = hinge.length + now_.edge_length(edge(i));
                     if (turn * length > options_.max_displacement * diagonal_)
@@ -192,6 +191,7 @@ private:
         if (!all_lie_flat(moved, charts))
             return false;
         now_ = std::move(moved);
+        defect_ = mesh::angle_defects(now_);
         result_.charts = charts;
         result_.points = std::move(next.points);
         result_.residual = next.residual;
@@ -251,6 +251,8 @@ private:
     const DeformOptions& options_;
     DeformResult& result_;
     Mesh now_;
+    std::vector<double> defect_;         // #V, radians, of now_
+    std::vector<std::uint8_t> boundary_; // #V
     double diagonal_;
 };
 

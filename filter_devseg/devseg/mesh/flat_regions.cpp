@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace devseg::mesh {
 
@@ -93,6 +94,34 @@ std::vector<std::uint8_t> within_flat_regions(const Mesh& mesh, double share) {
                         : 0;
     }
     return within;
+}
+
+std::vector<std::vector<Index>> flat_regions_with_holes(const Mesh& mesh, double share) {
+    const FaceComponents regions = flat_regions(mesh);
+    const std::vector<double> area = areas_of(mesh, regions);
+    std::vector<std::vector<Index>> faces(at(regions.count));
+    for (const Face f : mesh.all_faces())
+        faces[at(regions.label[f])].push_back(f);
+    std::vector<std::vector<Index>> found;
+    for (std::vector<Index>& region : faces) {
+        if (region.size() < 2 ||
+            area[at(regions.label[at(region.front())])] < share * mesh.total_area)
+            continue;
+        std::set<Index> vertices;
+        Index twice_edges = 0; // inner ones are met from both sides
+        for (const Index f : region) {
+            vertices.insert(mesh.faces[at(f)].begin(), mesh.faces[at(f)].end());
+            for (const HalfEdge h : half_edges_of(Face(f))) {
+                const Face g = mesh.across(h);
+                twice_edges += g >= 0 && regions.label[g] == regions.label[at(f)] ? 1 : 2;
+            }
+        }
+        const Index euler = static_cast<Index>(vertices.size()) - twice_edges / 2 +
+                            static_cast<Index>(region.size());
+        if (euler < 1)
+            found.push_back(std::move(region));
+    }
+    return found;
 }
 
 void keep_regions_whole(const Mesh& mesh, double share, std::vector<Index>& label) {

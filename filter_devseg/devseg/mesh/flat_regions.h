@@ -15,6 +15,10 @@ FaceComponents flat_regions(const Mesh& mesh);
 /// least `share` of the surface; `label` is #F. A label may fall apart or vanish.
 void keep_regions_whole(const Mesh& mesh, double share, std::vector<Index>& label);
 
+/// The faces of the flat regions of at least `share` of the surface that have holes, whatever
+/// stands in them.
+std::vector<std::vector<Index>> flat_regions_with_holes(const Mesh& mesh, double share);
+
 /// 1 for each half-edge (3 #F) within a flat region that has at least `share` of the surface.
 std::vector<std::uint8_t> within_flat_regions(const Mesh& mesh, double share);
 

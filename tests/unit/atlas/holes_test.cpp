@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -260,6 +261,79 @@ TEST(FlatFaces, StayWholeInOneChart) {
     const ChartMap same = keep_flat_faces_whole(mesh, charts);
     EXPECT_EQ(same.chart, charts.chart);
     EXPECT_EQ(same.seam, charts.seam);
+}
+
+TEST(FlatFaces, HaveRimsAroundWhatStandsInTheirHoles) {
+    const Mesh mesh = checks::gated(shapes::slab(shapes::mask_with_holes(1)));
+    const std::vector<std::uint8_t> rims = rims_of_flat_faces(mesh);
+    Index edges = 0;
+    for (const HalfEdge h : mesh.all_half_edges()) {
+        EXPECT_EQ(rims[h], rims[mesh.twin[h]]);
+        edges += mesh.twin[h] > h ? rims[h] : 0;
+    }
+    EXPECT_EQ(edges, 8); // a square above and one below
+    const auto is_joined = [&](HalfEdge h) { return rims[h] == 0; };
+    EXPECT_EQ(mesh::face_components(mesh, is_joined).count, 2);
+}
+
+TEST(FlatFaces, HaveNoRimsAroundNothing) {
+    for (const mesh::RawMesh& raw : {shapes::plate(shapes::mask_with_holes(2)), shapes::cube(3)}) {
+        const std::vector<std::uint8_t> rims = rims_of_flat_faces(checks::gated(raw));
+        EXPECT_EQ(std::count(rims.begin(), rims.end(), 1), 0);
+    }
+}
+
+// A pyramid so small that nobody sees it, in the middle of a plate.
+TEST(FlatFaces, HaveNoRimsAroundWhatIsTooSmall) {
+    for (const double width : {0.02, 0.5}) {
+        mesh::RawMesh raw = shapes::grid(3, 3, 3.0, 3.0);
+        for (Vec3& p : raw.points) // the inner square shrinks
+            for (const int k : {0, 1}) {
+                const double middle = p[k] - 1.5;
+                if (std::abs(p.x() - 1.5) < 1.0 && std::abs(p.y() - 1.5) < 1.0 &&
+                    std::abs(std::abs(middle) - 0.5) < 1e-9)
+                    p[k] = 1.5 + std::copysign(0.5 * width, middle);
+            }
+        const Mesh flat = checks::gated(raw);
+        mesh::RawMesh peaked;
+        peaked.points = flat.points;
+        const Index tip = flat.vertex_count();
+        Vec3 middle = Vec3::Zero();
+        for (const Vec3& p : flat.points)
+            middle += p / static_cast<double>(flat.points.size());
+        const double unit = (flat.points[1] - flat.points[0]).norm() / raw.points[1].norm();
+        peaked.points.push_back(middle + Vec3(0.0, 0.0, unit * width));
+        for (const Face f : flat.all_faces()) {
+            const Triangle& t = flat.faces[f];
+            if ((flat.face_centers[f] - middle).norm() > 0.5 * unit * width) {
+                peaked.faces.push_back(t);
+                continue;
+            }
+            for (const HalfEdge h : half_edges_of(f)) // not the diagonal
+                if (flat.face_centers[flat.across(h)] != flat.face_centers[f] &&
+                    (flat.face_centers[flat.across(h)] - middle).norm() > 0.5 * unit * width)
+                    peaked.faces.push_back({flat.origin(h), flat.target(h), tip});
+        }
+        const std::vector<std::uint8_t> rims = rims_of_flat_faces(checks::gated(peaked));
+        EXPECT_EQ(std::count(rims.begin(), rims.end(), 1), width < 0.1 ? 0 : 8);
+    }
+}
+
+// Two rows of squares: the straight way to the border is not to be cut.
+TEST(FlatFaces, PathsRatherGoAllTheWayRound) {
+    const Mesh mesh = checks::gated(shapes::grid(40, 2, 40.0, 2.0));
+    std::vector<Index> faces(mesh.faces.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    const std::vector<std::uint8_t> seam(mesh.twin.size(), 0);
+    std::vector<std::uint8_t> uncut(mesh.twin.size(), 1);
+    const double middle = mesh.points[at(41 + 20)].y();
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.points[mesh.origin(h)].y() == middle && mesh.points[mesh.target(h)].y() == middle)
+            uncut[h] = 0;
+    EXPECT_EQ(path_to_border(mesh, faces, seam, Vertex(41 + 20)).size(), 1U);
+    EXPECT_EQ(path_to_border(mesh, faces, seam, Vertex(41 + 20), uncut).size(), 20U);
+    std::fill(uncut.begin(), uncut.end(), std::uint8_t{1});
+    EXPECT_EQ(path_to_border(mesh, faces, seam, Vertex(41 + 20), uncut).size(), 1U);
 }
 
 } // namespace

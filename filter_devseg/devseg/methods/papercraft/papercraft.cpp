@@ -217,25 +217,26 @@ std::vector<std::uint8_t> faces_of_nets(const Mesh& mesh, Deform deform) {
     return is_net;
 }
 
-// The charts of a part come behind those that there are.
+// The charts of a part, which was cut open along seams of `all`, come behind those that there are.
 void append_charts(const atlas::ChartSurface& part, const atlas::ChartMap& charts,
                    atlas::ChartMap& all) {
     for (std::size_t f = 0; f < part.face.size(); ++f)
         all.chart[at(part.face[f])] = all.count + charts.chart[f];
     for (std::size_t h = 0; h < charts.seam.size(); ++h)
-        all.seam[at(part.mesh_half_edge(static_cast<Index>(h)))] = charts.seam[h];
+        all.seam[at(part.mesh_half_edge(static_cast<Index>(h)))] |= charts.seam[h];
     all.count += charts.count;
 }
 
 // Nets of the components that are polyhedra, charts with slits of the others.
+// Flat faces with holes come apart from what stands in them (`rims`, 3 #F).
 PapercraftResult nets_and_charts(const Mesh& mesh, const std::vector<std::uint8_t>& is_net,
+                                 const std::vector<std::uint8_t>& rims,
                                  const PapercraftOptions& options, Progress& progress) {
     std::array<std::vector<Index>, 2> faces;
     for (const Face f : mesh.all_faces())
         faces[is_net[f]].push_back(f);
     PapercraftResult result;
-    atlas::ChartMap all{std::vector<Index>(mesh.faces.size()),
-                        std::vector<std::uint8_t>(mesh.twin.size(), 0), 0};
+    atlas::ChartMap all{std::vector<Index>(mesh.faces.size()), rims, 0};
     const auto surface_of = [&](std::size_t kind) {
         return atlas::extract_surface(mesh, faces[kind], all.seam);
     };
@@ -246,12 +247,14 @@ PapercraftResult nets_and_charts(const Mesh& mesh, const std::vector<std::uint8_
         result = grow_charts(atlas::mesh_of(mesh, surface), own, progress);
         append_charts(surface, result.charts, all);
     }
-    const atlas::ChartSurface surface = surface_of(1);
-    auto unfolding = progress.part("unfolding", progress.left());
-    const atlas::ChartMap nets = unfold_into_nets(
-        atlas::mesh_of(mesh, surface), {options.random_seed, options.max_net_faces}, unfolding);
-    result.nets = nets.count;
-    append_charts(surface, nets, all);
+    if (!faces[1].empty()) {
+        const atlas::ChartSurface surface = surface_of(1);
+        auto unfolding = progress.part("unfolding", progress.left());
+        const atlas::ChartMap nets = unfold_into_nets(
+            atlas::mesh_of(mesh, surface), {options.random_seed, options.max_net_faces}, unfolding);
+        result.nets = nets.count;
+        append_charts(surface, nets, all);
+    }
     result.charts = atlas::make_chart_map(mesh, all.chart, all.seam, false);
     result.slit_length = slit_length(mesh, result.charts);
     return result;
@@ -264,8 +267,14 @@ PapercraftResult segment_papercraft(const Mesh& mesh, const PapercraftOptions& o
     check_charts_number(mesh.face_count(), options.charts_number);
     check_ranges(options);
     const std::vector<std::uint8_t> is_net = faces_of_nets(mesh, options.deform);
-    const bool any = std::find(is_net.begin(), is_net.end(), 1) != is_net.end();
-    PapercraftResult result = any ? nets_and_charts(mesh, is_net, options, progress)
+    std::vector<std::uint8_t> rims = atlas::rims_of_flat_faces(mesh);
+    for (const HalfEdge h : mesh.all_half_edges())
+        rims[h] = is_net[face_of(h)] != 0 ? 0 : rims[h];
+    const auto any = [](const std::vector<std::uint8_t>& marks) {
+        return std::find(marks.begin(), marks.end(), 1) != marks.end();
+    };
+    PapercraftResult result = any(is_net) || any(rims)
+                                  ? nets_and_charts(mesh, is_net, rims, options, progress)
                                   : grow_charts(mesh, options, progress);
     const std::vector<double> defect = mesh::angle_defects(mesh);
     const std::vector<Index> valence = valences(mesh);

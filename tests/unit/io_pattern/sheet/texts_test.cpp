@@ -133,9 +133,9 @@ std::size_t numbers_of_dart(double width) {
     return pieces[0].numbers.size();
 }
 
-TEST(Texts, NarrowDartsHaveOneNumber) {
+TEST(Texts, DartsHaveOneNumber) {
     EXPECT_EQ(numbers_of_dart(4.0), 1U);
-    EXPECT_EQ(numbers_of_dart(40.0), 2U);
+    EXPECT_EQ(numbers_of_dart(40.0), 1U);
 }
 
 TEST(Texts, NumbersThatAreOthersUpsideDownAreTold) {
