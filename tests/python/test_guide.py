@@ -402,7 +402,8 @@ def test_all_of_it_works_by_keyboard(opened: Any) -> None:
     focus("#step-list button")
     press(Keys.ENTER)
     assert opened.execute_script("return state.step") == 1
-    assert "P01" in focus("#piece-list button") and lit(opened) == ({"P01"}, {"P01"})
+    assert "P01" in focus("#piece-list button")
+    wait_for(lambda: lit(opened) == ({"P01"}, {"P01"}))
     assert "Seam 1:" in focus("#seam-list button")
     opened.execute_script("goTo(0)")
 
