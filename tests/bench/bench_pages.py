@@ -1,6 +1,8 @@
 """Pages of A4 that patterns take, and the limit: a row of docs/benchmarks.md for each mesh.
 
-Usage: python tests/bench/bench_pages.py MESH...   (those without texture coordinates: D-Charts)
+Usage: python tests/bench/bench_pages.py [--method M] [--height-mm H] MESH...
+
+Meshes without texture coordinates are cut by D-Charts or another method of `devseg run`.
 
 The limit is the area inside all cut lines in pages, divided by 0.55, rounded up. A page is nearly
 empty where pieces cover less than 5 % of it; the last one does not count.
@@ -8,6 +10,7 @@ empty where pieces cover less than 5 % of it; the last one does not count.
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import tempfile
@@ -24,7 +27,10 @@ import devseg
 import pattern_files as files
 from devseg import host
 
-HEIGHT = 300.0
+METHODS = {
+    "dcharts": ("compute_segmentation_dcharts_per_face", {}),
+    "plush": ("compute_segmentation_plush_seams_per_face", {"method": "LPFB"}),
+}
 FORMAT = (190.0, 277.0)  # mm that can be printed on, with margins of
 MARGIN = 10.0
 PAGE = "{http://www.inkscape.org/namespaces/inkscape}page"
@@ -41,10 +47,10 @@ def shares(svg: Path) -> list[float]:
     return found
 
 
-def row(ms: Any, name: str, folder: Path) -> str:
+def row(ms: Any, name: str, height: float, folder: Path) -> str:
     """Exports the current mesh."""
     svg = folder / "pattern.svg"
-    parameters = {"preset": "Sewing", "page": "a4", "height_mm": HEIGHT}
+    parameters = {"preset": "Sewing", "page": "a4", "height_mm": height}
     start = time.process_time()
     result = ms.apply_filter("export_pattern", output_file=str(svg), **parameters)
     seconds = time.process_time() - start
@@ -63,16 +69,24 @@ def row(ms: Any, name: str, folder: Path) -> str:
 
 def main() -> None:
     """All meshes."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--method", choices=METHODS, default="dcharts")
+    parser.add_argument("--height-mm", type=float, default=300.0)
+    parser.add_argument("meshes", nargs="+", type=Path)
+    arguments = parser.parse_args()
+    segmentation, flattening = METHODS[arguments.method]
     devseg.load_plugins()
     pymeshlab = host.pymeshlab()
     with tempfile.TemporaryDirectory() as folder:
-        for argument in sys.argv[1:]:
+        for path in arguments.meshes:
             ms = pymeshlab.MeshSet()
-            ms.load_new_mesh(argument)
+            ms.load_new_mesh(str(path))
             if not ms.current_mesh().has_wedge_tex_coord():
-                ms.apply_filter("compute_segmentation_dcharts_per_face")
-                ms.apply_filter("compute_texcoord_parametrization_charts_per_wedge", pack=False)
-            print(row(ms, Path(argument).stem, Path(folder)), flush=True)
+                ms.apply_filter(segmentation)
+                ms.apply_filter(
+                    "compute_texcoord_parametrization_charts_per_wedge", pack=False, **flattening
+                )
+            print(row(ms, path.stem, arguments.height_mm, Path(folder)), flush=True)
 
 
 if __name__ == "__main__":

@@ -353,6 +353,85 @@ def test_everything_has_a_name_and_a_key(opened: Any) -> None:
     assert opened.execute_script(place) != before
 
 
+def test_all_of_it_works_by_keyboard(opened: Any) -> None:
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    def focus(selector: str) -> str:
+        """With Tab alone; returns what is said of it."""
+        for _ in range(200):
+            ActionChains(opened).send_keys(Keys.TAB).perform()
+            if opened.execute_script(
+                "return document.activeElement.matches(arguments[0])", selector
+            ):
+                return opened.execute_script("return document.getElementById('about').textContent")
+        raise AssertionError(f"Tab does not reach {selector}")
+
+    def press(*keys: str) -> None:
+        ActionChains(opened).send_keys(*keys).perform()
+
+    distance = "return model.camera.position.distanceTo(model.controls.target)"
+    width = "return sheet.view.width"
+    visible = "return model.meshes.filter(m => m.group.visible).length"
+    focus("#theme")
+    theme = "return document.documentElement.dataset.theme"
+    before = opened.execute_script(theme)
+    press(Keys.ENTER)
+    assert opened.execute_script(theme) != before
+    press(Keys.ENTER)
+    focus("#explode")
+    place = "return model.meshes[0].group.position.toArray()"
+    before = opened.execute_script(place)
+    press(Keys.END)
+    wait_for(lambda: opened.execute_script(place) != before)
+    press(Keys.HOME)
+    focus("#canvas")
+    before = opened.execute_script(distance)
+    press("+")
+    assert opened.execute_script(distance) < before
+    press("-")
+    focus("#paper")
+    before = opened.execute_script(width)
+    press("+")
+    assert opened.execute_script(width) < before
+    press("-")
+    focus("#next")
+    press(Keys.SPACE)
+    wait_for(lambda: not opened.execute_script("return model.waiting"))
+    assert opened.execute_script(visible) < opened.execute_script("return DATA.pieces.length")
+    focus("#step-list button")
+    press(Keys.ENTER)
+    assert opened.execute_script("return state.step") == 1
+    assert "P01" in focus("#piece-list button")
+    wait_for(lambda: lit(opened) == ({"P01"}, {"P01"}))
+    assert "Seam 1:" in focus("#seam-list button")
+    opened.execute_script("goTo(0)")
+
+
+def test_steps_play_by_themselves(opened: Any) -> None:
+    opened.find_element("id", "play").click()
+    wait_for(lambda: opened.execute_script("return state.step") == 2)
+    opened.find_element("id", "play").click()
+    assert opened.find_element("id", "play").get_attribute("aria-pressed") == "false"
+
+
+def test_fingers_choose_pieces_and_zoom(opened: Any) -> None:
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(places)]
+        opened.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    x, y = opened.execute_script(ON_THE_THIRD)
+    touch("touchStart", (x, y))
+    touch("touchEnd")
+    wait_for(lambda: lit(opened) == ({"P03"}, {"P03"}))
+    width = "return sheet.view.width"
+    before = opened.execute_script(width)
+    touch("touchStart", (x, y), (x + 40, y))
+    touch("touchMove", (x, y), (x + 80, y))
+    touch("touchEnd")
+    wait_for(lambda: opened.execute_script(width) < 0.8 * before)
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_it_fits_small_and_large_screens(opened: Any, width: int, theme: str) -> None:

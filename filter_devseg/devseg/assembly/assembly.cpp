@@ -47,7 +47,8 @@ public:
     }
 
     Assembly plan() {
-        raw_section_ = find_sections(graph_, progress_);
+        grouping_ = craft_ == Craft::sewing ? group_by_limbs(pattern_, graph_, progress_)
+                                            : group_by_seams(graph_, progress_);
         progress_.check();
         if (craft_ == Craft::sewing)
             plan_.openings = find_openings(pattern_, graph_, progress_);
@@ -280,12 +281,12 @@ private:
         return best;
     }
 
-    // All sections of a component, the largest last.
+    // All sections of a component: the body last, or else the largest.
     std::vector<std::vector<Index>> make_sections(const std::vector<Index>& pieces) {
         std::vector<std::vector<Index>> groups;
         std::vector<Index> labels;
         for (const Index p : pieces) {
-            const Index label = raw_section_[at(p)];
+            const Index label = grouping_.section[at(p)];
             const auto known = std::find(labels.begin(), labels.end(), label);
             if (known == labels.end()) {
                 labels.push_back(label);
@@ -294,14 +295,14 @@ private:
                 groups[static_cast<std::size_t>(known - labels.begin())].push_back(p);
             }
         }
-        const auto area = [&](const std::vector<Index>& group) {
+        const auto rank = [&](const std::vector<Index>& group) {
             double sum = 0.0;
             for (const Index p : group)
                 sum += graph_.area[at(p)];
-            return sum;
+            return std::pair(grouping_.is_body[at(group.front())], sum);
         };
         std::stable_sort(groups.begin(), groups.end(),
-                         [&](const auto& a, const auto& b) { return area(a) < area(b); });
+                         [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
         std::vector<std::vector<Index>> sections;
         for (std::vector<Index> rest : groups)
             while (!rest.empty()) {
@@ -351,7 +352,7 @@ private:
     Craft craft_;
     const Progress& progress_;
     PieceGraph graph_;
-    std::vector<Index> raw_section_;
+    Grouping grouping_;
     std::vector<std::vector<Index>> seams_of_; // of each piece, in their order
     std::vector<std::uint8_t> waits_;          // #seams: 1 until the last step
     Assembly plan_;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "devseg/assembly/assembly.h"
+#include "devseg/assembly/limbs.h"
 #include "devseg/graph/unions.h"
 
 namespace devseg::assembly {
@@ -165,6 +166,23 @@ void join_leftovers(Clusters& clusters, const Progress& progress) {
     }
 }
 
+// Of each piece, the limb that holds more than half of it, or −1.
+std::vector<Index> limbs_of_pieces(const pattern::Pattern& pattern, const Limbs& limbs) {
+    std::vector<std::map<Index, double>> area(pattern.pieces.size()); // on the model
+    std::vector<double> whole(pattern.pieces.size(), 0.0);
+    for (const Face f : pattern.mesh.all_faces())
+        if (const Index p = pattern.face_piece[f]; p >= 0) {
+            area[at(p)][limbs.of_face[f]] += pattern.mesh.face_areas[f];
+            whole[at(p)] += pattern.mesh.face_areas[f];
+        }
+    std::vector<Index> result(pattern.pieces.size(), -1);
+    for (std::size_t p = 0; p < result.size(); ++p)
+        for (const auto& [limb, part] : area[p])
+            if (2.0 * part > whole[p])
+                result[p] = limb;
+    return result;
+}
+
 } // namespace
 
 PieceGraph::PieceGraph(const pattern::Pattern& pattern) {
@@ -237,13 +255,33 @@ void PieceGraph::measure_solids(const pattern::Pattern& pattern) {
     }
 }
 
-std::vector<Index> find_sections(const PieceGraph& graph, const Progress& progress) {
+Grouping group_by_seams(const PieceGraph& graph, const Progress& progress) {
     Clusters clusters(graph);
     Unions unions(clusters);
     while (unions.join_best())
         progress.check();
     join_leftovers(clusters, progress);
-    return clusters.of_piece();
+    return {clusters.of_piece(), std::vector<std::uint8_t>(at(graph.piece_count), 0)};
+}
+
+Grouping group_by_limbs(const pattern::Pattern& pattern, const PieceGraph& graph,
+                        const Progress& progress) {
+    Grouping grouping = group_by_seams(graph, progress);
+    if (std::count(graph.is_closed.begin(), graph.is_closed.end(), 1) == 0)
+        return grouping;
+    const Limbs limbs = find_limbs(pattern.mesh, progress);
+    const std::vector<Index> limb = limbs_of_pieces(pattern, limbs);
+    std::vector<std::uint8_t> has_limbs(at(graph.component_count), 0);
+    for (std::size_t p = 0; p < limb.size(); ++p)
+        if (limb[p] >= 0)
+            has_limbs[at(graph.component[p])] = graph.is_closed[at(graph.component[p])];
+    // Numbers after those of sections by seams: of limbs, and then of the bodies of components.
+    for (std::size_t p = 0; p < limb.size(); ++p)
+        if (const Index c = graph.component[p]; has_limbs[at(c)] != 0) {
+            grouping.is_body[p] = limb[p] < 0 ? 1 : 0;
+            grouping.section[p] = graph.piece_count + (limb[p] < 0 ? limbs.count + c : limb[p]);
+        }
+    return grouping;
 }
 
 } // namespace devseg::assembly

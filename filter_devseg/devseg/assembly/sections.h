@@ -1,6 +1,7 @@
 // Pieces → sections that are made by themselves: limbs, and what they are attached to.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -35,10 +36,22 @@ private:
     void measure_solids(const pattern::Pattern& pattern);
 };
 
-/// Sections, 0, 1, …: the union of two that is most closed is made, again and again, where closed
-/// means a short border beside its area: P² / 4πA, 1 for a disk, far less for a tube with a short
-/// neck. Unions that are as closed as a limb grow no further. What is left and touches fewer than
-/// three sections joins the one that it shares the longest seams with. Throws Cancelled.
-std::vector<Index> find_sections(const PieceGraph& graph, const Progress& progress);
+/// The section that each piece is made in.
+struct Grouping {
+    std::vector<Index> section;        // of each piece: any number that its section shares
+    std::vector<std::uint8_t> is_body; // of each piece: 1 = limbs are joined to its section
+};
+
+/// By what pieces have in common: the union of two sections that is most closed is made, again and
+/// again, where closed means a short border beside its area: P² / 4πA, 1 for a disk, far less for a
+/// tube with a short neck. Unions that are as closed as a limb grow no further. What is left and
+/// touches fewer than three sections joins the one that it shares the longest seams with. Throws
+/// Cancelled.
+Grouping group_by_seams(const PieceGraph& graph, const Progress& progress);
+
+/// The same where a part is no solid, or has no limb (limbs.h) with a piece of its own. Else each
+/// piece is of the limb that holds most of it, or of the body. Throws Cancelled.
+Grouping group_by_limbs(const pattern::Pattern& pattern, const PieceGraph& graph,
+                        const Progress& progress);
 
 } // namespace devseg::assembly

@@ -3,11 +3,14 @@
 #include "devseg/assembly/assembly.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "devseg/assembly/limbs.h"
 #include "devseg/base/errors.h"
 #include "devseg/pattern/pieces.h"
 #include "unit/host_checks.h"
@@ -16,10 +19,7 @@
 namespace devseg::assembly {
 namespace {
 
-pattern::Pattern pattern_of(const mesh::RawMesh& raw, double height_mm, int charts) {
-    declare::HostMesh host = checks::host_of(raw);
-    checks::take_charts(host, checks::run("Segmentation: Variational Shape Approximation", host,
-                                          {{"charts_number", charts}}));
+pattern::Pattern pattern_of(declare::HostMesh host, double height_mm) {
     checks::take_charts(host, checks::run("Charts: Cut to Disks", host));
     host.wedge_uv = checks::run("Charts: Flatten", host).wedge_uv;
     const mesh::GatedMesh gated = mesh::gate_mesh(host.geometry, {0.0, true});
@@ -31,6 +31,39 @@ pattern::Pattern pattern_of(const mesh::RawMesh& raw, double height_mm, int char
     options.height_mm = height_mm;
     Progress progress;
     return pattern::make_pattern(gated.mesh, uv, options, progress);
+}
+
+pattern::Pattern pattern_of(const mesh::RawMesh& raw, double height_mm, int charts) {
+    declare::HostMesh host = checks::host_of(raw);
+    checks::take_charts(host, checks::run("Segmentation: Variational Shape Approximation", host,
+                                          {{"charts_number", charts}}));
+    return pattern_of(std::move(host), height_mm);
+}
+
+const std::vector<Vec3> limb_axes{Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1),
+                                  Vec3(0, 0, -1)};
+
+// The axis of the limb that the direction is on, or −1.
+Index limb_at(const Vec3& direction) {
+    for (std::size_t i = 0; i < limb_axes.size(); ++i)
+        if (direction.normalized().dot(limb_axes[i]) > std::cos(0.45))
+            return static_cast<Index>(i);
+    return -1;
+}
+
+// A ball of radius 1 with five limbs that reach to 3.
+mesh::RawMesh ball_with_limbs() {
+    mesh::RawMesh raw = shapes::sphere(5);
+    for (Vec3& p : raw.points)
+        if (const Index i = limb_at(p); i >= 0) {
+            const double t = std::min(1.0, (0.45 - std::acos(p.dot(limb_axes[at(i)]))) / 0.2);
+            p *= 1.0 + 2.0 * t;
+        }
+    return raw;
+}
+
+Vec3 middle_of(const mesh::RawMesh& raw, const Triangle& face) {
+    return (raw.points[at(face[0])] + raw.points[at(face[1])] + raw.points[at(face[2])]) / 3.0;
 }
 
 // Sews step by step. Returns what is wrong with the order, or nothing.
@@ -219,6 +252,65 @@ TEST(Assembly, SmallToysAreClosedAlongAWholeSeam) {
     EXPECT_EQ(fault_of(pattern, plan), "");
     EXPECT_EQ(plan.seam_step[at(plan.openings.front().seam)],
               static_cast<Index>(plan.steps.size()));
+}
+
+TEST(Assembly, LimbsAreFound) {
+    const mesh::GatedMesh gated = mesh::gate_mesh(ball_with_limbs(), {0.0, true});
+    Progress progress;
+    const Limbs limbs = find_limbs(gated.mesh, progress);
+    ASSERT_EQ(limbs.count, 5);
+    // Each lies on one axis, and holds what is beyond the ball there.
+    std::map<Index, Index> axis_of;
+    const mesh::RawMesh raw = ball_with_limbs();
+    for (const Face f : gated.mesh.all_faces()) {
+        const Vec3 middle = middle_of(raw, raw.faces[at(gated.source_face[f])]);
+        const Index limb = limbs.of_face[f];
+        if (middle.norm() > 1.9) {
+            EXPECT_EQ(axis_of.emplace(limb, limb_at(middle)).first->second, limb_at(middle));
+        }
+    }
+    for (const Face f : gated.mesh.all_faces()) // and ends where the ball begins
+        if (const Index limb = limbs.of_face[f]; limb >= 0) {
+            const Vec3 middle = middle_of(raw, raw.faces[at(gated.source_face[f])]);
+            EXPECT_GT(middle.normalized().dot(limb_axes.at(at(axis_of[limb]))), std::cos(0.75));
+        }
+    EXPECT_EQ(axis_of.size(), 5U);
+    EXPECT_EQ(axis_of.count(-1), 0U);
+    // Balls and tubes have none.
+    for (const auto& smooth : {shapes::sphere(3), shapes::torus(24, 12)})
+        EXPECT_EQ(find_limbs(mesh::gate_mesh(smooth, {0.0, true}).mesh, progress).count, 0);
+}
+
+TEST(Assembly, PiecesOfALimbAreOneSection) {
+    declare::HostMesh host = checks::host_of(ball_with_limbs());
+    for (const Triangle& face : host.geometry.faces) {
+        // Two halves of each limb and of the ball, and no limb is split along the same plane.
+        const Vec3 middle = middle_of(host.geometry, face);
+        const Index limb = limb_at(middle);
+        const double side = limb < 0 ? middle.x() + 0.1 : limb < 2 ? middle.y() : middle.x();
+        host.chart_id.push_back(2.0 * (limb + 1) + (side > 0.0 ? 1.0 : 0.0));
+    }
+    host.seam_edges.assign(host.chart_id.size(), 0.0);
+    const pattern::Pattern pattern = pattern_of(host, 300.0);
+    ASSERT_EQ(pattern.pieces.size(), 12U);
+    Progress progress;
+    const Assembly plan = plan_assembly(pattern, Craft::sewing, progress);
+    EXPECT_EQ(fault_of(pattern, plan), "");
+    std::map<Index, std::set<Index>> pieces; // of sections
+    for (std::size_t p = 0; p < plan.section.size(); ++p)
+        pieces[plan.section[p]].insert(static_cast<Index>(p));
+    EXPECT_EQ(pieces.size(), 6U);
+    for (const auto& [section, here] : pieces)
+        EXPECT_EQ(here.size(), 2U);
+    // Limbs are sewn first, by themselves, and then to the ball.
+    std::vector<Index> attached;
+    for (const AssemblyStep& step : plan.steps) {
+        if (step.kind == StepKind::attach)
+            attached.push_back(step.section);
+        EXPECT_TRUE(attached.empty() || step.kind == StepKind::attach ||
+                    step.kind == StepKind::close);
+    }
+    EXPECT_EQ(std::set<Index>(attached.begin(), attached.end()), (std::set<Index>{0, 1, 2, 3, 4}));
 }
 
 TEST(Assembly, CanBeCancelled) {
