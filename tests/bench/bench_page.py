@@ -9,7 +9,6 @@ is that of all of Chromium, until lists and sheet are there as well.
 
 from __future__ import annotations
 
-import shutil
 import statistics
 import sys
 import tempfile
@@ -20,27 +19,10 @@ from typing import Any
 import devseg
 from devseg import host
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+import chromium
+
 LOADS = 8
-ARGUMENTS = (
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-dev-shm-usage",
-    "--window-size=1280,1000",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-)
-
-
-def browser() -> Any:
-    """Debian's Chromium without a window."""
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = shutil.which("chromium")
-    for argument in ARGUMENTS:
-        options.add_argument(argument)
-    return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
 
 
 def processor_seconds(root: int) -> float:
@@ -78,7 +60,7 @@ def main() -> None:
     """All meshes."""
     devseg.load_plugins()
     pymeshlab = host.pymeshlab()
-    driven = browser()
+    driven = chromium.start()
     with tempfile.TemporaryDirectory() as folder:
         for argument in sys.argv[1:]:
             ms = pymeshlab.MeshSet()

@@ -27,6 +27,17 @@ def pymeshlab() -> ModuleType:
 
 
 @pytest.fixture(scope="session")
+def flattened(pymeshlab: Any) -> Any:
+    """A closed ball in several pieces."""
+    ms = pymeshlab.MeshSet()
+    ms.create_sphere(radius=1.0, subdiv=4)
+    ms.compute_segmentation_variational_shape_approximation_per_face(charts_number=6)
+    ms.compute_seams_charts_to_disks_per_edge()
+    ms.compute_texcoord_parametrization_charts_per_wedge()
+    return ms
+
+
+@pytest.fixture(scope="session")
 def data() -> Path:
     """Meshes from elsewhere, that the project cannot ship."""
     folder = Path(os.environ.get("DEVSEG_DATA", ROOT.parent / "shared" / "data"))

@@ -20,8 +20,8 @@ std::vector<judge::TrialMap> quick_maps(const Mesh& mesh,
                                         const std::vector<std::uint8_t>& seam,
                                         const judge::WholeEffort& effort, Progress& progress);
 
-/// The same maps, those of decimated charts replaced by the maps of all faces: what is good on fewer
-/// faces must be so on all of them before it counts.
+/// The same maps, those of decimated charts replaced by the maps of all faces: what is good on
+/// fewer faces must be so on all of them before it counts.
 void confirm_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
                   const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
                   std::vector<judge::TrialMap>& maps, Progress& progress);
