@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -52,6 +53,7 @@ struct Options : curves::SmoothOptions {
 // What is wrong with a chart: the middles of its faces where it is.
 struct Excess {
     bool is_above = false;
+    bool is_torn = false;     // it has no map in one piece, and is cut when it is flattened
     std::vector<Vec3> places; // none: everywhere
 };
 
@@ -61,7 +63,7 @@ Excess strain_above(const Mesh& mesh, const std::vector<Index>& faces,
     limits.max_strain = bound;
     limits.is_search = false;
     const judge::ClothTrial trial = judge::try_cloth(mesh, faces, seam, limits, true, progress);
-    Excess excess{!trial.has_map || trial.strain.most_of_it > bound, {}};
+    Excess excess{!trial.has_map || trial.strain.most_of_it > bound, !trial.has_map, {}};
     for (std::size_t k = 0; k < trial.strains.size() && excess.is_above; ++k)
         if (trial.strains[k] > bound)
             excess.places.push_back(mesh.face_centers[trial.face[k]]);
@@ -124,10 +126,19 @@ void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Bucket
     // To the end: pushing overlaps apart takes some maps below their bound.
     const std::vector<judge::TrialMap> maps =
         judge::whole_maps(mesh, tried, charts.seam, {}, progress);
-    for (std::size_t i = 0; i < maps.size(); ++i)
-        if (const double bound = bounds[number[i]];
-            !maps[i].flat || maps[i].l2_squared > bound * bound)
-            above[number[i]] = {true, {}}; // stretch is not to be had at one place
+    // Flattening itself tells whether one that does not look whole is cut apart.
+    std::vector<std::vector<Index>> doubtful;
+    std::copy_if(tried.begin(), tried.end(), std::back_inserter(doubtful),
+                 [&, i = 0](const auto&) mutable { return !maps[at(i++)].flat; });
+    const std::vector<judge::TrialMap> known =
+        judge::final_maps(mesh, doubtful, charts.seam, progress);
+    auto next = known.begin();
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        const judge::TrialMap& map = maps[i].flat ? maps[i] : *next++;
+        const double bound = bounds[number[i]];
+        if (!map.flat || map.l2_squared > bound * bound)
+            above[number[i]] = {true, !map.flat, {}}; // stretch is not to be had at one place
+    }
 }
 
 // Which of the chosen charts are above a bound, and where.
@@ -205,7 +216,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
             doubtful[c] = after[c].is_above ? 1 : 0;
         const std::vector<Excess> before = above(mesh, charts, doubtful, options, stretch, judging);
         for (std::size_t c = 0; c < after.size(); ++c) {
-            if (before[c].is_above) {
+            // One that is cut may get parts within the bound, or far above it.
+            if (before[c].is_above && before[c].is_torn == after[c].is_torn) {
                 judged[c] = 0;
                 after[c] = {};
             }
