@@ -42,6 +42,8 @@ SMALLEST_MM, LARGEST_MM = 20.0, 5000.0
 LEAST_MM_PER_UNIT = 1e-9
 # A model that is so much longer than high may lie.
 TALL = 1.1
+# What rounding texture coordinates to 32 bits does to a stretch at most.
+ROUNDED = 1 + 1e-5
 
 
 _MOST_CHARTS = re.compile(r"--charts: expected a number from 1 to (\d+)")
@@ -252,7 +254,26 @@ def flatten_mesh(session: Session, options: RunOptions, progress: Progress) -> d
         del found["smoothing"]
         session.meshes.set_current_mesh(kept)
         measures = _flatten(session, options, progress)
+    tell_charts_above(session, options, made, measures)
     return {**found, **measures}
+
+
+def tell_charts_above(
+    session: Session, options: RunOptions, made: dict[str, Any], measures: dict[str, Any]
+) -> None:
+    """Warns of charts above their bound that no filter has told of: most are parts of others."""
+    bound = session.parameters.get(options.method.filter, {}).get("max_chart_l2_stretch")
+    if not bound:
+        return
+    stretch = measures["parametrization"]["chart_l2_stretch"]
+    above = sum(l2 > bound * ROUNDED for l2 in stretch)
+    names = ("charts_above_bound_number", "rough_charts_number", "thin_charts_number")
+    told = int(sum({**made, **measures["flattening"]}.get(name, 0) for name in names))
+    if above > told:
+        session.warnings.append(
+            f"{above - told} charts are above their bound of stretch since the mesh was flattened: "
+            "parts of charts that lay on themselves and were cut apart"
+        )
 
 
 def _make_charts(session: Session, options: RunOptions) -> dict[str, Any]:
@@ -277,6 +298,7 @@ def _flatten(session: Session, options: RunOptions, progress: Progress) -> dict[
             session.call(COLOR_FILTER)
     with progress.stage("measure"):
         return {
+            "flattening": flat,
             "segmentation": session.apply(SEGMENTATION_MEASURES),
             "parametrization": session.apply(PARAMETRIZATION_MEASURES),
         }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from devseg import DevsegError
 from devseg.errors import host_message
 from devseg.outputs import staged, to_json
+from devseg.pipeline import tell_charts_above
 
 
 def test_files_appear_together_at_the_end(tmp_path: Path) -> None:
@@ -61,3 +63,18 @@ def test_host_message_is_the_filters_own() -> None:
     text = "Failed to apply filter: f\nDetails: expected 1,\nfound 2"
     assert host_message(RuntimeError(text)) == "expected 1, found 2"
     assert "memory" in host_message(MemoryError())
+
+
+def test_charts_that_are_above_their_bound_once_flat_are_told() -> None:
+    """Parts of charts that flattening cuts apart; those that a filter told of are not told again."""
+    options = SimpleNamespace(method=SimpleNamespace(filter="segment"))
+    bound = {"max_chart_l2_stretch": 1.02}
+    session = SimpleNamespace(parameters={"segment": bound}, warnings=[])
+    measures = {
+        "flattening": {"thin_charts_number": 1},
+        "parametrization": {"chart_l2_stretch": [1.0, 1.3, 1.0200001, 1.03, 1.021]},
+    }
+    tell_charts_above(session, options, {"rough_charts_number": 2}, measures)
+    assert session.warnings == []
+    tell_charts_above(session, options, {"rough_charts_number": 1}, measures)
+    assert len(session.warnings) == 1 and session.warnings[0].startswith("1 charts are above")

@@ -84,6 +84,7 @@ def test_everything_on_the_mesh_is_carried_over(segmented: Any) -> None:
     mesh.add_face_custom_point_attribute(rng.random((m, 3)), "arrow")
     ms.compute_scalar_by_function_per_vertex(q="x+2*y")
     ms.compute_color_by_function_per_vertex(x="128+100*x", y="10", z="128+100*z")
+    ms.compute_color_by_function_per_face(r="128+100*x0", g="10", b="128+100*z0")
     ms.compute_selection_by_condition_per_face(condselect="x0>0.2")
     read: dict[str, Callable[[Any], np.ndarray]] = {
         "mark": lambda x: x.face_custom_scalar_attribute_array("mark"),
@@ -212,3 +213,15 @@ def test_papercraft_refuses_smooth_seams(
         main(["run", str(path), "-o", str(tmp_path), "--method", "papercraft", "--seams", "smooth"])
     assert stopped.value.code == 2
     assert "--seams smooth does not apply to --method papercraft" in capsys.readouterr().err
+
+
+def test_charts_of_one_colour_keep_one(segmented: Any) -> None:
+    mesh = segmented.current_mesh()
+    before = mesh.face_color_matrix(), mesh.face_custom_scalar_attribute_array("chart_id")
+    segmented.apply_filter(FILTER)
+    mesh = segmented.current_mesh()
+    after = mesh.face_color_matrix(), mesh.face_custom_scalar_attribute_array("chart_id")
+    for colours, chart in (before, after):
+        for c in np.unique(chart):
+            assert len(np.unique(colours[chart == c], axis=0)) == 1
+    assert len(np.unique(after[0], axis=0)) == len(np.unique(before[0], axis=0)) > 1
