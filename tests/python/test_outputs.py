@@ -66,7 +66,7 @@ def test_host_message_is_the_filters_own() -> None:
 
 
 def test_charts_that_are_above_their_bound_once_flat_are_told() -> None:
-    """Parts of charts that flattening cuts apart; those that a filter told of are not told again."""
+    """Most are parts of charts that are cut apart; what a filter told of is not told again."""
     options = SimpleNamespace(method=SimpleNamespace(filter="segment"))
     bound = {"max_chart_l2_stretch": 1.02}
     session = SimpleNamespace(parameters={"segment": bound}, warnings=[])
