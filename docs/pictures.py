@@ -22,7 +22,14 @@ from PIL import Image, ImageChops, ImageDraw, ImageFont
 from devseg import host
 from devseg.load import load_mesh
 from devseg.methods import FLATTENINGS, METHODS
-from devseg.pipeline import DEFORM_FILTER, FLATTEN_FILTER, SMOOTH_FILTER, Session, simplify
+from devseg.pipeline import (
+    COLOR_FILTER,
+    DEFORM_FILTER,
+    FLATTEN_FILTER,
+    SMOOTH_FILTER,
+    Session,
+    simplify,
+)
 from devseg.plugins import load_plugins
 from devseg.quickstart import sample_mesh
 from devseg.render import render_meshes, render_pair
@@ -130,6 +137,7 @@ def segmented(session: Session, method: str, **parameters: Any) -> Session:
     if chosen.deforms:
         session.apply(DEFORM_FILTER)
     session.apply(FLATTEN_FILTER, method=FLATTENINGS[chosen.flatten])
+    session.call(COLOR_FILTER)  # parts may hang on other charts now
     return session
 
 

@@ -339,6 +339,7 @@ def _deform(session: Session) -> dict[str, Any]:
     """Deforms the charts; the filter's results, and displacements as shares of the diagonal."""
     diagonal = session.meshes.current_mesh().bounding_box().diagonal()
     moved = session.apply(DEFORM_FILTER)
+    session.call(COLOR_FILTER)  # parts hang on other charts now
     return {
         **moved,
         "mean_share": moved["mean_displacement"] / diagonal,
