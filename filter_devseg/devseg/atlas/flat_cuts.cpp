@@ -74,13 +74,9 @@ std::vector<std::uint8_t> within_flat_faces(const Mesh& mesh) {
     return mesh::within_flat_regions(mesh, flat_share);
 }
 
-std::vector<std::vector<Index>> flat_faces_with_holes(const Mesh& mesh) {
-    return mesh::flat_regions_with_holes(mesh, flat_share);
-}
-
-std::vector<std::uint8_t> rims_of_flat_faces(const Mesh& mesh) {
-    std::vector<std::uint8_t> rims(mesh.twin.size(), 0);
-    for (const std::vector<Index>& faces : flat_faces_with_holes(mesh)) {
+std::vector<HoledFace> flat_faces_with_holes(const Mesh& mesh) {
+    std::vector<HoledFace> found;
+    for (std::vector<Index>& faces : mesh::flat_regions_with_holes(mesh, flat_share)) {
         const ChartSurface region = extract_surface(
             mesh, faces, enclose(mesh, faces, std::vector<std::uint8_t>(mesh.twin.size(), 0)));
         std::vector<std::pair<double, std::size_t>> loops; // by length
@@ -88,13 +84,22 @@ std::vector<std::uint8_t> rims_of_flat_faces(const Mesh& mesh) {
             loops.emplace_back(loop_length(mesh, region, region.loops[l]), l);
         std::sort(loops.begin(), loops.end());
         loops.pop_back();
+        HoledFace face{std::move(faces), {}};
         for (const auto& [length, l] : loops)
-            for (const HalfEdge local : region.loops[l]) {
-                const HalfEdge h = region.mesh_half_edge(local);
-                if (mesh.twin[h] >= 0)
-                    rims[h] = rims[mesh.twin[h]] = 1;
-            }
+            for (const HalfEdge h : region.loops[l])
+                face.holes.push_back(region.mesh_half_edge(h));
+        if (!face.holes.empty())
+            found.push_back(std::move(face));
     }
+    return found;
+}
+
+std::vector<std::uint8_t> rims_of_flat_faces(const Mesh& mesh) {
+    std::vector<std::uint8_t> rims(mesh.twin.size(), 0);
+    for (const HoledFace& face : flat_faces_with_holes(mesh))
+        for (const HalfEdge h : face.holes)
+            if (mesh.twin[h] >= 0)
+                rims[h] = rims[mesh.twin[h]] = 1;
     const mesh::FaceComponents parts =
         mesh::face_components(mesh, [&](HalfEdge h) { return rims[h] == 0; });
     std::vector<double> area(at(parts.count), 0.0);

@@ -12,8 +12,12 @@ namespace devseg::atlas {
 /// surface or more.
 std::vector<std::uint8_t> within_flat_faces(const Mesh& mesh);
 
-/// The faces of those that have holes.
-std::vector<std::vector<Index>> flat_faces_with_holes(const Mesh& mesh);
+/// Such a region that has holes.
+struct HoledFace {
+    std::vector<Index> faces;
+    std::vector<HalfEdge> holes; // around them, of its faces: all contours but the longest
+};
+std::vector<HoledFace> flat_faces_with_holes(const Mesh& mesh);
 
 /// 1 for the half-edges (3 #F, symmetric) around the holes of flat faces: all their contours but
 /// the longest. A chart that has the face and what stands in one of its holes could be opened

@@ -12,6 +12,7 @@
 #include "devseg/develop/attempts.h"
 #include "devseg/develop/intersections.h"
 #include "devseg/develop/projection.h"
+#include "devseg/develop/stiff_faces.h"
 #include "devseg/mesh/angle_defects.h"
 
 namespace devseg::develop {
@@ -69,7 +70,6 @@ public:
     }
 
     DeformResult run(Progress& progress) {
-        const std::vector<Vec3> start = projection_.points();
         iterate(progress);
         if (options_.adjust_slits)
             close_tips(
@@ -78,11 +78,6 @@ public:
         result_.converged = result_.residual <= options_.tolerance;
         result_.inner_vertices = static_cast<Index>(rows_.size());
         const std::vector<Vec3>& end = projection_.points();
-        for (std::size_t p = 0; p < end.size(); ++p) {
-            const double moved = (end[p] - start[p]).norm();
-            result_.largest_displacement = std::max(result_.largest_displacement, moved);
-            result_.mean_displacement += moved / static_cast<double>(end.size());
-        }
         for (const Index p : point_of_)
             result_.points.push_back(end[p]);
         return std::move(result_);
@@ -347,6 +342,15 @@ Crossings new_crossings(const std::vector<Triangle>& faces, const std::vector<Ve
     return added;
 }
 
+void measure_displacement(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                          DeformResult& result) {
+    for (std::size_t p = 0; p < before.size(); ++p) {
+        const double moved = (after[p] - before[p]).norm();
+        result.largest_displacement = std::max(result.largest_displacement, moved);
+        result.mean_displacement += moved / static_cast<double>(before.size());
+    }
+}
+
 // Throws where the result is not what was asked for.
 void check(const DeformResult& result, const DeformOptions& options) {
     std::ostringstream text;
@@ -380,17 +384,24 @@ DeformResult deform_to_developable(const Mesh& mesh, const atlas::ChartMap& char
         return points;
     };
     const std::vector<Vec3> before = by_point(mesh.points);
+    const StiffFaces stiff =
+        options.keep_holes ? find_stiff_faces(mesh, point_of)
+                           : StiffFaces{mesh.points, std::vector<std::uint8_t>(before.size(), 0)};
+    const Mesh start = with_points(mesh, stiff.points);
     Attempt attempt{std::vector<double>(before.size(), 1.0),
                     std::vector<std::uint8_t>(mesh.points.size(), 0)};
+    for (std::size_t p = 0; p < before.size(); ++p)
+        attempt.ease[p] = stiff.fixed[p] != 0 ? 0.0 : 1.0;
     const int attempts = options.adjust_slits ? tuning.most_attempts : tuning.attempts;
     DeformResult result;
     while (true) {
         auto deforming = progress.part("deforming to exact developability",
                                        tuning.attempt_share * progress.left());
-        DeformResult next = Deformation(mesh, charts, point_of, options, attempt).run(deforming);
+        DeformResult next = Deformation(start, charts, point_of, options, attempt).run(deforming);
         if (attempt.number > 0 && !options.adjust_slits && !next.converged)
             break;
         result = std::move(next);
+        measure_displacement(before, by_point(result.points), result);
         Crossings added;
         if (result.converged) {
             auto looking = progress.part("looking for intersections", 0.02 * progress.left());

@@ -24,6 +24,7 @@ struct DeformOptions {
     double tolerance = 1e-6;      // radians, at every inner vertex
     bool adjust_slits = true;     // see below
     bool keep_unfinished = false; // return the best state instead of throwing
+    bool keep_holes = true;       // of flat faces exact (stiff_faces.h): what is around them stays
     // With `adjust_slits`, shares of the diagonal of the mesh's box; 0: no bound.
     double max_displacement = 0.03;
     double max_mean_displacement = 0.003;

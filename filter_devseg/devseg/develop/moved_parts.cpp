@@ -8,6 +8,7 @@
 #include "devseg/atlas/holes.h"
 #include "devseg/atlas/slit_closing.h"
 #include "devseg/develop/attempts.h"
+#include "devseg/develop/stiff_faces.h"
 #include "devseg/flatten/energy/rest_shape.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/flatten/one_chart.h"
@@ -26,13 +27,6 @@ struct Hinge {
     double gap = 0.0; // between both sides before they are glued
     std::vector<HalfEdge> edges;
 };
-
-Mesh with_points(const Mesh& mesh, const std::vector<Vec3>& points) {
-    Mesh moved = mesh;
-    moved.points = points;
-    mesh::compute_face_geometry(moved);
-    return moved;
-}
 
 class PartMover {
 public:

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <string>
 
+#include "devseg/atlas/border_path.h"
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/flat_cuts.h"
 #include "devseg/declare/declare.h"
 #include "devseg/develop/deform.h"
 #include "devseg/develop/moved_parts.h"
+#include "devseg/develop/stiff_faces.h"
 
 namespace devseg::filters {
 
@@ -46,25 +49,69 @@ atlas::DiskCuts cut_for_paper(const Mesh& mesh, const atlas::ChartMap& charts, P
                                       progress);
 }
 
+struct Trial {
+    develop::DeformResult result;
+    Index cut_charts = 0; // to disks, before
+    double cost = 0.0;    // of all cuts
+};
+
+Trial run_trial(const FilterInput& input, const atlas::ChartMap& charts,
+                const std::vector<Index>& points, const develop::DeformOptions& options,
+                Progress& progress) {
+    const Mesh& mesh = input.mesh;
+    auto cutting = progress.part("cutting charts to disks", 0.03);
+    const Mesh start =
+        options.keep_holes
+            ? develop::with_points(mesh, develop::find_stiff_faces(mesh, points).points)
+            : mesh;
+    const atlas::DiskCuts cuts = cut_for_paper(start, charts, cutting);
+    auto deforming = progress.part(0.94);
+    Trial trial{develop::deform_to_developable(mesh, cuts.charts, points, options, deforming),
+                cuts.cut_charts};
+    // What was moved beside a hole may have opened it.
+    auto opening = progress.part("cutting charts to disks", progress.left());
+    trial.result.charts =
+        cut_for_paper(develop::with_points(mesh, trial.result.points), trial.result.charts, opening)
+            .charts;
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] > h && trial.result.charts.seam[h] != 0)
+            trial.cost += atlas::cut_cost(mesh, h);
+    return trial;
+}
+
+// Holes of flat faces stay exact where that costs no other cuts: a face that stands still may need
+// more of them around it than one through it.
+Trial run_trials(const FilterInput& input, const std::vector<Index>& points,
+                 const develop::DeformOptions& options, Progress& progress) {
+    const atlas::ChartMap charts = find_charts(input);
+    develop::DeformOptions free = options;
+    free.keep_holes = false;
+    if (atlas::flat_faces_with_holes(input.mesh).empty())
+        return run_trial(input, charts, points, free, progress);
+    develop::DeformOptions stiff = options;
+    stiff.keep_unfinished = true;
+    auto first = progress.part(0.5);
+    Trial held = run_trial(input, charts, points, stiff, first);
+    const bool is_good = held.result.converged && held.result.new_intersections == 0;
+    if (is_good && held.result.added_slits == 0)
+        return held;
+    auto second = progress.part(progress.left());
+    Trial moved = run_trial(input, charts, points, free, second);
+    return is_good && held.cost <= moved.cost ? held : moved;
+}
+
 FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& options,
                         Progress& progress) {
-    auto cutting = progress.part("cutting charts to disks", 0.02);
-    const atlas::DiskCuts cuts = cut_for_paper(input.mesh, find_charts(input), cutting);
-    auto deforming = progress.part(0.7);
+    const Mesh& mesh = input.mesh;
     const std::vector<Index> points = shared_points(input.source_vertex);
-    develop::DeformResult result =
-        develop::deform_to_developable(input.mesh, cuts.charts, points, options, deforming);
-    // What was moved beside a hole may have opened it.
-    Mesh moved = input.mesh;
-    moved.points = result.points;
-    mesh::compute_face_geometry(moved);
-    auto opening = progress.part("cutting charts to disks", 0.02);
-    result.charts = cut_for_paper(moved, result.charts, opening).charts;
+    auto trying = progress.part(0.75);
+    Trial trial = run_trials(input, points, options, trying);
+    develop::DeformResult& result = trial.result;
     auto moving = progress.part(progress.left());
     if (options.adjust_slits && result.converged)
-        develop::move_parts(input.mesh, points, options, result, moving);
+        develop::move_parts(mesh, points, options, result, moving);
     FilterOutput output;
-    const double unit = input.mesh.unit_length;
+    const double unit = mesh.unit_length;
     output.values = {
         {"charts_number", result.charts.count},
         {"inner_vertices_number", result.inner_vertices},
@@ -79,8 +126,8 @@ FilterOutput run_deform(const FilterInput& input, const develop::DeformOptions& 
         {"moved_parts_number", result.moved_parts},
         {"added_intersections_number", result.new_intersections},
     };
-    if (cuts.cut_charts > 0)
-        output.notes.push_back(std::to_string(cuts.cut_charts) +
+    if (trial.cut_charts > 0)
+        output.notes.push_back(std::to_string(trial.cut_charts) +
                                " charts had to be cut open to disks first");
     if (result.added_slits > 0)
         output.notes.push_back(std::to_string(result.added_slits) +
