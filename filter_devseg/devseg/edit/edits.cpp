@@ -58,17 +58,25 @@ double worst_l2(const std::vector<TrialMap>& maps) {
     return worst;
 }
 
+// What `flatten` returns; a chart that has no map refuses the change.
+template <class Flatten>
+auto or_refuse(Flatten flatten) {
+    try {
+        return flatten();
+    } catch (const NumericalFailure& error) {
+        refuse(std::string("the chart cannot be flattened: ") + error.what());
+    }
+}
+
 // Of charts that may be cut apart; with an effort, of charts that are to stay in one piece.
 std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
                               const std::vector<Index>& which, const WholeEffort* effort,
                               Progress& progress) {
-    try {
+    return or_refuse([&] {
         const std::vector<std::vector<Index>> faces = faces_of(charts, which);
         return effort != nullptr ? quick_maps(mesh, faces, charts.seam, *effort, progress)
                                  : judge::final_maps(mesh, faces, charts.seam, progress);
-    } catch (const NumericalFailure& error) {
-        refuse(std::string("the chart cannot be flattened: ") + error.what());
-    }
+    });
 }
 
 void measure(const std::vector<TrialMap>& maps, Edit& edit) {
@@ -193,7 +201,10 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
     std::vector<TrialMap> maps = finish(mesh, changed, &effort, edit, progress);
     check_joined(maps, bounds);
     auto confirming = progress.part("flattening what has changed", progress.left());
-    confirm_maps(mesh, faces_of(edit.charts, changed), edit.charts.seam, effort, maps, confirming);
+    or_refuse([&] {
+        confirm_maps(mesh, faces_of(edit.charts, changed), edit.charts.seam, effort, maps,
+                     confirming);
+    });
     check_joined(maps, bounds);
     measure(maps, edit);
     return edit;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iterator>
 #include <numeric>
 #include <optional>
 
@@ -128,8 +127,9 @@ void judge_stretch(const Mesh& mesh, const atlas::ChartMap& charts, const Bucket
         judge::whole_maps(mesh, tried, charts.seam, {}, progress);
     // Flattening itself tells whether one that does not look whole is cut apart.
     std::vector<std::vector<Index>> doubtful;
-    std::copy_if(tried.begin(), tried.end(), std::back_inserter(doubtful),
-                 [&, i = 0](const auto&) mutable { return !maps[at(i++)].flat; });
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        if (!maps[i].flat)
+            doubtful.push_back(tried[i]);
     const std::vector<judge::TrialMap> known =
         judge::final_maps(mesh, doubtful, charts.seam, progress);
     auto next = known.begin();

@@ -16,10 +16,6 @@ constexpr int motion_rounds = 12;
 // Sooner when the squared distance falls no more below this share of it.
 constexpr double settled = 0.98;
 
-// Corners that lie within the tolerance may have sides between them whose points are twice as far
-// away: squared.
-constexpr double sloping = 4.0;
-
 // Beginnings along an outline that are tried with its waves.
 constexpr std::size_t begins = places;
 
@@ -97,7 +93,6 @@ bool lies_on(const Shape& a, const Shape& b, const Motion& motion, double tolera
 // Brings the points to the nearest ones of the other outline, again and again.
 bool fits_from(const Shape& a, const Shape& b, Motion& motion, double tolerance) {
     double last = infinite;
-    const double most = static_cast<double>(a.even.size()) * sloping * tolerance * tolerance;
     std::vector<Vec2> nearest(a.even.size());
     for (int round = 0; round < motion_rounds; ++round) {
         std::transform(a.even.begin(), a.even.end(), nearest.begin(),
@@ -106,9 +101,6 @@ bool fits_from(const Shape& a, const Shape& b, Motion& motion, double tolerance)
         motion = fit_motion(a.even, nearest, 0, error);
         if (!(error < settled * last))
             break;
-        // Rounds gain less and less.
-        if (error - (motion_rounds - round - 1) * (last - error) > most)
-            return false;
         last = error;
     }
     return lies_on(a, b, motion, tolerance) && lies_on(b, a, motion.inverse(), tolerance);

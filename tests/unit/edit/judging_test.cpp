@@ -110,5 +110,18 @@ TEST(QuickMaps, OfSmallChartsAreTheWholeOnesAndAllKeepTheirOrder) {
     }
 }
 
+TEST(QuickMaps, WhatTheyTakeIsConfirmedOnAllFaces) {
+    const Mesh mesh = checks::gated(hill());
+    Progress progress;
+    const WholeEffort effort;
+    const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
+    std::vector<TrialMap> maps = quick_maps(mesh, faces, no_seams(mesh), effort, progress);
+    const TrialMap whole = judge::whole_maps(mesh, faces, no_seams(mesh), effort, progress).front();
+    ASSERT_NE(maps.front().l2_squared, whole.l2_squared);
+    confirm_maps(mesh, faces, no_seams(mesh), effort, maps, progress);
+    EXPECT_EQ(maps.front().l2_squared, whole.l2_squared);
+    EXPECT_EQ(maps.front().turns.size(), mesh.faces.size());
+}
+
 } // namespace
 } // namespace devseg::edit
