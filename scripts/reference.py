@@ -61,7 +61,7 @@ WRITES = {
     8: "wedge texture coordinates",
     16: "a new layer",
     32: "coordinates of the vertices",
-    64: "split faces, with all that the mesh keeps for faces and vertices",
+    64: "split faces with all their attributes",
     128: "one texture image",
 }
 WRITES_LAYER = 16

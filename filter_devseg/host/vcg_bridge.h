@@ -143,6 +143,39 @@ inline void write_points(CMeshO& m, const std::vector<Vec3>& points) {
     vcg::tri::UpdateNormal<CMeshO>::PerVertexNormalizedPerFace(m);
 }
 
+/// What the result has for face i. Colours, quality, selection and texture stay where the filter
+/// did not touch the face.
+template <class HostFace>
+void write_face(const declare::HostResult& result, std::size_t i, HostFace& f) {
+    const bool stays = !result.untouched.empty() && result.untouched[i] != 0;
+    if (!result.face_quality.empty() && !stays)
+        f.Q() = static_cast<Scalarm>(result.face_quality[i]);
+    if (!result.face_color.empty() && !stays) {
+        const declare::Color& c = result.face_color[i];
+        f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
+    }
+    if (!result.face_selected.empty() && !stays) {
+        if (result.face_selected[i] != 0)
+            f.SetS();
+        else
+            f.ClearS();
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!result.wedge_uv.empty() && !stays) {
+            const Vec2& p = result.wedge_uv[i][static_cast<std::size_t>(k)];
+            f.WT(k).U() = static_cast<float>(p.x());
+            f.WT(k).V() = static_cast<float>(p.y());
+            f.WT(k).N() = 0;
+        }
+        if (!result.seam_edges.empty()) {
+            if ((result.seam_edges[i] >> k) & 1)
+                f.SetFaceEdgeS(k);
+            else
+                f.ClearFaceEdgeS(k);
+        }
+    }
+}
+
 /// Writes what the result holds, after the filter has succeeded; returns the bits of what changed.
 inline unsigned write_host_result(MeshModel& model, const declare::HostResult& result) {
     unsigned changed = MeshModel::MM_NONE;
@@ -171,38 +204,9 @@ inline unsigned write_host_result(MeshModel& model, const declare::HostResult& r
     if (!result.face_selected.empty())
         changed |= MeshModel::MM_FACEFLAGSELECT;
     std::size_t i = 0;
-    for (auto& f : model.cm.face) {
-        if (f.IsD())
-            continue;
-        const bool stays = !result.untouched.empty() && result.untouched[i] != 0;
-        if (!result.face_quality.empty() && !stays)
-            f.Q() = static_cast<Scalarm>(result.face_quality[i]);
-        if (!result.face_color.empty() && !stays) {
-            const declare::Color& c = result.face_color[i];
-            f.C() = vcg::Color4b(c[0], c[1], c[2], 255);
-        }
-        if (!result.face_selected.empty() && !stays) {
-            if (result.face_selected[i] != 0)
-                f.SetS();
-            else
-                f.ClearS();
-        }
-        for (int k = 0; k < 3; ++k) {
-            if (!result.wedge_uv.empty() && !stays) {
-                const Vec2& p = result.wedge_uv[i][static_cast<std::size_t>(k)];
-                f.WT(k).U() = static_cast<float>(p.x());
-                f.WT(k).V() = static_cast<float>(p.y());
-                f.WT(k).N() = 0;
-            }
-            if (!result.seam_edges.empty()) {
-                if ((result.seam_edges[i] >> k) & 1)
-                    f.SetFaceEdgeS(k);
-                else
-                    f.ClearFaceEdgeS(k);
-            }
-        }
-        ++i;
-    }
+    for (auto& f : model.cm.face)
+        if (!f.IsD())
+            write_face(result, i++, f);
     return changed;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* help =
     "Writes the pattern of any model with texture coordinates, true to scale: SVG and DXF for "
-    "cutters and drawing programs, PDF for printers, DXF for apparel CAD (ASTM D6673), and an HTML "
+    "cutters and drawing programs, PDF for printers, and DXF for apparel CAD (ASTM D6673). An HTML "
     "page with the model, its pieces and the steps of the assembly.<br>"
     "A <b>preset</b> switches on what sewing, papercraft or a laser needs.";
 
@@ -39,8 +39,8 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
         .real(
             &O::curve_mm, "Curves within (mm)",
             "Outlines are written as smooth cubic curves of the same lengths that stay within this "
-            "distance, in millimetres (splines in DXF for cutters, fine polylines in DXF for "
-            "apparel CAD). 0 = straight lines between their points.")
+            "distance, in millimetres. They are splines in DXF for cutters and fine polylines in "
+            "DXF for apparel CAD. 0 = straight lines between their points.")
         .real(&O::simplify_mm, "Simplify outlines (mm)",
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
               "moves it by less than this, in millimetres. 0 keeps all vertices.");
@@ -48,10 +48,9 @@ declare::Declare<O> with_scale(declare::Declare<O> filter) {
 
 declare::Declare<O> with_seams(declare::Declare<O> filter) {
     return filter
-        .real(
-            &O::seam_allowance_mm, {"seam_allowance_mm", 0.0, 1e4}, "Seam allowance (mm)",
-            "Width of the allowance along the seams of each piece in millimetres. 0 = none (7 mm with the "
-            "preset Sewing).")
+        .real(&O::seam_allowance_mm, {"seam_allowance_mm", 0.0, 1e4}, "Seam allowance (mm)",
+              "Width of the allowance along the seams of each piece in millimetres. 0 = none (7 mm "
+              "with the preset Sewing).")
         .real(&O::hem_allowance_mm, {"hem_allowance_mm", -1.0, 1e4}, "Hem allowance (mm)",
               "Width of the allowance along open borders of the model in millimetres. 0 = none, "
               "-1 = as along seams, and none around holes.")
@@ -69,17 +68,21 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
         .boolean(&O::match_seams, "match_seams", "Match seams",
                  "Make both sides of each seam equally long, where they differ by more than "
                  "sewing bears.")
-        .real(&O::alike_mm, "Make pieces alike within (mm)",
-              "Pieces whose outlines differ by less than this, in millimetres, as they are or "
-              "mirrored, all get the mean of their outlines, so that one template serves for them. "
-              "0 = none.")
+        .real(
+            &O::alike_mm, "Make pieces alike within (mm)",
+            "Pieces whose outlines differ by less than this, in millimetres, as they are or "
+            "mirrored, all get the mean of their outlines. One template serves for them. 0 = none.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam in millimetres. 0 = none (50 mm with the "
               "preset Sewing).")
         .choice(&O::notch_kind, "notch_kind", "Notches", {"Slit", "Triangle"},
                 "Slit: a line inwards. Triangle: a small triangle to cut out, for thick cloth.")
         .boolean(&O::drill_marks, "drill_marks", "Drill marks",
-                 "A cross where each dart ends inside of its piece.")
+                 "A cross where each dart ends inside of its piece.");
+}
+
+declare::Declare<O> with_folds(declare::Declare<O> filter) {
+    return filter
         .boolean(&O::glue_tabs, "glue_tabs", "Glue tabs",
                  "A flap along one side of each seam. Flaps overlap no piece and no other flap: "
                  "they are made smaller or put on the other side.")
@@ -113,9 +116,10 @@ declare::Declare<O> with_seams(declare::Declare<O> filter) {
 
 declare::Declare<O> with_paper(declare::Declare<O> filter) {
     return filter
-        .text(&O::page, "page", "Page",
-              "Paper to lay the pieces on: none (one sheet as large as it needs to be), a4, "
-              "letter, a3, or width x height in millimetres such as 600x400.")
+        .text(
+            &O::page, "page", "Page",
+            "Paper to lay the pieces on: none (one sheet as large as it needs to be), a4, letter, "
+            "a3, or a size. That is width x height in millimetres such as 600x400.")
         .real(&O::page_margin_mm, {"page_margin_mm", 0.0, 1e3}, "Page margin (mm)",
               "Border of each page that stays empty, in millimetres.")
         .boolean(&O::tiling, "tiling", "Tiling",
@@ -138,8 +142,8 @@ declare::Declare<O> with_paper(declare::Declare<O> filter) {
             "that are laid out anew have it upright; on pages it turns with its piece.")
         .boolean(
             &O::mirror, "mirror", "Mirror",
-            "Draw each sheet as seen from its back, which is the inside of the model: mountain folds "
-            "become valley folds.")
+            "Draw each sheet as seen from its back, which is the inside of the model: mountain "
+            "folds become valley folds.")
         .choice(&O::dxf_kind, "dxf_kind", "Kind of DXF", {"Automatic", "Cutter", "Apparel"},
                 "Cutter: for cutters and drawing programs; Apparel: for apparel CAD (ASTM D6673). "
                 "Automatic takes Apparel with the preset Sewing and Cutter otherwise.");
@@ -187,17 +191,21 @@ declare::Declare<O> with_guide(declare::Declare<O> filter) {
 
 declare::Declare<O> with_cloth(declare::Declare<O> filter) {
     return filters::with_grain(filters::with_material(filter))
-        .real(&O::kerf_mm, {"kerf_mm", -1.0, 100.0}, "Kerf (mm)",
-              "Width that the cut burns away, in millimetres: outlines move outwards and holes "
-              "inwards by half of it. -1 = that of the material with the preset Laser, else 0.")
-        .real(&O::fabric_width_mm, {"fabric_width_mm", 0.0, 1e5}, "Width of the cloth (mm)",
-              "Lays all pieces on a roll of cloth of this width in millimetres, as short as it "
-              "can: a marker, in SVG, PDF or DXF for cutters. 0 = no marker.")
+        .real(
+            &O::kerf_mm, {"kerf_mm", -1.0, 100.0}, "Kerf (mm)",
+            "Width that the cut burns away, in millimetres: outlines move outwards and holes "
+            "inwards by half of it. With -1 it is that of the material with the preset Laser, else "
+            "0.")
+        .real(
+            &O::fabric_width_mm, {"fabric_width_mm", 0.0, 1e5}, "Width of the cloth (mm)",
+            "Lays all pieces on a roll of cloth of this width in millimetres, as short as it can. "
+            "That is a marker, in SVG, PDF or DXF for cutters. 0 = no marker.")
         .real(&O::selvedge_mm, {"selvedge_mm", 0.0, 1e4}, "Selvedge (mm)",
               "Width at each side of the cloth that no piece lies on, in millimetres.")
-        .boolean(&O::fold, "fold", "Folded cloth",
-                 "The cloth is folded along its length: pieces and their mirror images are cut at "
-                 "once, and pieces that are their own mirror images lie along the fold.")
+        .boolean(
+            &O::fold, "fold", "Folded cloth",
+            "The cloth is folded along its length. Pieces and their mirror images are cut at once. "
+            "Pieces that are their own mirror images lie along the fold.")
         .boolean(&O::nap, "nap", "Nap",
                  "All pieces lie the same way round, as pile and prints want it. Materials with a "
                  "nap do so by themselves.")
@@ -207,11 +215,12 @@ declare::Declare<O> with_cloth(declare::Declare<O> filter) {
               "Least distance of two pieces on the cloth in millimetres.")
         .text(&O::material_names, "material_names", "Names of materials",
               "Names of the materials in material_id, in the order of their numbers, with commas "
-              "between them: each has a cloth of its own on a marker. Empty: their numbers.")
-        .text(&O::sizes, "sizes", "Sizes",
-              "Heights of the finished model in millimetres, such as 200,250,300: all sizes over "
-              "each other in colours of their own, with the numbers of the largest. They replace "
-              "height_mm. Empty: the one size.")
+              "between them. Each has a cloth of its own on a marker. Empty: their numbers.")
+        .text(
+            &O::sizes, "sizes", "Sizes",
+            "Heights of the finished model in millimetres, such as 200,250,300. All sizes lie over "
+            "each other in colours of their own, with the numbers of the largest. They replace "
+            "height_mm. Empty: the one size.")
         .choice(&O::effort, "effort", "Effort", {"Fast", "Normal", "Best"},
                 "How long a short layout on the cloth is looked for: Fast takes a third of "
                 "Normal, Best four times as long.");
@@ -311,68 +320,70 @@ declare::FilterOutput run_export(const declare::FilterInput& input,
     return output;
 }
 
+declare::Declare<O> with_results(declare::Declare<O> filter) {
+    return filter.result("pieces_number", "pieces in the file")
+        .result("seams_number", "seams, darts among them")
+        .result("unnumbered_seams_number", "seams without room for the number that they "
+                                           "should have on the pieces")
+        .result("unnamed_pieces_number", "pieces without room for the name that they should "
+                                         "have")
+        .result("untabbed_seams_number", "seams without room for the glue tab that they should "
+                                         "have")
+        .result("sheets_number", "sheets that the pieces lie on")
+        .result("pages_number", "pages of a PDF, cover included, or files of a .png; 0 for other "
+                                "formats")
+        .result("piece_section", "section that each piece is made in, counted from 0")
+        .result("seam_first_piece", "for each seam the piece of its first side, from 0")
+        .result("seam_second_piece", "the same of its second side")
+        .result("seam_step", "step of the assembly that does each seam, from 1")
+        .result("step_kind", "of each step: 1 darts, 2 joins a piece, 3 a piece with itself, "
+                             "4 attaches a section, 5 closes a solid")
+        .result("step_section", "section that each step works on")
+        .result("opening_seam", "number of the seam that each opening lies on")
+        .result("opening_from_mm", "where each opening begins, in mm from the seam's start")
+        .result("opening_to_mm", "where it ends")
+        .result("material_mm2", "area inside all cut lines in mm²")
+        .result("seams_mm", "length of all seams in mm")
+        .result("hems_mm", "length of all hems in mm")
+        .result("sewing_minutes", "time to sew them")
+        .result("stuffing_litres", "volume of the closed solids in litres")
+        .result("stuffing_g", "mass of the stuffing in grams")
+        .result("paper_sheets_number", "pages of the pattern alone; 0 without a page size")
+        .result("piece_strain_along", "of each piece, where there is a material: largest "
+                                      "strain along the grain on the model, 0.05 = 5 %")
+        .result("piece_strain_along_95", "what 95 % of the area keeps")
+        .result("piece_strain_across", "the largest across the grain")
+        .result("piece_strain_across_95", "what 95 % of the area keeps")
+        .result("piece_limit_use", "strain over what the material bears in its direction, on "
+                                   "99 % of the area; within the limits up to 1")
+        .result("piece_worst_use", "the same of the worst face; within the limits up to 2")
+        .result("piece_worst_x_mm", "where that is in the layout of the pattern, in mm")
+        .result("piece_worst_y_mm", "the same upwards")
+        .result("pieces_above_limits_number", "pieces that strain the material too much")
+        .result("seam_ease_mm", "of each seam, how much longer one side is, to be gathered")
+        .result("piece_fabric", "which of the model's materials each piece is cut from, from 0")
+        .result("fabric_area_mm2", "where there are several: area inside the cut lines of each")
+        .result("fabric_lengths_mm", "length of the cloth of each of them on a marker")
+        .result("fabric_uses", "share of each that pieces cover")
+        .result("fabric_length_mm", "length of all cloths of a marker; 0 = no marker")
+        .result("fabric_use", "share of the cloth between selvedges that pieces cover")
+        .result("single_layer_pieces_number", "pieces cut from one layer of folded cloth");
+}
+
 } // namespace
 
 const declare::FilterDeclaration& export_filter() {
-    static const declare::FilterDeclaration filter =
-        with_cloth(with_guide(with_files(with_print(with_paper(with_seams(with_scale(
-                       declare::Declare<O>("Pattern: Export", "export_pattern",
-                                           declare::FilterCategory::texture, help)
-                           .file(&O::output_file, "output_file", "File", "pattern.svg",
-                                 "File to write; its extension says the format: .svg, .pdf, "
-                                 ".dxf, .html or .png, a file for each page."))))))))
-            .needs_uv()
-            .shows_outside()
-            .takes_surface()
-            .result("pieces_number", "pieces in the file")
-            .result("seams_number", "seams, darts among them")
-            .result("unnumbered_seams_number", "seams without room for the number that they "
-                                               "should have on the pieces")
-            .result("unnamed_pieces_number", "pieces without room for the name that they should "
-                                             "have")
-            .result("untabbed_seams_number", "seams without room for the glue tab that they should "
-                                             "have")
-            .result("sheets_number", "sheets that the pieces lie on")
-            .result("pages_number",
-                    "pages of a PDF, cover included, or files of a .png; 0 for other "
-                    "formats")
-            .result("piece_section", "section that each piece is made in, counted from 0")
-            .result("seam_first_piece", "for each seam the piece of its first side, from 0")
-            .result("seam_second_piece", "the same of its second side")
-            .result("seam_step", "step of the assembly that does each seam, from 1")
-            .result("step_kind", "of each step: 1 darts, 2 joins a piece, 3 a piece with itself, "
-                                 "4 attaches a section, 5 closes a solid")
-            .result("step_section", "section that each step works on")
-            .result("opening_seam", "number of the seam that each opening lies on")
-            .result("opening_from_mm", "where each opening begins, in mm from the seam's start")
-            .result("opening_to_mm", "where it ends")
-            .result("material_mm2", "area inside all cut lines in mm²")
-            .result("seams_mm", "length of all seams in mm")
-            .result("hems_mm", "length of all hems in mm")
-            .result("sewing_minutes", "time to sew them")
-            .result("stuffing_litres", "volume of the closed solids in litres")
-            .result("stuffing_g", "mass of the stuffing in grams")
-            .result("paper_sheets_number", "pages of the pattern alone; 0 without a page size")
-            .result("piece_strain_along", "of each piece, where there is a material: largest "
-                                          "strain along the grain on the model, 0.05 = 5 %")
-            .result("piece_strain_along_95", "what 95 % of the area keeps")
-            .result("piece_strain_across", "the largest across the grain")
-            .result("piece_strain_across_95", "what 95 % of the area keeps")
-            .result("piece_limit_use", "strain over what the material bears in its direction, on "
-                                       "99 % of the area; within the limits up to 1")
-            .result("piece_worst_use", "the same of the worst face; within the limits up to 2")
-            .result("piece_worst_x_mm", "where that is in the layout of the pattern, in mm")
-            .result("piece_worst_y_mm", "the same upwards")
-            .result("pieces_above_limits_number", "pieces that strain the material too much")
-            .result("seam_ease_mm", "of each seam, how much longer one side is, to be gathered")
-            .result("piece_fabric", "which of the model's materials each piece is cut from, from 0")
-            .result("fabric_area_mm2", "where there are several: area inside the cut lines of each")
-            .result("fabric_lengths_mm", "length of the cloth of each of them on a marker")
-            .result("fabric_uses", "share of each that pieces cover")
-            .result("fabric_length_mm", "length of all cloths of a marker; 0 = no marker")
-            .result("fabric_use", "share of the cloth between selvedges that pieces cover")
-            .result("single_layer_pieces_number", "pieces cut from one layer of folded cloth")
-            .runs(run_export);
+    static const declare::FilterDeclaration filter = [] {
+        declare::Declare<O> declared("Pattern: Export", "export_pattern",
+                                     declare::FilterCategory::texture, help);
+        declared.file(&O::output_file, "output_file", "File", "pattern.svg",
+                      "File to write; its extension says the format: .svg, .pdf, .dxf, .html or "
+                      ".png, a file for each page.");
+        for (const auto add : {with_scale, with_seams, with_folds, with_paper, with_print,
+                               with_files, with_guide, with_cloth, with_results})
+            declared = add(std::move(declared));
+        return declared.needs_uv().shows_outside().takes_surface().runs(run_export);
+    }();
     return filter;
 }
 

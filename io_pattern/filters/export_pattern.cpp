@@ -159,48 +159,29 @@ sheet::ExportOptions format_options(sheet::ExportOptions options, Format format)
     return options;
 }
 
-} // namespace
-
-PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
-                              const std::vector<Index>& face_material, const surface::Look& look,
-                              const sheet::ExportOptions& given, Progress& progress) {
-    const Format format = format_of(given.output_file);
-    const sheet::ExportOptions options =
-        sheet::limited_to_page(format_options(sheet::resolved(given), format));
-    sheet::page_format(options); // says what is wrong with it before the work begins
-    const bool has_pictures = format == Format::pdf && options.cover; // which take long
-    auto making = progress.part(has_pictures ? 0.2 : 0.5);
-    pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
-    for (const Index seam : options.allowance().zip_seams)
-        if (seam >= static_cast<Index>(pattern.seams.size()))
+void check_zips(const sheet::AllowanceWidths& widths, Index seams) {
+    for (const Index seam : widths.zip_seams)
+        if (seam >= seams)
             throw InvalidParameter("zip_seams: expected numbers of seams up to " +
-                                   std::to_string(pattern.seams.size()) + ", found " +
-                                   std::to_string(seam + 1));
-    sheet::set_fabrics(face_material, options.material_names, pattern);
-    auto laying = progress.part(has_pictures ? 0.15 : 0.3);
-    sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
-    auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
-    if (!options.sizes.empty())
-        sheet::add_sizes(mesh, uv, pattern, options, layout, grading);
-    auto writing = progress.part("writing", progress.left());
-    PatternFile file;
-    file.notes = pattern.notes;
-    const Source source{pattern, layout, options, look};
-    auto drawing = writing.part(0.5);
-    if (format == Format::pdf) {
+                                   std::to_string(seams) + ", found " + std::to_string(seam + 1));
+}
+
+// The bytes of the file, or of each of its pages.
+void write(const Source& source, Format format, Progress& progress, PatternFile& file) {
+    const auto& [pattern, layout, options, look] = source;
+    const std::string title = title_of(options.output_file);
+    auto drawing = progress.part(0.5);
+    if (format == Format::html) {
+        file.bytes = page::page_bytes(pattern, layout, options, title, progress);
+    } else if (format == Format::dxf && is_apparel(options)) {
+        file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options, {title, today()});
+    } else if (format == Format::pdf || format == Format::png) {
         const writers::Document document = make_document(source, drawing, file.notes);
         file.pages = static_cast<Index>(document.pages.size());
-        file.bytes = writers::pdf_bytes(document);
-    } else if (format == Format::png) {
-        const writers::Document document = make_document(source, drawing, file.notes);
-        file.page_bytes = writers::png_pages(document);
-        file.pages = static_cast<Index>(file.page_bytes.size());
-    } else if (format == Format::dxf && is_apparel(options)) {
-        file.bytes = sheet::apparel_dxf_bytes(pattern, layout, options,
-                                              {title_of(options.output_file), today()});
-    } else if (format == Format::html) {
-        file.bytes =
-            page::page_bytes(pattern, layout, options, title_of(options.output_file), writing);
+        if (format == Format::pdf)
+            file.bytes = writers::pdf_bytes(document);
+        else
+            file.page_bytes = writers::png_pages(document);
     } else {
         sheet::ExportOptions drawn = options;
         if (format == Format::dxf) // holds no pictures
@@ -211,7 +192,16 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         file.bytes =
             format == Format::svg ? writers::svg_bytes(sheets) : writers::dxf_bytes(sheets);
     }
-    writing.update(0.5);
+    const int missing = writers::missing_glyphs(title);
+    if (missing > 0 && format == Format::pdf)
+        file.notes.push_back(std::to_string(missing) +
+                             " characters of the file's name are in no font that PDF files get: "
+                             "they are drawn as boxes");
+}
+
+// What the file holds, as numbers and notes.
+void describe(const Source& source, PatternFile& file) {
+    const auto& [pattern, layout, options, look] = source;
     file.pieces = static_cast<Index>(pattern.pieces.size());
     file.seams = static_cast<Index>(pattern.seams.size());
     file.unnumbered_seams = static_cast<Index>(layout.left_out.seams.size());
@@ -226,14 +216,37 @@ PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
         if (pattern.material)
             file.cloth.push_back(piece.cloth);
     }
-    file.fabrics = std::move(layout.fabrics);
-    const int missing = writers::missing_glyphs(title_of(options.output_file));
-    if (missing > 0 && format == Format::pdf)
-        file.notes.push_back(std::to_string(missing) +
-                             " characters of the file's name are in no font that PDF files get: "
-                             "they are drawn as boxes");
+    file.fabrics = layout.fabrics;
     for (std::string& note : sheet::layout_notes(pattern, layout))
         file.notes.push_back(std::move(note));
+}
+
+} // namespace
+
+PatternFile make_pattern_file(const Mesh& mesh, const CornerUv& uv,
+                              const std::vector<Index>& face_material, const surface::Look& look,
+                              const sheet::ExportOptions& given, Progress& progress) {
+    const Format format = format_of(given.output_file);
+    const sheet::ExportOptions options =
+        sheet::limited_to_page(format_options(sheet::resolved(given), format));
+    sheet::page_format(options); // says what is wrong with it before the work begins
+    const bool has_pictures = format == Format::pdf && options.cover; // which take long
+    auto making = progress.part(has_pictures ? 0.2 : 0.5);
+    pattern::Pattern pattern = pattern::make_pattern(mesh, uv, options, making);
+    check_zips(options.allowance(), static_cast<Index>(pattern.seams.size()));
+    sheet::set_fabrics(face_material, options.material_names, pattern);
+    auto laying = progress.part(has_pictures ? 0.15 : 0.3);
+    sheet::PatternLayout layout = sheet::lay_out_pattern(pattern, options, laying);
+    auto grading = progress.part("other sizes", has_pictures ? 0.05 : 0.1);
+    if (!options.sizes.empty())
+        sheet::add_sizes(mesh, uv, pattern, options, layout, grading);
+    auto writing = progress.part("writing", progress.left());
+    PatternFile file;
+    file.notes = pattern.notes;
+    const Source source{pattern, layout, options, look};
+    write(source, format, writing, file);
+    writing.update(0.5);
+    describe(source, file);
     return file;
 }
 

@@ -164,6 +164,17 @@ void add_underlines(const SheetPiece& piece, writers::DrawingLayer& layer) {
     add_lines(lines, false, piece, "-underline", layer);
 }
 
+// The squares to check the scale with, side by side.
+void add_squares(const Vec2& low, double gap, writers::DrawingLayer& marks) {
+    double x = low.x();
+    for (const CheckSquare& square : check_squares) {
+        const Vec2 side = Vec2::Constant(square.side);
+        marks.paths.push_back({"", {rectangle(Vec2(x, low.y()), side)}});
+        marks.texts.push_back({Vec2(x, low.y()) + 0.5 * side, page_text, square.text});
+        x += square.side + gap;
+    }
+}
+
 // Where the lowest line of text or picture of a page is.
 double lowest_mark(const writers::DocumentPage& page) {
     double low = page.height;
@@ -327,13 +338,7 @@ void add_overview(const PatternLayout& layout, const writers::Drawing& drawing,
     const double foot = check_squares[1].side + 2.0 * page_text;
     const bool has_squares = room.x() >= squares && room.y() >= 2.5 * foot;
     if (has_squares) {
-        double x = low.x();
-        for (const CheckSquare& square : check_squares) {
-            const Vec2 side = Vec2::Constant(square.side);
-            marks.paths.push_back({"", {rectangle(Vec2(x, low.y()), side)}});
-            marks.texts.push_back({Vec2(x, low.y()) + 0.5 * side, page_text, square.text});
-            x += square.side + format.margin;
-        }
+        add_squares(low, format.margin, marks);
         room.y() -= foot;
     }
     room.y() -= 2.0 * page_title;

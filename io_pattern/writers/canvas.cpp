@@ -18,8 +18,7 @@ namespace devseg::writers {
 namespace {
 
 constexpr double pixels_per_mm = 300.0 / 25.4;
-constexpr double line_width = 0.2; // mm, as in PDF files
-constexpr double chord = 0.02;     // mm, between curves and their lines
+constexpr double chord = 0.02; // mm, between curves and their lines
 
 // A page of pixels, drawn on in millimetres from its lower left corner.
 class Canvas {

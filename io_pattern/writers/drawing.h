@@ -14,6 +14,8 @@
 
 namespace devseg::writers {
 
+constexpr double line_width = 0.2; // mm, on paper: still seen where a hairline is not
+
 /// A cubic Bézier curve, or a straight line that is written as one.
 struct DrawingCurve {
     std::array<Vec2, 4> control{Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};

@@ -18,7 +18,7 @@ namespace devseg::writers {
 namespace {
 
 constexpr int quality = 92;
-constexpr int longest_side = 65535; // what the format can say
+constexpr int most_pixels = 65535; // what the format can say
 
 // The library's own answers to errors write to the terminal and end the process. It is C, through
 // which no exception may pass.
@@ -74,10 +74,10 @@ bool encode(const DrawingImage& image, std::uint8_t** bytes, unsigned long* size
 
 std::string jpeg_bytes(const DrawingImage& image) {
     if (std::min(image.columns, image.rows) < 1 ||
-        std::max(image.columns, image.rows) > longest_side)
-        throw InvalidParameter("page: expected pictures of at most " +
-                               std::to_string(longest_side) + " pixels on each side, found " +
-                               std::to_string(image.columns) + " x " + std::to_string(image.rows));
+        std::max(image.columns, image.rows) > most_pixels)
+        throw InvalidParameter("page: expected pictures of at most " + std::to_string(most_pixels) +
+                               " pixels on each side, found " + std::to_string(image.columns) +
+                               " x " + std::to_string(image.rows));
     std::uint8_t* bytes = nullptr;
     unsigned long size = 0;
     const bool done = encode(image, &bytes, &size);

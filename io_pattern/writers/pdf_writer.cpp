@@ -18,7 +18,6 @@ namespace devseg::writers {
 namespace {
 
 constexpr double points_per_mm = 72.0 / 25.4;
-constexpr double line_width = 0.2;       // mm, still seen on paper where a hairline is not
 constexpr double largest_page = 14400.0; // user units, what readers take
 constexpr int scale_decimals = 8;        // of factors, that multiply lengths of metres
 

@@ -1,6 +1,7 @@
 #include "devseg/atlas/fragments.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <utility>
@@ -11,6 +12,8 @@
 namespace devseg::atlas {
 
 namespace {
+
+constexpr int tooth_rounds = 12; // of taking teeth away: a tooth behind a tooth is rare
 
 // The pieces as a graph: their areas, and the lengths of their common borders.
 struct PieceGraph {
@@ -74,6 +77,28 @@ std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& 
     for (Index& p : pieces.chart)
         p = owner.find(p);
     return make_chart_map(mesh, pieces.chart, {}, false).chart;
+}
+
+void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
+    bool changed = true;
+    for (int round = 0; round < tooth_rounds && changed; ++round) {
+        changed = false;
+        for (const Face f : mesh.all_faces()) {
+            std::array<Index, 3> other{-1, -1, -1};
+            for (const HalfEdge h : half_edges_of(f)) {
+                const HalfEdge twin = mesh.twin[h];
+                if (twin >= 0 && label[face_of(twin)] != label[f])
+                    other[corner_of(h)] = label[face_of(twin)];
+            }
+            for (std::size_t k = 0; k < 3; ++k)
+                if (other[k] >= 0 && other[k] == other[(k + 1) % 3] &&
+                    other[(k + 2) % 3] != other[k]) {
+                    label[f] = other[k];
+                    changed = true;
+                    break;
+                }
+        }
+    }
 }
 
 } // namespace devseg::atlas

@@ -1,4 +1,4 @@
-// Small pieces that no chart needs.
+// Small pieces and single faces that no chart needs.
 #pragma once
 
 #include <vector>
@@ -12,5 +12,9 @@ namespace devseg::atlas {
 /// stay. Returns edge-connected labels 0 … n − 1; `label` is #F.
 std::vector<Index> absorb_fragments(const Mesh& mesh, const std::vector<Index>& label,
                                     double share);
+
+/// Gives faces that stick out of their label, with two edges to one other label, to that one, again
+/// and again.
+void remove_teeth(const Mesh& mesh, std::vector<Index>& label);
 
 } // namespace devseg::atlas

@@ -11,7 +11,7 @@ namespace {
 
 // Charts whose boundary lengths agree to this share were flattened to keep them. Coordinates of 32
 // bit change the length of a short boundary by about a tenth of that.
-constexpr double same_length = 1e-4;
+constexpr double same_edge = 1e-4;
 // Charts are at one scale where the areas or boundaries of all are true to this share: flattenings
 // keep one of them up to rounding, atlases for painting differ by factors.
 constexpr double same_scale = 0.01;
@@ -116,7 +116,7 @@ struct ChartSizes {
         const auto sum = [](const std::vector<double>& values) {
             return std::accumulate(values.begin(), values.end(), 0.0);
         };
-        if (least > 0.0 && most <= (1.0 + same_length) * least)
+        if (least > 0.0 && most <= (1.0 + same_edge) * least)
             return sum(surface_length) / sum(plane_length);
         return sum(plane) > 0.0 ? std::sqrt(sum(surface) / sum(plane)) : 0.0;
     }

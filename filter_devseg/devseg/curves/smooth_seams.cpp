@@ -89,7 +89,7 @@ void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face
 
 double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
                        const SmoothOptions& options) {
-    return std::max(options.smoothness * mesh::mesh_diagonal(mesh),
+    return std::max(options.smoothness * mesh.diagonal(),
                     tuning.least_edges * mean_edge(mesh, charts));
 }
 

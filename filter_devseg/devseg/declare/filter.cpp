@@ -388,10 +388,10 @@ Parameter weld_parameter() {
     return {
         weld_range.name,
         "Join vertices within",
-        "Vertices at the same place are read as one where that closes open edges, as files have "
-        "them that give a vertex to each normal or texture coordinate, and where an edge without "
-        "length joins them. 0 = at the same place; above: up to this share of the model's size; "
-        "-1 = none are joined.",
+        "Vertices at the same place are read as one where that closes open edges, or where an edge "
+        "without length joins them. Files have them that give a vertex to each normal or texture "
+        "coordinate. 0 = at the same place; above: up to this share of the model's size; -1 = none "
+        "are joined.",
         ParameterKind::real,
         mesh::GateOptions().weld,
         weld_range.minimum,

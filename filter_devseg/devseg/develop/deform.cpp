@@ -220,19 +220,9 @@ private:
             else if (block >= cut_after && options_.adjust_slits &&
                      add_slits(cut_after, options_.tolerance, tuning.most_slits_at_once))
                 continue;
-            // Slits cost parts: they are few as long as there is time, and then as many as it
-            // takes.
-            if (options_.adjust_slits && effort_ > tuning.late * options_.max_iterations &&
-                result_.rounds % tuning.gainless_rounds == 0) {
-                if (projection_.residual() >
-                        std::max(options_.tolerance, tuning.late_gain * late_residual_) &&
-                    add_slits(0, std::max(options_.tolerance, 0.1 * projection_.residual()),
-                              rows_.size())) {
-                    failed = 0;
-                    late_residual_ = projection_.residual();
-                    continue;
-                }
-                late_residual_ = projection_.residual();
+            if (add_late_slits()) {
+                failed = 0;
+                continue;
             }
             if (failed < tuning.gainless_rounds)
                 continue;
@@ -246,6 +236,19 @@ private:
         }
         if (focused_)
             constrain_all();
+    }
+
+    // Slits cost parts: they are few as long as there is time, and then as many as it takes.
+    bool add_late_slits() {
+        const bool is_late = effort_ > tuning.late * options_.max_iterations;
+        if (!options_.adjust_slits || !is_late || result_.rounds % tuning.gainless_rounds != 0)
+            return false;
+        const double residual = projection_.residual();
+        const bool added =
+            residual > std::max(options_.tolerance, tuning.late_gain * late_residual_) &&
+            add_slits(0, std::max(options_.tolerance, 0.1 * residual), rows_.size());
+        late_residual_ = projection_.residual();
+        return added;
     }
 
     // Cuts to vertices with defects above `least` that were blocked for so many rounds; to the

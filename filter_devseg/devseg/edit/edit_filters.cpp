@@ -41,34 +41,36 @@ using SeamOptions = Options<SeamFields>;
 using DartOptions = Options<DartFields>;
 
 constexpr const char* join_help =
-    "Joins the charts that the selected faces touch to one, and judges that by flattening it. It is "
-    "refused, with the stretch that it would cost, where the joined chart stretches by more than a "
-    "bound, or would lie on itself. A joined chart that is no disk is cut open. One of more than 8,000 "
-    "faces is judged decimated to so many first.<br>"
+    "Joins the charts that the selected faces touch to one, and judges that by flattening it. It "
+    "is refused, with the stretch that it would cost, where the joined chart stretches by more "
+    "than a bound, or would lie on itself. A joined chart that is no disk is cut open. One of more "
+    "than 8,000 faces is judged decimated to so many first.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Scripts name charts by their numbers on the pattern. "
     "Flatten the charts afterwards.";
 
 constexpr const char* split_help =
-    "Splits the charts that the selected faces touch: along the borders of the selected faces and "
-    "along selected edges, which are led on to the chart's border; or, where these do not divide a "
-    "chart, the best way in two, as 'Segmentation: D-Charts' splits charts above their bound.<br>"
+    "Splits the charts that the selected faces touch, along the borders of the selected faces and "
+    "along selected edges. Edges are led on to the chart's border. Charts that these do not divide "
+    "are split the best way in two, as 'Segmentation: D-Charts' splits charts above their "
+    "bound.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Scripts name charts by their numbers on the pattern. "
     "Flatten the charts afterwards.";
 
 constexpr const char* remove_help =
     "Takes away the seams that lie between selected faces, or, where no face is selected, the "
-    "selected edges: charts on both sides are joined, and darts are closed. It is refused, with the "
-    "stretch that it would cost, where a chart stretches by more than a bound then, or would lie on "
-    "itself.<br>"
+    "selected edges. Charts on both sides are joined, and darts are closed. It is refused, with "
+    "the stretch that it would cost, where a chart stretches by more than a bound then, or would "
+    "lie on itself.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Scripts name seams by their numbers on the pattern. "
     "Flatten the charts afterwards.";
 
 constexpr const char* dart_help =
-    "Cuts a dart to each selected vertex: a short path from the border of its chart, or from another "
-    "dart, on which creases count less. It is refused where that does not lower the stretch.<br>"
+    "Cuts a dart to each selected vertex: a short path from the border of its chart, or from "
+    "another dart, on which creases count less. It is refused where that does not lower the "
+    "stretch.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
     "from the wedge texture coordinates. Flatten the charts afterwards.";
 

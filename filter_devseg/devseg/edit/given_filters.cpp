@@ -47,12 +47,12 @@ constexpr const char* edges_help =
     "segmentation all of its seams are selected edges: select faces, and their border is added to "
     "the seams.<br>"
     "A cut that ends inside the surface is led on to another cut, to the border of the mesh, or to "
-    "its own other end, by the shortest natural path ahead of it. Leaves the face attributes "
+    "its own other end. It takes the shortest natural path ahead of it. Leaves the face attributes "
     "<b>chart_id</b> and <b>seam_edges</b> and a colour for each chart.";
 
 constexpr const char* texture_help =
     "Makes charts of the islands of existing texture coordinates, such as Blender's seams leave in "
-    "a file: an edge is a seam where the coordinates on its two sides differ.<br>"
+    "a file. An edge is a seam where the coordinates on its two sides differ.<br>"
     "Leaves the face attributes <b>chart_id</b> and <b>seam_edges</b> and a colour for each chart. "
     "'Charts: Flatten' then gives each island its true size.";
 
@@ -63,7 +63,7 @@ constexpr const char* materials_help =
     "Leaves the face attributes <b>chart_id</b> and <b>seam_edges</b> and a colour for each chart.";
 
 constexpr const char* open_help =
-    "Cuts the mesh open along the seams of its charts, darts and slits included: each side gets "
+    "Cuts the mesh open along the seams of its charts, darts and slits included. Each side gets "
     "vertices of its own, which other programs need that keep texture coordinates at vertices. "
     "Attributes are carried over.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "

@@ -15,9 +15,9 @@ constexpr const char* disks_help =
     "chart is closed. Holes that lie flat need no slit: they stay holes. Cuts go around flat faces "
     "where they can. Tips that no flattening maps well, such as those of fingers and horns, are "
     "cut open as well.<br>"
-    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
-    "coordinates, and without those each connected component of the mesh is a chart. The cuts are "
-    "added to <b>seam_edges</b>.<br>"
+    "Charts are read from the face attribute <b>chart_id</b>. Without it they are read from the "
+    "wedge texture coordinates, and without those each connected component of the mesh is a chart. "
+    "The cuts are added to <b>seam_edges</b>.<br>"
     "See:<br><i>Jeff Erickson, Sariel Har-Peled</i><br>"
     "<b>\"Optimally Cutting a Surface into a Disk\"</b><br>"
     "Discrete &amp; Computational Geometry 31, 2004, doi:10.1007/s00454-003-2948-z<br>"
@@ -28,8 +28,8 @@ constexpr const char* disks_help =
 constexpr const char* colorize_help =
     "Gives each chart a colour, so that neighbours differ clearly. The same charts always get the "
     "same colours.<br>"
-    "Charts are read from the face attribute <b>chart_id</b>; without it from the wedge texture "
-    "coordinates, and without those each connected component of the mesh is a chart.";
+    "Charts are read from the face attribute <b>chart_id</b>. Without it they are read from the "
+    "wedge texture coordinates, and without those each connected component of the mesh is a chart.";
 
 FilterOutput run_disks(const FilterInput& input, const atlas::DiskOptions& options,
                        Progress& progress) {
@@ -59,9 +59,10 @@ FilterDeclaration disks() {
     return Declare<atlas::DiskOptions>("Charts: Cut to Disks",
                                        "compute_seams_charts_to_disks_per_edge",
                                        FilterCategory::remeshing, disks_help)
-        .boolean(&atlas::DiskOptions::cut_tips, "cut_tips", "Cut tips",
-                 "Cut charts open up to tips as well: to vertices at least as far from the border "
-                 "as the border is long, and to the ends of horns.")
+        .boolean(
+            &atlas::DiskOptions::cut_tips, "cut_tips", "Cut tips",
+            "Cut charts open up to tips as well. Tips are vertices at least as far from the border "
+            "as the border is long, and the ends of horns.")
         .writes(writes_charts)
         .result("charts_number", "charts, each a disk but for flat holes")
         .result("cut_charts_number", "charts that were cut")

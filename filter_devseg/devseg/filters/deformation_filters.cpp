@@ -15,12 +15,13 @@ namespace {
 constexpr const char* deform_help =
     "Moves the vertices as little as possible until every chart can be laid flat <i>exactly</i>, "
     "like paper: until the angles around every vertex inside of a chart sum up to 360 degrees. "
-    "Vertices on the borders of charts and on slits are free. Connectivity stays, no face is turned "
-    "over or collapses. 'Charts: Flatten' then unfolds the charts without any stretch.<br>"
+    "Vertices on the borders of charts and on slits are free. Connectivity stays, no face is "
+    "turned over or collapses. 'Charts: Flatten' then unfolds the charts without any stretch.<br>"
     "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>, whichever "
     "method made them; without them from the texture coordinates, and without those each connected "
-    "component of the mesh is a chart. Charts that are not disks are cut first; holes that lie flat exactly stay. Where the tolerance "
-    "is not reached the mesh stays as it is, unless the best state is asked for.<br>"
+    "component of the mesh is a chart. Charts that are not disks are cut first; holes that lie "
+    "flat exactly stay. Where the tolerance is not reached the mesh stays as it is, unless the "
+    "best state is asked for.<br>"
     "See:<br><i>Kuniko Takahashi, Tomohiro Tachi, Yasushi Yamaguchi</i><br>"
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
     "Journal for Geometry and Graphics 19(1), 2015, pages 119-129<br>"
@@ -112,7 +113,7 @@ std::vector<FilterDeclaration> deformation_filters() {
                      "Where the tolerance is not reached, take the best state instead of leaving "
                      "the mesh as it is.")
             .real(&O::max_displacement, "Largest displacement",
-                  "How far a vertex may move, as a share of the diagonal of the model's box; where "
+                  "How far a vertex may move, as a share of the diagonal of the model's box. Where "
                   "more would be needed, slits are cut (with 'Adjust slits'). 0 = no limit.")
             .real(&O::max_mean_displacement, "Largest mean displacement",
                   "The same share for the mean over all vertices. 0 = no limit.")

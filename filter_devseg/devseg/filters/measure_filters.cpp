@@ -17,10 +17,9 @@ namespace {
 constexpr const char* segmentation_help =
     "Measures a segmentation: how many charts, how long the seams, how developable the charts. "
     "Nothing is changed.<br>"
-    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
-    "from the wedge texture coordinates, and without those each connected component of the mesh is "
-    "a chart. The values are returned to scripts and "
-    "written to the log.";
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>. Without them "
+    "they are read from the wedge texture coordinates, and without those each connected component "
+    "of the mesh is a chart. The values are returned to scripts and written to the log.";
 
 constexpr const char* parametrization_help =
     "Measures how well texture coordinates keep the shape of the surface, whoever made them. "
@@ -32,13 +31,13 @@ constexpr const char* parametrization_help =
     "SIGGRAPH, 2001, doi:10.1145/383259.383307";
 
 constexpr const char* circle_help =
-    "Measures how well charts can be flattened at all, without any flattening method: each chart "
-    "is mapped to a disc, its boundary to the circle by length and its inside conformally, and the "
-    "L2 stretch of that map is taken with the disc scaled to the chart's area.<br>"
-    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>; without them "
-    "from the wedge texture coordinates, and without those each connected component of the mesh is "
-    "a chart. Those that are no disks are measured as 'Charts: Cut to Disks' opens them, without "
-    "cuts to tips.<br>"
+    "Measures how well charts can be flattened at all, without any flattening method. Each chart "
+    "is mapped to a disc, its boundary to the circle by length and its inside conformally. The L2 "
+    "stretch of that map is taken with the disc scaled to the chart's area.<br>"
+    "Charts are read from the face attributes <b>chart_id</b> and <b>seam_edges</b>. Without them "
+    "they are read from the wedge texture coordinates, and without those each connected component "
+    "of the mesh is a chart. Those that are no disks are measured as 'Charts: Cut to Disks' opens "
+    "them, without cuts to tips.<br>"
     "See:<br><i>Hitoshi Yamauchi, Stefan Gumhold, Rhaleb Zayer, Hans-Peter Seidel</i><br>"
     "<b>\"Mesh Segmentation Driven by Gaussian Curvature\"</b><br>"
     "The Visual Computer 21, 2005, doi:10.1007/s00371-005-0319-x<br>"

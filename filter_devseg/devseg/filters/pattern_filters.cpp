@@ -26,9 +26,9 @@ constexpr const char* pieces_help =
     "Faces are coloured by strain: red where the material is longer on paper than on the model, "
     "blue where it is shorter, white where it keeps its length. The face quality is the strain "
     "(0.05 = 5 %). With a material, colour and quality tell the share of what it bears in that "
-    "direction: red where it is stretched on the model, blue where it is compressed, in full colour "
-    "at its limit and darker above. The face attribute <b>piece_id</b> the number of the piece from 0, and "
-    "<b>source_face</b> the number of the face on the model.";
+    "direction: red where it is stretched on the model, blue where it is compressed, in full "
+    "colour at its limit and darker above. The face attribute <b>piece_id</b> the number of the "
+    "piece from 0, and <b>source_face</b> the number of the face on the model.";
 
 constexpr const char* measures_help =
     "Measures the pattern of a model with texture coordinates, whoever made them: pieces and their "
@@ -73,20 +73,20 @@ Declare<O> with_seams(Declare<O> filter) {
     return filter
         .real(&O::simplify_mm, "Simplify outlines (mm)",
               "Vertices of an outline are left out, on both sides of a seam at once, where that "
-              "moves it by less than this, in millimetres; less on pieces below 100 mm, in "
+              "moves it by less than this, in millimetres. On pieces below 100 mm it is less, in "
               "proportion to their size. 0 keeps all vertices.")
         .boolean(&O::match_seams, "match_seams", "Match seams",
-                 "Make both sides of each seam equally long, where they differ by more than "
-                 "sewing bears, by changing the angles of the outlines as little as possible.")
+                 "Make both sides of each seam equally long, where they differ by more than sewing "
+                 "bears. The angles of the outlines change as little as possible.")
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
         .real(&O::alike_mm, "Make pieces alike within (mm)",
               "Pieces whose outlines differ by less than this, in millimetres (and 3 % of their "
-              "size), as they are or mirrored, all get the mean of their outlines; so does a piece "
+              "size), as they are or mirrored, all get the mean of their outlines. So does a piece "
               "that is so near to its own mirror image. 0 = none.")
         .real(&O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
-              "Pieces whose outlines, turned and moved onto each other, differ by less than this, "
-              "in millimetres (and a hundredth of their size), have the same shape.");
+              "Pieces have the same shape if their outlines, turned and moved onto each other, "
+              "differ by less than this. In millimetres, and a hundredth of their size.");
 }
 
 std::uint8_t faded(double share) {
@@ -179,8 +179,7 @@ using Piece = pattern::PatternPiece;
 using pattern::Seam;
 
 double grain_angle(const Piece& piece) {
-    constexpr double degrees = 180.0 / pi;
-    return degrees * std::atan2(piece.grain_direction.y(), piece.grain_direction.x());
+    return (180.0 / pi) * std::atan2(piece.grain_direction.y(), piece.grain_direction.x());
 }
 
 ResultValues measure_pieces(const pattern::Pattern& pattern) {
@@ -312,7 +311,7 @@ FilterDeclaration optimize() {
               "Charts are small below this share of the model's area: 0.02 = 2 %.")
         .real(&O::merge_threshold, {"merge_threshold", 0.0, 4.0}, "Merge threshold",
               "Largest mean fitting error of a small chart's faces with the conic proxy of both "
-              "charts together, no unit, from 0 (exactly developable) to 4 (anything).")
+              "charts together. No unit, from 0 (exactly developable) to 4 (anything).")
         .real(&O::max_dart_angle, {"max_dart_angle", 0.0, 180.0}, "Narrowest dart (degrees)",
               "Darts that open by less, in degrees, are glued again from their tips on. 0 = none.")
         .choice(&O::effort, "effort", "Effort of packing", effort_names(), effort_help)

@@ -29,9 +29,6 @@ FilterOutput run_preview(const FilterInput& input, const pattern::SewnOptions& o
     const Mesh& mesh = input.mesh;
     auto sewing = progress.part("sewing and stuffing", 1.0);
     const pattern::SewnPreview preview = pattern::sew_and_inflate(mesh, *input.uv, options, sewing);
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : mesh.points)
-        box.extend(p);
     LayerMesh layer;
     layer.name = "sewn preview";
     for (const Vec3& p : preview.points)
@@ -41,7 +38,7 @@ FilterOutput run_preview(const FilterInput& input, const pattern::SewnOptions& o
         double distance = 0.0;
         for (const Vertex v : t)
             distance += preview.distance[v] / 3.0;
-        const double share = std::min(1.0, distance / (red_at * box.diagonal().norm()));
+        const double share = std::min(1.0, distance / (red_at * mesh.diagonal()));
         const auto fade = static_cast<std::uint8_t>(255.0 * (1.0 - share));
         layer.face_color.push_back({255, fade, fade});
         layer.face_quality.push_back(distance * mesh.unit_length);

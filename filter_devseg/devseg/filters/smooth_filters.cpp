@@ -16,13 +16,14 @@ using namespace declare;
 namespace {
 
 constexpr const char* smooth_help =
-    "Makes every seam between charts, every dart and every slit a smooth curve on the surface, free "
-    "of the mesh's edges, and splits the faces along it. The surface stays the same: new vertices "
-    "lie on old faces, and all attributes of faces and vertices are carried over.<br>"
+    "Makes every seam between charts, every dart and every slit a smooth curve on the surface, "
+    "free of the mesh's edges, and splits the faces along it. The surface stays the same: new "
+    "vertices lie on old faces, and all attributes of faces and vertices are carried over.<br>"
     "Junctions slide with their seams. Seams on creases and the ends of seams on the mesh's border "
-    "stay where they are, and so does a seam that cannot be moved soundly; <b>kept_seams_number</b> "
-    "counts them. Charts are read from the face attribute <b>chart_id</b>; without it from the "
-    "wedge texture coordinates. Flatten the charts afterwards.<br>"
+    "stay where they are, and so does a seam that cannot be moved soundly; "
+    "<b>kept_seams_number</b> counts them. Charts are read from the face attribute "
+    "<b>chart_id</b>; without it from the wedge texture coordinates. Flatten the charts "
+    "afterwards.<br>"
     "See:<br><i>Stephan Bischoff, Tobias Weyand, Leif Kobbelt</i><br>"
     "<b>\"Snakes on Triangle Meshes\"</b><br>"
     "Bildverarbeitung f&uuml;r die Medizin, 2005, doi:10.1007/3-540-26431-0_43";
@@ -286,9 +287,10 @@ std::vector<FilterDeclaration> smooth_filters() {
     return {
         Declare<O>("Charts: Smooth Seams", "meshing_smooth_chart_seams", FilterCategory::remeshing,
                    smooth_help)
-            .real(&O::smoothness, "Smoothness",
-                  "Length of the waves that go, as a share of the diagonal of the model's box: "
-                  "0.01 = 1 %; at least that of the edges on seams.")
+            .real(
+                &O::smoothness, "Smoothness",
+                "Length of the waves that go, as a share of the diagonal of the model's box: 0.01 "
+                "= 1 %. It is at least that of the edges on seams.")
             .real(&O::keep_creases, "Keep creases (degrees)",
                   "Seams on edges where the surface bends by more, in degrees, stay where they "
                   "are. 180 = none.")
@@ -296,11 +298,10 @@ std::vector<FilterDeclaration> smooth_filters() {
                 &O::symmetric, "symmetric", "Symmetric",
                 "Where the model is nearly its own mirror image, seams that nearly mirror each "
                 "other do so exactly, whatever its faces are.")
-            .real(
-                &O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
-                "Seams of a chart stay on their edges where smooth ones bring its root mean "
-                "square stretch, which has no unit, above this bound. 0 = none, which saves the trial "
-                "flattenings.")
+            .real(&O::max_chart_l2_stretch, "Largest L2 stretch of a chart",
+                  "Seams of a chart stay on their edges where smooth ones bring its root mean "
+                  "square stretch, which has no unit, above this bound. 0 = none, which saves the "
+                  "trial flattenings.")
             .real(&O::max_strain, "Largest strain of a chart",
                   "The same for cloth: seams of a chart stay where smooth ones strain 99 % of its "
                   "area by more than this share in any direction. 0 = none.")

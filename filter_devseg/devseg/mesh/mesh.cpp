@@ -59,6 +59,9 @@ void compute_face_geometry(Mesh& mesh) {
         }
     }
     spread_normals(mesh, std::move(without_normal));
+    mesh.box.setEmpty();
+    for (const Vec3& p : mesh.points)
+        mesh.box.extend(p);
 }
 
 } // namespace devseg::mesh

@@ -55,6 +55,7 @@ struct Mesh : Connectivity {
     std::vector<double> face_areas; // #F, internal units squared
     std::vector<Vec3> face_normals; // #F, unit; faces without area take a neighbour's normal
     std::vector<Vec3> face_centers; // #F, centroids
+    Eigen::AlignedBox3d box;        // around the points
     double total_area = 0.0;
     double unit_length = 1.0; // model units per internal unit
     double whole_area = 0.0;  // of the model that this is a part of; 0 = it is no part
@@ -64,9 +65,11 @@ struct Mesh : Connectivity {
     /// What gaps and tolerances in the plane refer to: the same for all parts of a model.
     double model_area() const { return whole_area > 0.0 ? whole_area : total_area; }
     double edge_length(HalfEdge h) const { return (points[target(h)] - points[origin(h)]).norm(); }
+    /// Of the box, internal units.
+    double diagonal() const { return box.diagonal().norm(); }
 };
 
-/// Fills areas, normals, centres and the total area from points and faces.
+/// Fills areas, normals, centres, the total area and the box from points and faces.
 void compute_face_geometry(Mesh& mesh);
 
 /// One label for each face, 0 … count − 1: the connected components of the faces over edges for

@@ -75,7 +75,6 @@ MirrorPlane fit_plane(const std::vector<Pairing>& pairs, std::size_t count) {
 
 std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
     Vec3 center = Vec3::Zero();
-    Eigen::AlignedBox3d box;
     for (const Face f : mesh.all_faces())
         center += mesh.face_areas[f] / mesh.total_area * mesh.face_centers[f];
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -83,8 +82,6 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
         const Vec3 d = mesh.face_centers[f] - center;
         spread += mesh.face_areas[f] * d * d.transpose();
     }
-    for (const Vec3& p : mesh.points)
-        box.extend(p);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
     std::vector<MirrorPlane> planes;
     const Eigen::Matrix3d& axes = solver.eigenvectors();
@@ -95,7 +92,7 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
               Vec3((axes.col(k) - axes.col((k + 1) % 3)).normalized())})
             normals.push_back(normal);
     for (const Vec3& normal : normals)
-        for (const Vec3& point : {center, Vec3(box.center())})
+        for (const Vec3& point : {center, Vec3(mesh.box.center())})
             planes.push_back({normal, normal.dot(point), 0.0});
     return planes;
 }
@@ -103,7 +100,7 @@ std::vector<MirrorPlane> first_guesses(const Mesh& mesh) {
 class PlaneFinder {
 public:
     PlaneFinder(const Mesh& mesh, Progress& progress)
-        : mesh_(mesh), progress_(progress), search_(mesh), diagonal_(mesh_diagonal(mesh)) {
+        : mesh_(mesh), progress_(progress), search_(mesh), diagonal_(mesh.diagonal()) {
         take_samples(tuning.plane_samples);
     }
 
@@ -184,13 +181,6 @@ private:
 };
 
 } // namespace
-
-double mesh_diagonal(const Mesh& mesh) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : mesh.points)
-        box.extend(p);
-    return box.diagonal().norm();
-}
 
 std::optional<MirrorPlane> find_mirror_plane(const Mesh& mesh, double tolerance,
                                              Progress& progress) {

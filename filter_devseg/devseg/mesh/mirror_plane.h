@@ -8,9 +8,6 @@
 
 namespace devseg::mesh {
 
-/// Of the box around the mesh, internal units.
-double mesh_diagonal(const Mesh& mesh);
-
 struct MirrorPlane {
     Vec3 normal = Vec3::UnitX(); // unit
     double offset = 0.0;         // of the plane's points along the normal, internal units

@@ -26,6 +26,17 @@ struct OpenEdge {
     }
 };
 
+// Open edges with the same ends become twins.
+void link(std::vector<OpenEdge> open, Mesh& fine) {
+    std::sort(open.begin(), open.end());
+    for (std::size_t i = 0; i + 1 < open.size(); ++i)
+        if (open[i].low == open[i + 1].low && open[i].high == open[i + 1].high) {
+            fine.twin[open[i].half_edge] = open[i + 1].half_edge;
+            fine.twin[open[i + 1].half_edge] = open[i].half_edge;
+            ++i;
+        }
+}
+
 } // namespace
 
 Index old_edge(const Refinement::Part& part, Index e) {
@@ -86,13 +97,7 @@ Refinement refine(const Mesh& mesh, std::vector<Refinement::Point> points,
         if (other >= 0)
             fine.twin[whole[other]] = whole[old];
     }
-    std::sort(open.begin(), open.end());
-    for (std::size_t i = 0; i + 1 < open.size(); ++i)
-        if (open[i].low == open[i + 1].low && open[i].high == open[i + 1].high) {
-            fine.twin[open[i].half_edge] = open[i + 1].half_edge;
-            fine.twin[open[i + 1].half_edge] = open[i].half_edge;
-            ++i;
-        }
+    link(std::move(open), fine);
     std::sort(result.parts.begin(), result.parts.end(),
               [](const auto& a, const auto& b) { return a.face < b.face; });
     compute_face_geometry(fine);

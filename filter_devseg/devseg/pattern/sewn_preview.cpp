@@ -15,7 +15,7 @@ namespace {
 
 constexpr double smoothing = 0.015; // of the diagonal: details below it are forgotten at the start
 constexpr double inertia = 0.02;    // of a spring's stiffness: steps stay small
-constexpr double settled = 2e-5;    // of the diagonal: the mean step at which the cloth is at rest
+constexpr double at_rest = 2e-5;    // of the diagonal: the mean step at which the cloth is at rest
 constexpr double burst =
     10.0; // of the diagonal: mean step of a net that does not hold the pressure
 // Stiffness of a net of springs of stiffness 1 along the edges of even triangles, per length.
@@ -119,13 +119,10 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
     if (!(even.scale > 0.0))
         throw InvalidMesh("expected texture coordinates with an area, found none; run "
                           "'Charts: Flatten' again");
-    Eigen::AlignedBox3d box;
     Points x(mesh.vertex_count(), 3);
-    for (const Vertex v : mesh.all_vertices()) {
+    for (const Vertex v : mesh.all_vertices())
         x.row(v) = mesh.points[v].transpose();
-        box.extend(mesh.points[v]);
-    }
-    const double diagonal = box.diagonal().norm();
+    const double diagonal = mesh.diagonal();
     const std::vector<Spring> springs = make_springs(mesh, even.uv, even.scale);
     const double edge = std::sqrt(mesh.total_area / std::max<Index>(1, mesh.face_count()));
     const double blur = std::pow(smoothing * diagonal / edge, 2.0);
@@ -156,7 +153,7 @@ SewnPreview sew_and_inflate(const Mesh& mesh, const CornerUv& uv, const SewnOpti
         const Points next = solver.solve(rhs);
         const double step = (next - x).rowwise().norm().mean();
         if (step < burst * diagonal) {
-            result.converged = step < settled * diagonal;
+            result.converged = step < at_rest * diagonal;
             x = next;
         } else {
             result.stuffing *= 0.5;

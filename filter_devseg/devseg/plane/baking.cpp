@@ -65,11 +65,11 @@ struct Weights {
 
 // From a pixel to the nearest painted one.
 struct Step {
-    std::int16_t x = unknown;
-    std::int16_t y = unknown;
+    std::int16_t x = unreached;
+    std::int16_t y = unreached;
 
-    static constexpr std::int16_t unknown = std::numeric_limits<std::int16_t>::max();
-    bool is_known() const { return x != unknown; }
+    static constexpr std::int16_t unreached = std::numeric_limits<std::int16_t>::max();
+    bool is_known() const { return x != unreached; }
     bool is_none() const { return x == 0 && y == 0; }
 };
 
@@ -78,7 +78,7 @@ public:
     // Within `reach` pixels.
     Nearest(int width, int height, double reach, const std::vector<float>& distance)
         : width_(width), height_(height), steps_(distance.size()) {
-        reach = std::min(reach, Step::unknown - 1.0);
+        reach = std::min(reach, Step::unreached - 1.0);
         most_ = static_cast<std::int64_t>(reach * reach);
         for (std::size_t i = 0; i < steps_.size(); ++i)
             if (std::isfinite(distance[i]))

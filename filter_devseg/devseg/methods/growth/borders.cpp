@@ -225,7 +225,7 @@ private:
         const std::vector<Index> path = shortest_path(segment, from, to);
         set_own(0);
         return !path.empty() &&
-               length(mesh_, path) < length(mesh_, segment.half_edges) * worthwhile &&
+               length(mesh_, path) < length(mesh_, segment.half_edges) * truly_lower &&
                relabel(segment, path);
     }
 

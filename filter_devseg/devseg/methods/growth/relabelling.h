@@ -11,7 +11,7 @@ namespace devseg::growth {
 
 /// A border or an energy is lower than another if it is below this share of it: rounding does not
 /// explain that.
-constexpr double worthwhile = 1.0 - 1e-9;
+constexpr double truly_lower = 1.0 - 1e-9;
 
 /// (face, chart)
 using NewLabels = std::vector<std::pair<Index, Index>>;

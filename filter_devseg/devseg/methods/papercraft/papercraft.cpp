@@ -290,16 +290,17 @@ namespace {
 
 constexpr const char* help =
     "Cuts the surface into few charts that paper can take on with <i>creases</i> and <i>slits</i>. "
-    "Charts grow by vertices: a vertex may come inside of a chart if the angles around it sum up to "
-    "nearly 360 degrees, whatever creases run through it. Where a chart meets itself a slit stays "
-    "open, and ends at vertices that are far from developable. The smallest charts are removed and "
-    "the others grown again until the wanted number is left, and slits that matter little are "
-    "closed. Polyhedra of few faces become nets instead, which fold exactly as they are; no flat face "
-    "is cut.<br>"
+    "Charts grow by vertices: a vertex may come inside of a chart if the angles around it sum up "
+    "to nearly 360 degrees, whatever creases run through it. Where a chart meets itself a slit "
+    "stays open, and ends at vertices that are far from developable. The smallest charts are "
+    "removed and the others grown again until the wanted number is left, and slits that matter "
+    "little are closed. Polyhedra of few faces become nets instead, which fold exactly as they "
+    "are; no flat face is cut.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut, slits included), the same cuts as selected face-edges, the "
     "face's share of the angle defects of its vertices (radians) as face quality and a colour for "
-    "each chart. Every chart is a disk but for flat holes. Go on with 'Charts: Deform to Exact Developability'.<br>"
+    "each chart. Every chart is a disk but for flat holes. Go on with 'Charts: Deform to Exact "
+    "Developability'.<br>"
     "See:<br><i>Kuniko Takahashi, Tomohiro Tachi, Yasushi Yamaguchi</i><br>"
     "<b>\"Mesh Approximation for Generating Development with Creases and Slits\"</b><br>"
     "Journal for Geometry and Graphics 19(1), 2015, pages 119-129";
@@ -329,18 +330,18 @@ std::vector<FilterDeclaration> filters() {
             .integer(&O::charts_number, "Number of charts",
                      "From 1 to the number of faces. Fewer charts have more and longer slits. A "
                      "mesh of more components gets one chart for each of them.")
-            .choice(&O::deform, "deform", "Deform", {"Automatic", "Always", "Never"},
-                    "Whether charts are made to be deformed until they unfold exactly (Always), or "
-                    "are nets that unfold exactly as they are (Never), as many as it takes. "
-                    "Automatic: nets of components that have few faces, those of one plane being "
-                    "one; charts of the others.")
+            .choice(
+                &O::deform, "deform", "Deform", {"Automatic", "Always", "Never"},
+                "Whether charts are made to be deformed until they unfold exactly (Always). Or "
+                "they are nets that unfold exactly as they are (Never), as many as it takes. "
+                "Automatic: nets of components that have few faces, those of one plane being one; "
+                "charts of the others.")
             .integer(&O::max_net_faces, "Most faces of a net",
                      "Of charts that unfold as they are; those of one plane are one. 0 = no limit.")
             .real(&O::growth_threshold, "Growth threshold",
-                  "What the inner vertices of a chart of the initial segmentation may lack to "
-                  "360 degrees, or have too much, all together, in radians, above 0. Smaller "
-                  "values start from more and smaller charts; halved where there are fewer "
-                  "than wanted.")
+                  "What the inner vertices of a chart of the initial segmentation may lack to 360 "
+                  "degrees, or have too much. All together, in radians, above 0. Smaller values "
+                  "start from more and smaller charts; halved where there are fewer than wanted.")
             .real(&O::slit_threshold, "Slit threshold",
                   "Slits are closed where the paper has to bridge a gap of about this width, "
                   "as a share of the diagonal of the model's box. 0 closes none.")

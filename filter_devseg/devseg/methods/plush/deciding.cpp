@@ -8,6 +8,7 @@
 #include "devseg/atlas/fragments.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/local_seams.h"
+#include "devseg/methods/plush/seam_removal.h"
 #include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/thin_tips.h"
 #include "devseg/methods/plush/tuning.h"
@@ -64,7 +65,7 @@ void clean_patches(const WorkingSurface& surface, const OpenPart& open, const Se
     mirror_marks(surface, seam);
     std::vector<Index> label =
         atlas::absorb_fragments(mesh, find_patches(mesh, seam).label, tuning.fragment);
-    remove_teeth(mesh, label);
+    atlas::remove_teeth(mesh, label);
     seam = atlas::make_chart_map(mesh, label, {}, false).seam;
     for (const HalfEdge h : mesh.all_half_edges())
         if (!hard.empty() && (hard[h] != 0 || !open.is_inside(mesh, h)))
@@ -115,11 +116,12 @@ Evidence find_evidence(const WorkingSurface& surface, const PlushOptions& option
     const Mesh& mesh = surface.mesh;
     if (skeleton.empty())
         skeleton = extract_skeleton(mesh, progress);
+    const Laplacian laplacian = make_laplacian(mesh);
     BoneWeights bones;
     if (!skeleton.empty())
-        bones = bone_weights(mesh, skeleton, progress);
+        bones = bone_weights(mesh, laplacian, skeleton, progress);
     result.bones = static_cast<Index>(skeleton.bones.size());
-    std::vector<double> curvature = mean_curvature(mesh);
+    std::vector<double> curvature = mean_curvature(mesh, laplacian);
     SeamWeights weights = seam_weights(
         mesh, {options.geodesic_weight, options.skeleton_weight, options.curvature_weight},
         curvature, skeleton, bones, progress);
@@ -131,7 +133,7 @@ Evidence find_evidence(const WorkingSurface& surface, const PlushOptions& option
     progress.update(0.9);
     VertexGraph graph = build_vertex_graph(mesh);
     const auto most = static_cast<Index>(std::sqrt(static_cast<double>(mesh.points.size())));
-    std::vector<Index> extrema = find_extrema(graph, conformal_factor(mesh),
+    std::vector<Index> extrema = find_extrema(graph, conformal_factor(mesh, laplacian),
                                               options.max_extrema > 0 ? options.max_extrema : most);
     result.extrema = std::max(result.extrema, static_cast<Index>(extrema.size()));
     return {surface,

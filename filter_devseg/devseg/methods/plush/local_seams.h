@@ -1,7 +1,7 @@
 // Further seams where patches are not developable enough yet.
 #pragma once
 
-#include "devseg/methods/plush/seam_removal.h"
+#include "devseg/methods/plush/patch_tester.h"
 
 namespace devseg::plush {
 

@@ -190,19 +190,19 @@ OpenPart same_part(const WorkingSurface& surface, SeamMarks seam, const Mesh& mo
     const mesh::SurfaceSearch search(model);
     const std::vector<Vec3> normals = mesh::vertex_normals(mesh);
     const mesh::FaceComponents patches = find_patches(mesh, seam);
-    std::vector<double> balance(at(patches.count), 0.0);
+    std::vector<double> open_area(at(patches.count), 0.0); // less that which is not open
     for (const Face f : mesh.all_faces()) {
         const Vertex v = mesh.faces[f][0];
         const Vertex near = search.vertex(mesh.points[v], normals[v], [](Index) { return true; });
         if (near >= 0)
-            balance[patches.label[f]] += on_model.is_open(face_of(search.leaving(near)))
-                                             ? mesh.face_areas[f]
-                                             : -mesh.face_areas[f];
+            open_area[patches.label[f]] += on_model.is_open(face_of(search.leaving(near)))
+                                               ? mesh.face_areas[f]
+                                               : -mesh.face_areas[f];
     }
     OpenPart part;
     part.seam = std::move(seam);
     for (const Index p : patches.label)
-        part.faces.push_back(balance[p] > 0.0 ? 1 : 0);
+        part.faces.push_back(open_area[p] > 0.0 ? 1 : 0);
     for (Face f = 0; f < mesh.face_count() && surface.is_symmetric(); ++f)
         if (part.faces[f] != 0)
             part.faces[surface.face_image(f)] = 1;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "devseg/methods/plush/seam_removal.h"
+#include "devseg/methods/plush/patch_tester.h"
 
 namespace devseg::plush {
 

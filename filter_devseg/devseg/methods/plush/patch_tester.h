@@ -1,4 +1,4 @@
-// Trials of patches on one surface, none made twice.
+// Trials of patches on one surface, none made twice, and all that seams are judged by there.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,21 @@ private:
     const judge::ClothLimits limits_;
     std::mutex mutex_;
     std::map<std::vector<Index>, bool> known_; // 8 f + marks of its edges
+};
+
+/// What seams are judged by.
+struct SeamSetting {
+    const WorkingSurface& surface;
+    const VertexGraph& graph;          // of the surface
+    const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
+    const std::vector<double>& weight; // 3 #F
+    PatchTester& tester;
+    PatchTester& strict_tester;               // for large patches
+    const std::vector<double>& cut_cost;      // 3 #F: of paths that cut patches
+    const std::vector<double>& straight_cost; // 3 #F: of paths in place of seams
+    int max_rounds = 10000;                   // of trials side by side
+
+    const Mesh& mesh() const { return surface.mesh; }
 };
 
 } // namespace devseg::plush

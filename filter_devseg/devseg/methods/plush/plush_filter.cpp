@@ -25,10 +25,11 @@ constexpr const char* plush_help =
     "the same seams. Some hundred thousand faces take minutes: simplify larger meshes first.<br>"
     "Leaves the face attributes <b>chart_id</b> (0 to n − 1) and <b>seam_edges</b> (bits 1, 2, 4: "
     "the face's edges that are cut), the same cuts as selected face-edges, the change of area as "
-    "face quality and a colour for each patch. Every patch is a disk but for flat holes. Flatten them with "
-    "'Charts: Flatten', method LPFB: both sides of every seam keep their length.<br>"
+    "face quality and a colour for each patch. Every patch is a disk but for flat holes. Flatten "
+    "them with 'Charts: Flatten', method LPFB: both sides of every seam keep their length.<br>"
     "See:<br><i>Charlie C. L. Wang</i><br>"
-    "<b>\"Computing Length-Preserved Free Boundary for Quasi-Developable Mesh Segmentation\"</b><br>"
+    "<b>\"Computing Length-Preserved Free Boundary for Quasi-Developable Mesh "
+    "Segmentation\"</b><br>"
     "IEEE Transactions on Visualization and Computer Graphics 14(1), 2008, "
     "doi:10.1109/TVCG.2007.1067<br>"
     "<i>Andrea Tagliasacchi, Ibraheem Alhashim, Matt Olson, Hao Zhang</i><br>"
@@ -125,23 +126,23 @@ FilterOutput run_plush(const FilterInput& input, const Options& given, Progress&
     return output;
 }
 
-FilterDeclaration plush() {
+Declare<Options> with_parameters(Declare<Options> filter) {
     using O = Options;
-    return Declare<O>("Segmentation: Plush Toy Seams", "compute_segmentation_plush_seams_per_face",
-                      FilterCategory::remeshing, plush_help)
+    return filter
         .real(&O::max_area_change, "Largest change of area",
               "How much the area of a face may change when its patch is flattened, as a share: "
               "0.15 = 15 %. Counts where max_strain is 0: flatten with LPFB Even Areas then.")
         .real(
             &O::max_strain, "Largest strain",
             "How much longer or shorter lines in the cloth may get when a patch is flattened, as a "
-            "share: 0.2 = 20 % on 99 % of each patch's area, and at most twice that anywhere. "
+            "share. 0.2 allows 20 % on 99 % of each patch's area, and at most twice that anywhere. "
             "Woven cotton takes 0.05, fleece and minky 0.1 to 0.2. 0: patches are judged by "
             "max_area_change alone.")
-        .text(&O::material, "material", "Material",
-              "What the pieces are cut from: " + material::names() +
-                  ", also with values of its own as in fleece, warp=0.12. It sets max_strain to "
-                  "the least of its limits, unless another one than the default is given.")
+        .text(
+            &O::material, "material", "Material",
+            "What the pieces are cut from: " + material::names() +
+                ". A name may have values of its own, as in fleece, warp=0.12. It sets max_strain "
+                "to the least of its limits, unless another one than the default is given.")
         .real(&O::geodesic_weight, "Weight of short seams",
               "Exponent of the length of an edge in its weight, without unit. Larger values make "
               "straighter seams.")
@@ -154,10 +155,11 @@ FilterDeclaration plush() {
         .integer(&O::max_extrema, "Most ends of seams",
                  "Tips and saddles between which seams may run, the most prominent ones; a number, "
                  "0 for at most the root of the number of vertices.")
-        .text(&O::skeleton_file, "skeleton_file", "Skeleton file",
-              "Path of a text file with joints (lines v X Y Z, in model units) and bones (lines "
-              "l I J, joints counted from 1), as in OBJ files. Empty: the skeleton is found "
-              "automatically on closed surfaces.")
+        .text(
+            &O::skeleton_file, "skeleton_file", "Skeleton file",
+            "Path of a text file with joints and bones, as in OBJ files. Joints are lines v X Y Z, "
+            "in model units; bones are lines l I J, joints counted from 1. Empty: the skeleton is "
+            "found automatically on closed surfaces.")
         .choice(&O::material_borders, "material_borders", "Borders of materials",
                 {"None", "Face selection", "Face colours"},
                 "Seams that must be. None: no materials. Face selection: around the selected "
@@ -170,7 +172,13 @@ FilterDeclaration plush() {
             "usually end before, when nothing more can go.")
         .integer(&O::random_seed, "Random seed",
                  "0 takes the least natural seams away first; other numbers change that order a "
-                 "little at random. The same number always gives the same seams.")
+                 "little at random. The same number always gives the same seams.");
+}
+
+FilterDeclaration plush() {
+    return with_parameters(Declare<Options>("Segmentation: Plush Toy Seams",
+                                            "compute_segmentation_plush_seams_per_face",
+                                            FilterCategory::remeshing, plush_help))
         .command("plush", "lpfb")
         .on_part()
         .keeps()

@@ -8,9 +8,7 @@
 #include "devseg/base/parallel.h"
 #include "devseg/mesh/canonical_frame.h"
 #include "devseg/methods/plush/deciding.h"
-#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/local_seams.h"
-#include "devseg/methods/plush/mirror_transfer.h"
 #include "devseg/methods/plush/transfer_seams.h"
 #include "devseg/methods/plush/tuning.h"
 
@@ -151,7 +149,7 @@ SeamMarks settled_seams(const Mesh& mesh, SeamMarks seam, const PlushOptions& op
     PatchTester tester(surface, limits_of(options, 1.0, false));
     const std::vector<double> weight =
         seam_weights(mesh, {options.geodesic_weight, 0.0, options.curvature_weight},
-                     mean_curvature(mesh), {}, {}, progress)
+                     mean_curvature(mesh, make_laplacian(mesh)), {}, {}, progress)
             .weight;
     OpenPart part = mend_patches(mesh, graph, weight, std::move(seam), tester.limits(), progress);
     result.all_developable =

@@ -21,8 +21,7 @@ double smooth_step(double from, double to, double x) {
 class EdgeShapes {
 public:
     explicit EdgeShapes(const Mesh& mesh)
-        : mesh_(mesh), reach_(tuning.beside_edge * mesh_diagonal(mesh)),
-          seen_(mesh.faces.size(), -1) {}
+        : mesh_(mesh), reach_(tuning.beside_edge * mesh.diagonal()), seen_(mesh.faces.size(), -1) {}
 
     EdgeShape at_edge(HalfEdge h) {
         const HalfEdge twin = mesh_.twin[h];
@@ -216,11 +215,11 @@ std::vector<double> natural_lengths(const Mesh& mesh, const std::vector<double>&
 
 SeamShares seam_shares(const Mesh& mesh, const SeamMarks& seam, const SeamGuides& guides,
                        const std::optional<MirrorPlane>& plane, const Progress& progress) {
-    const double diagonal = mesh_diagonal(mesh);
+    const double diagonal = mesh.diagonal();
     const Skeleton& skeleton = guides.skeleton;
     BoneWeights bones;
     if (!skeleton.empty())
-        bones = bone_weights(mesh, skeleton, progress);
+        bones = bone_weights(mesh, make_laplacian(mesh), skeleton, progress);
     EdgeShapes shapes(mesh);
     double guided = 0.0;
     double total = 0.0;

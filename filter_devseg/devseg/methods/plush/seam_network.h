@@ -29,8 +29,6 @@ inline bool is_border(const Mesh& mesh, const SeamMarks& seam, HalfEdge h) {
 /// 1 for the vertices (#V) on the borders of patches.
 std::vector<std::uint8_t> border_vertices(const Mesh& mesh, const SeamMarks& seam);
 
-using mesh::mesh_diagonal;
-
 /// Of all half-edges (3 #F), their mean, and the sum of some; internal units.
 std::vector<double> edge_lengths(const Mesh& mesh);
 double mean_edge_length(const Mesh& mesh);

@@ -2,24 +2,8 @@
 #pragma once
 
 #include "devseg/methods/plush/patch_tester.h"
-#include "devseg/methods/plush/seam_network.h"
 
 namespace devseg::plush {
-
-/// What seams are judged by.
-struct SeamSetting {
-    const WorkingSurface& surface;
-    const VertexGraph& graph;          // of the surface
-    const SeamMarks& hard;             // 3 #F or empty: borders between materials, which stay
-    const std::vector<double>& weight; // 3 #F
-    PatchTester& tester;
-    PatchTester& strict_tester;               // for large patches
-    const std::vector<double>& cut_cost;      // 3 #F: of paths that cut patches
-    const std::vector<double>& straight_cost; // 3 #F: of paths in place of seams
-    int max_rounds = 10000;                   // of trials side by side
-
-    const Mesh& mesh() const { return surface.mesh; }
-};
 
 struct RemovalOptions {
     // What goes first: powers of the mean weight of a segment's edges [Plush: 1] and of the

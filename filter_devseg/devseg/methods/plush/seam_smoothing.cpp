@@ -1,7 +1,6 @@
 #include "devseg/methods/plush/seam_smoothing.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "devseg/base/parallel.h"
@@ -196,28 +195,6 @@ private:
 };
 
 } // namespace
-
-void remove_teeth(const Mesh& mesh, std::vector<Index>& label) {
-    bool changed = true;
-    for (int round = 0; round < tuning.tooth_rounds && changed; ++round) {
-        changed = false;
-        for (const Face f : mesh.all_faces()) {
-            std::array<Index, 3> other{-1, -1, -1};
-            for (const HalfEdge h : half_edges_of(f)) {
-                const HalfEdge twin = mesh.twin[h];
-                if (twin >= 0 && label[face_of(twin)] != label[f])
-                    other[corner_of(h)] = label[face_of(twin)];
-            }
-            for (std::size_t k = 0; k < 3; ++k)
-                if (other[k] >= 0 && other[k] == other[(k + 1) % 3] &&
-                    other[(k + 2) % 3] != other[k]) {
-                    label[f] = other[k];
-                    changed = true;
-                    break;
-                }
-        }
-    }
-}
 
 void straighten_seams(const SeamSetting& setting, SeamMarks& seam, Progress& progress) {
     Straightener(setting, seam, progress).run();

@@ -229,7 +229,7 @@ void read_bones(std::istringstream& words, Skeleton& skeleton, bool& is_valid) {
 
 Skeleton extract_skeleton(const Mesh& mesh, const Progress& progress) {
     Skeleton skeleton;
-    const double size = mesh_diagonal(mesh);
+    const double size = mesh.diagonal();
     const mesh::CoarseMesh coarse = mesh::coarsen(mesh, tuning.skeleton_faces, progress);
     const mesh::FaceComponents parts =
         mesh::face_components(coarse.mesh, [](Index) { return true; });

@@ -36,7 +36,7 @@ Eigen::VectorXd solve_shifted(Eigen::SparseMatrix<double> matrix, const Eigen::V
 
 } // namespace
 
-Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
+Laplacian make_laplacian(const Mesh& mesh) {
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(12 * mesh.faces.size());
     for (const Face f : mesh.all_faces()) {
@@ -51,20 +51,15 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh) {
             entries.emplace_back(j, i, -w);
         }
     }
-    Eigen::SparseMatrix<double> matrix(mesh.vertex_count(), mesh.vertex_count());
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
-}
-
-std::vector<double> vertex_areas(const Mesh& mesh) {
-    std::vector<double> areas(mesh.points.size(), 0.0);
+    Laplacian result{{mesh.vertex_count(), mesh.vertex_count()},
+                     std::vector<double>(mesh.points.size(), 0.0)};
+    result.matrix.setFromTriplets(entries.begin(), entries.end());
     for (const HalfEdge h : mesh.all_half_edges())
-        areas[mesh.origin(h)] += mesh.face_areas[face_of(h)] / 3.0;
-    return areas;
+        result.areas[mesh.origin(h)] += mesh.face_areas[face_of(h)] / 3.0;
+    return result;
 }
 
-std::vector<double> conformal_factor(const Mesh& mesh) {
-    const std::vector<double> areas = vertex_areas(mesh);
+std::vector<double> conformal_factor(const Mesh& mesh, const Laplacian& laplacian) {
     std::vector<double> defect(mesh.points.size(), 2.0 * pi);
     for (const HalfEdge h : mesh.all_half_edges()) {
         const Vec3& corner = mesh.points[mesh.origin(h)];
@@ -77,8 +72,8 @@ std::vector<double> conformal_factor(const Mesh& mesh) {
     const double total = std::accumulate(defect.begin(), defect.end(), 0.0);
     Eigen::VectorXd rhs(mesh.vertex_count());
     for (const Vertex v : mesh.all_vertices())
-        rhs[v] = total * areas[v] / mesh.total_area - defect[v];
-    const Eigen::VectorXd solution = solve_shifted(cotangent_laplacian(mesh), rhs);
+        rhs[v] = total * laplacian.areas[v] / mesh.total_area - defect[v];
+    const Eigen::VectorXd solution = solve_shifted(laplacian.matrix, rhs);
     std::vector<double> factor(solution.data(), solution.data() + solution.size());
     const double mean = solution.mean();
     for (double& value : factor)
@@ -122,8 +117,7 @@ std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<doub
     return extrema;
 }
 
-std::vector<double> mean_curvature(const Mesh& mesh) {
-    const std::vector<double> areas = vertex_areas(mesh);
+std::vector<double> mean_curvature(const Mesh& mesh, const Laplacian& laplacian) {
     Eigen::VectorXd integral = Eigen::VectorXd::Zero(mesh.vertex_count());
     for (const HalfEdge h : mesh.all_half_edges()) {
         const HalfEdge twin = mesh.twin[h];
@@ -138,11 +132,11 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
         integral[mesh.target(h)] += 0.25 * edge.norm() * angle;
     }
     integral *= 0.5;
-    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
+    Eigen::SparseMatrix<double> matrix = laplacian.matrix;
     const double radius = tuning.curvature_radius * mean_edge_length(mesh);
     matrix *= radius * radius;
     for (const Vertex v : mesh.all_vertices())
-        matrix.coeffRef(v, v) += areas[v];
+        matrix.coeffRef(v, v) += laplacian.areas[v];
     const Eigen::VectorXd smooth = solve_shifted(matrix, integral);
     const double sphere = std::sqrt(mesh.total_area / (4.0 * pi));
     std::vector<double> curvature(mesh.points.size());
@@ -151,9 +145,9 @@ std::vector<double> mean_curvature(const Mesh& mesh) {
     return curvature;
 }
 
-BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progress& progress) {
-    const std::vector<double> areas = vertex_areas(mesh);
-    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(mesh);
+BoneWeights bone_weights(const Mesh& mesh, const Laplacian& laplacian, const Skeleton& skeleton,
+                         const Progress& progress) {
+    Eigen::SparseMatrix<double> matrix = laplacian.matrix;
     std::vector<Index> nearest(mesh.points.size(), 0);
     std::vector<double> heat(mesh.points.size());
     const double floor = 1e-6 * mesh.total_area;
@@ -168,7 +162,7 @@ BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progr
                 nearest[v] = static_cast<Index>(b);
             }
         }
-        heat[v] = tuning.conductance * std::max(areas[v], 1e-12 * mesh.total_area) /
+        heat[v] = tuning.conductance * std::max(laplacian.areas[v], 1e-12 * mesh.total_area) /
                   std::max(least, floor);
         matrix.coeffRef(v, v) += heat[v];
     }

@@ -21,13 +21,16 @@
 
 namespace devseg::plush {
 
-/// Positive semi-definite cotangent Laplacian, #V by #V, and a third of the areas around vertices.
-Eigen::SparseMatrix<double> cotangent_laplacian(const Mesh& mesh);
-std::vector<double> vertex_areas(const Mesh& mesh);
+/// What all fields are computed with.
+struct Laplacian {
+    Eigen::SparseMatrix<double> matrix; // #V by #V: of cotangents, positive semi-definite
+    std::vector<double> areas;          // #V: a third of the areas around vertices
+};
+Laplacian make_laplacian(const Mesh& mesh);
 
 /// φ with L φ = Kᵀ − K [BGB08], K the angle defects and Kᵀ the total curvature spread by area, with
 /// mean 0: low at tips, high in saddles and between limbs. #V, no unit.
-std::vector<double> conformal_factor(const Mesh& mesh);
+std::vector<double> conformal_factor(const Mesh& mesh, const Laplacian& laplacian);
 
 /// Vertices whose value is the lowest, or the highest, within two rings, those that stand out most
 /// first, at most `count` of them.
@@ -36,13 +39,14 @@ std::vector<Index> find_extrema(const VertexGraph& graph, const std::vector<doub
 
 /// Mean curvature at vertices, positive on convex places, smoothed over a few edges, times the
 /// radius of a sphere of the mesh's area: 1 on a sphere. #V, no unit.
-std::vector<double> mean_curvature(const Mesh& mesh);
+std::vector<double> mean_curvature(const Mesh& mesh, const Laplacian& laplacian);
 
 /// The weights of the bones, each row adds up to 1: the equilibrium of heat that each vertex takes
 /// from its nearest bone, in inverse proportion to the squared distance, and spreads over the
 /// surface [BP07]. #V rows of at most `most` pairs (bone, weight), largest first.
 using BoneWeights = std::vector<std::vector<std::pair<Index, double>>>;
-BoneWeights bone_weights(const Mesh& mesh, const Skeleton& skeleton, const Progress& progress);
+BoneWeights bone_weights(const Mesh& mesh, const Laplacian& laplacian, const Skeleton& skeleton,
+                         const Progress& progress);
 
 /// The direction of the skeleton on the surface, and how much the bones agree on it (0 … 1; 0
 /// where bones stand upright on the surface or run all ways).

@@ -1,7 +1,7 @@
 // Thin tips and tongues of patches, and acute corners where seams meet.
 #pragma once
 
-#include "devseg/methods/plush/seam_removal.h"
+#include "devseg/methods/plush/patch_tester.h"
 
 namespace devseg::plush {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "devseg/mesh/surface_search.h"
@@ -239,6 +240,49 @@ void cut_corners(const Mesh& mesh, SeamMarks& seam) {
     }
 }
 
+// Means over each vertex and its neighbours, so many times.
+void smooth_moves(const VertexGraph& graph, int rounds, std::vector<Vec3>& moves) {
+    for (int round = 0; round < rounds; ++round) {
+        std::vector<Vec3> next = moves;
+        for (std::size_t v = 0; v < moves.size(); ++v) {
+            for (Index i = graph.begin[v]; i < graph.begin[v + 1]; ++i)
+                next[v] += moves[graph.vertex[i]];
+            next[v] /= 1.0 + graph.begin[v + 1] - graph.begin[v];
+        }
+        moves = std::move(next);
+    }
+}
+
+// An edge between two vertices, in either direction; −1 where there is none.
+HalfEdge edge_between(const VertexGraph& graph, Vertex a, Vertex b) {
+    for (Index i = graph.begin[a]; i < graph.begin[at(a) + 1]; ++i)
+        if (graph.vertex[i] == b)
+            return HalfEdge(graph.half_edge[i]);
+    return HalfEdge(-1);
+}
+
+// Edges that were cut by the plane shrink to one of their ends. What a segment then runs along
+// twice is a spur, and none of it.
+SeamMarks own_half(const MirroredModel& mirrored, const SeamMarks& seam, const Mesh& model,
+                   const VertexGraph& graph) {
+    const Mesh& mesh = mirrored.surface.mesh;
+    SeamMarks marks(model.twin.size(), 0);
+    for (const SeamSegment& segment : find_segments(mesh, seam)) {
+        std::set<Index> line;
+        for (const HalfEdge h : segment.half_edges) {
+            if (mirrored.surface.is_image(h))
+                continue;
+            const HalfEdge edge = edge_between(graph, Vertex(mirrored.place[mesh.origin(h)]),
+                                               Vertex(mirrored.place[mesh.target(h)]));
+            if (edge >= 0 && !line.insert(edge).second)
+                line.erase(edge);
+        }
+        for (const Index h : line)
+            mark(model, HalfEdge(h), 1, marks);
+    }
+    return marks;
+}
+
 } // namespace
 
 std::vector<Vec3> smooth_seams(const Mesh& mesh, const SeamMarks& seam) {
@@ -273,6 +317,51 @@ SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to
         SeamTransfer(from, to, graph, factor, std::move(rest)).run(seam, progress);
     cut_corners(to, transferred);
     return transferred;
+}
+
+Mesh fitted_to(const Mesh& model, const Mesh& surface, const VertexGraph& graph,
+               const Progress& progress) {
+    const mesh::SurfaceSearch search(model);
+    Mesh fitted = surface;
+    std::vector<Vec3> moves(surface.points.size(), Vec3::Zero());
+    const auto anywhere = [](Index) { return true; };
+    for (int turn = 0; turn < tuning.fit_turns; ++turn) {
+        const std::vector<Vec3> normal = mesh::vertex_normals(fitted);
+        for (const Vertex v : surface.all_vertices()) {
+            if (v % 1024 == 0)
+                progress.check();
+            const Vec3& p = fitted.points[v];
+            // Along the model it is the neighbours' move: tips come off worst from
+            // nearest points.
+            if (const Vertex near = search.vertex(p, normal[v], anywhere); near >= 0) {
+                const Vec3& across = search.normal(near);
+                const Vec3 place = search.on_faces(p, near, anywhere).second;
+                moves[v] += (place - p).dot(across) * across;
+            }
+        }
+        // Whole limbs first, then what is smaller.
+        smooth_moves(graph, tuning.fit_turns - turn, moves);
+        for (const Vertex v : surface.all_vertices())
+            fitted.points[v] = surface.points[v] + moves[v];
+        mesh::compute_face_geometry(fitted);
+    }
+    return fitted;
+}
+
+SeamMarks seams_on_model(const MirroredModel& mirrored, const Mesh& placed, const SeamMarks& seam,
+                         const Mesh& model, const VertexGraph& graph, Progress& progress) {
+    TransferRest rest;
+    for (const HalfEdge h : placed.all_half_edges())
+        rest.edges.push_back(mirrored.surface.is_image(h) ? 0 : 1);
+    rest.closed.assign(model.points.size(), 0);
+    for (const Index v : mirrored.place)
+        if (v >= 0)
+            rest.closed[at(v)] = 1;
+    rest.place = mirrored.place;
+    rest.seam = own_half(mirrored, seam, model, graph);
+    rest.is_smooth = true;
+    return transfer_seams(placed, seam, model, graph, std::vector<double>(model.twin.size(), 1.0),
+                          std::move(rest), progress);
 }
 
 } // namespace devseg::plush

@@ -2,7 +2,7 @@
 // become edges there.
 #pragma once
 
-#include "devseg/methods/plush/seam_network.h"
+#include "devseg/methods/plush/working_surface.h"
 
 namespace devseg::plush {
 
@@ -29,5 +29,17 @@ struct TransferRest {
 SeamMarks transfer_seams(const Mesh& from, const SeamMarks& seam, const Mesh& to,
                          const VertexGraph& graph, const std::vector<double>& factor,
                          TransferRest rest, Progress& progress);
+
+/// The surface with its points moved onto the model, neighbours by nearly the same: limbs follow
+/// those of the model, which are not quite where the mirror image has them. `graph`: of the
+/// surface.
+Mesh fitted_to(const Mesh& model, const Mesh& surface, const VertexGraph& graph,
+               const Progress& progress);
+
+/// The seams of a mirrored model on the model itself: edge by edge on its own half, but for teeth,
+/// and on the other one as paths that keep close to the mirror images. `placed`: the surface with
+/// its image moved onto the other half. `graph`: of the model.
+SeamMarks seams_on_model(const MirroredModel& mirrored, const Mesh& placed, const SeamMarks& seam,
+                         const Mesh& model, const VertexGraph& graph, Progress& progress);
 
 } // namespace devseg::plush

@@ -88,7 +88,6 @@ struct Tuning {
     double small_patch = 0.1; // smaller ones are joined along narrow necks once seams are straight;
                               // a fifth of it on the model, and a tenth with darts
     double narrow_neck = 0.15; // of the root of the smaller patch
-    int tooth_rounds = 12;     // of taking teeth away
     int corridor_rings = 3;    // of vertices beside a segment: where it is made straight
     double path_worth = 0.97;  // of its cost: what a new path must save
     // What stays of a seam is an end, or two; the middle goes first. The widest windows come first.

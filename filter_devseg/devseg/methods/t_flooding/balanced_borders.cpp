@@ -341,7 +341,7 @@ private:
             const Parting now = strip.as_it_is();
             const Parting best = strip.best_parting(area_a, area_b, last_price_[pair]);
             if (!(strip.energy(area_a, area_b, best) <
-                  strip.energy(area_a, area_b, now) * growth::worthwhile))
+                  strip.energy(area_a, area_b, now) * growth::truly_lower))
                 return false;
             // A border may make a chart simpler, but not take it apart.
             const Face a = deepest_.face[pair.first];

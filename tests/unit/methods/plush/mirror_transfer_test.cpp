@@ -1,4 +1,4 @@
-#include "devseg/methods/plush/mirror_transfer.h"
+#include "devseg/methods/plush/transfer_seams.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/methods/plush/seam_smoothing.h"
+#include "devseg/atlas/fragments.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -35,7 +35,7 @@ SeamMarks caps(const WorkingSurface& surface) {
     std::vector<Index> label; // without teeth, which a transfer takes away
     for (const Face f : mesh.all_faces())
         label.push_back(std::abs(surface.side.height(mesh.face_centers[f])) > cap ? 1 : 0);
-    remove_teeth(mesh, label);
+    atlas::remove_teeth(mesh, label);
     SeamMarks seam(mesh.twin.size(), 0);
     for (const HalfEdge h : mesh.all_half_edges())
         if (surface.is_on_plane(h) || label[face_of(h)] != label[face_of(mesh.twin[h])])

@@ -8,12 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/atlas/fragments.h"
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
-#include "devseg/methods/plush/fit_surface.h"
 #include "devseg/methods/plush/limbs.h"
 #include "devseg/methods/plush/patch_tester.h"
-#include "devseg/methods/plush/seam_smoothing.h"
 #include "devseg/methods/plush/surface_fields.h"
 #include "devseg/methods/plush/transfer_seams.h"
 #include "devseg/methods/plush/working_surface.h"
@@ -120,7 +119,7 @@ TEST(Skeleton, BonesOfCapsuleLieAlongItsAxis) {
         const Vec3 bone = skeleton.joints[b] - skeleton.joints[a];
         EXPECT_GT(std::abs(bone.normalized().z()), 0.95);
     }
-    const BoneWeights weights = bone_weights(mesh, skeleton, Progress{});
+    const BoneWeights weights = bone_weights(mesh, make_laplacian(mesh), skeleton, Progress{});
     for (const auto& row : weights) {
         double sum = 0.0;
         for (const auto& entry : row)
@@ -167,8 +166,8 @@ TEST(Limbs, FingerOnBallHasItsSeamAtTheRoot) {
     for (const Vertex v : mesh.all_vertices())
         if (mesh.points[v].z() > mesh.points[tip].z())
             tip = v;
-    const auto limbs =
-        find_limbs(mesh, build_vertex_graph(mesh), mean_curvature(mesh), {tip}, Progress{});
+    const auto limbs = find_limbs(mesh, build_vertex_graph(mesh),
+                                  mean_curvature(mesh, make_laplacian(mesh)), {tip}, Progress{});
     ASSERT_EQ(limbs.size(), 1U);
     SeamMarks seam(mesh.twin.size(), 0);
     for (const Limb& limb : limbs)
@@ -220,7 +219,7 @@ TEST(SeamSmoothing, TeethGo) {
             if (mesh.twin[h] >= 0 && label[f] == 0 && f % 4 == 0 && label[mesh.twin[h] / 3] == 1)
                 toothed[f] = 1;
     EXPECT_NE(toothed, label);
-    remove_teeth(mesh, toothed);
+    atlas::remove_teeth(mesh, toothed);
     for (const Face f : mesh.all_faces()) {
         int others = 0;
         for (const HalfEdge h : half_edges_of(f))

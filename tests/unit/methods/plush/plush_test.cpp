@@ -189,7 +189,7 @@ TEST(SeamGuides, FollowBonesOverTips) {
     Skeleton skeleton;
     skeleton.joints = {Vec3(0.0, 0.0, -0.2), Vec3(0.0, 0.0, 0.2)};
     skeleton.bones = {{0, 1}};
-    const BoneWeights weights = bone_weights(ball, skeleton, Progress());
+    const BoneWeights weights = bone_weights(ball, make_laplacian(ball), skeleton, Progress());
     for (const Vertex v : ball.all_vertices()) {
         const Vec3 normal = ball.points[v].normalized();
         const SkeletonDirection found = skeleton_direction(skeleton, weights, v, v, normal);
