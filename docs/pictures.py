@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -39,6 +40,15 @@ IMAGES = Path(__file__).resolve().parent / "images"
 SIZE = 420
 COLORS = 128
 FONT = 17
+# Of the sections that a toy is made in: red, green and blue.
+SECTION_COLORS = (
+    (0.94, 0.78, 0.45),
+    (0.45, 0.67, 0.86),
+    (0.87, 0.49, 0.45),
+    (0.53, 0.75, 0.50),
+    (0.71, 0.58, 0.80),
+    (0.60, 0.60, 0.60),
+)
 
 
 # Meshes
@@ -314,6 +324,17 @@ def pieces() -> None:
     print(f"{file.name}: {file.stat().st_size / 1000:.0f} kB")
 
 
+def assembly() -> None:
+    """The sections of the cow, on the model and in its pattern."""
+    session = segmented(sample("cow.obj"), "plush")
+    with TemporaryDirectory() as folder:
+        made = session.export(Path(folder) / "cow.svg", {"preset": "Sewing", "height_mm": 200.0})
+    found = data(session)
+    section = made["piece_section"].astype(np.int64)[found.charts]
+    colors = np.array(SECTION_COLORS)[section % len(SECTION_COLORS)]
+    save(render_pair(replace(found, colors=colors), SIZE), "assembly")
+
+
 # The way of a mesh: stages in the order of a run, with the rooms that they live in.
 STAGES = (
     (
@@ -407,6 +428,7 @@ PICTURES: dict[str, Callable[[], None]] = {
         packing,
         deformation,
         pieces,
+        assembly,
     )
 }
 
