@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "devseg/plane/plane.h"
 #include "sheet/cloth_texts.h"
 #include "sheet/needs.h"
 #include "writers/text.h"
@@ -70,7 +71,7 @@ public:
 
 private:
     static double cross(const Vec3& a, const Vec3& b, const Vec3& c) {
-        return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+        return plane::cross((b - a).head<2>(), (c - a).head<2>());
     }
     std::size_t index(int x, int y) const { return at(y) * at(side_) + at(x); }
 
