@@ -53,7 +53,7 @@ private:
 };
 
 Times watch(const declare::FilterDeclaration& filter, const declare::HostMesh& host,
-            const declare::ParameterValues& values, declare::HostResult& result) {
+            const declare::ParameterValues& values) {
     Times times;
     const Watch watch;
     Progress progress([&](double fraction, const char* name) {

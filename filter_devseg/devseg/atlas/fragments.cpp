@@ -13,7 +13,7 @@ namespace devseg::atlas {
 
 namespace {
 
-constexpr int tooth_rounds = 12; // of taking teeth away: a tooth behind a tooth is rare
+constexpr int tooth_rounds = 12; // of taking teeth away, one behind the other
 
 // The pieces as a graph: their areas, and the lengths of their common borders.
 struct PieceGraph {

@@ -389,8 +389,8 @@ Parameter weld_parameter() {
         weld_range.name,
         "Join vertices within",
         "Vertices at the same place are read as one where that closes open edges, or where an edge "
-        "without length joins them. Files have them that give a vertex to each normal or texture "
-        "coordinate. 0 = at the same place; above: up to this share of the model's size; -1 = none "
+        "without length joins them. Files that give a vertex to each normal or texture coordinate "
+        "have such. 0 = at the same place; above: up to this share of the model's size; -1 = none "
         "are joined.",
         ParameterKind::real,
         mesh::GateOptions().weld,

@@ -81,13 +81,13 @@ Declare<O> with_seams(Declare<O> filter) {
         .real(&O::notch_spacing_mm, "Notch spacing (mm)",
               "Mean distance of the notches along a seam, in millimetres. 0 = no notches.")
         .real(&O::alike_mm, "Make pieces alike within (mm)",
-              "Pieces whose outlines differ by less than this, in millimetres (and 3 % of their "
-              "size), as they are or mirrored, all get the mean of their outlines. So does a piece "
-              "that is so near to its own mirror image. 0 = none.")
-        .real(
-            &O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
-            "Pieces have the same shape if their outlines, turned and moved onto each other, "
-            "differ by less than this, in millimetres. And by less than a hundredth of their size.");
+              "Pieces whose outlines differ by less than this, in millimetres, as they are or "
+              "mirrored, all get the mean of their outlines. It is 3 % of their size at most. So "
+              "does a piece that is so near to its own mirror image. 0 = none.")
+        .real(&O::pair_tolerance_mm, "Tolerance for equal pieces (mm)",
+              "Pieces have the same shape if their outlines, turned and moved onto each other, "
+              "differ by less than this, in millimetres. And by less than a hundredth of their "
+              "size.");
 }
 
 std::uint8_t faded(double share) {

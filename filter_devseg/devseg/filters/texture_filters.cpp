@@ -21,9 +21,9 @@ struct TransferOptions {
 };
 
 constexpr const char* transfer_help =
-    "Bakes the textures of the mesh into its new texture coordinates, so that a textured scan "
-    "keeps its look when it is segmented and flattened anew. The result is one image of the "
-    "colours that the surface had, bilinear, with padding around the charts.<br>"
+    "Bakes the textures of the mesh into its new texture coordinates. So a textured scan keeps its "
+    "look when it is segmented and flattened anew. The result is one image of the colours that the "
+    "surface had, bilinear, with padding around the charts.<br>"
     "'Charts: Flatten' and 'Charts: Pack' keep the coordinates that fit the textures as face "
     "attributes <b>texcoord_before_u</b>, <b>texcoord_before_v</b> and <b>texture_before</b>; they "
     "are removed afterwards. The new coordinates must lie in the unit square.";

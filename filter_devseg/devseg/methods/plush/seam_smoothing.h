@@ -1,4 +1,4 @@
-// Seams without teeth and detours.
+// Seams without detours.
 #pragma once
 
 #include "devseg/methods/plush/patch_tester.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "devseg/atlas/border_path.h"
-#include "devseg/atlas/fragments.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -80,33 +79,6 @@ TEST(CreaseFactor, IsOneOnPlanesAndATenthOnRightAngles) {
         const bool crease = mesh.face_normals[h / 3].dot(mesh.face_normals[mesh.twin[h] / 3]) < 0.5;
         EXPECT_NEAR(atlas::crease_factor(mesh, h), crease ? 0.1 : 1.0, 1e-12);
     }
-}
-
-TEST(Fragments, SmallPiecesGoToTheNeighbourWithTheLongestBorder) {
-    const Mesh mesh = checks::gated(shapes::grid(20, 20));
-    std::vector<Index> label;
-    for (const Vec3& centre : mesh.face_centers)
-        label.push_back(centre.x() < 0.0 ? 0 : 1);
-    label[5] = 7; // one face, all of whose neighbours have the same label
-    const std::vector<Index> result = atlas::absorb_fragments(mesh, label, 0.01);
-    EXPECT_EQ(1 + *std::max_element(result.begin(), result.end()), 2);
-    for (Index h = 15; h < 18; ++h)
-        if (mesh.twin[h] >= 0) {
-            EXPECT_EQ(result[5], result[mesh.twin[h] / 3]);
-        }
-}
-
-TEST(Fragments, PiecesWithoutNeighboursAndLargeOnesStay) {
-    mesh::RawMesh raw = shapes::grid(10, 10);
-    const Index base = static_cast<Index>(raw.points.size());
-    for (const Vec3& p : {Vec3(5, 5, 5), Vec3(5.01, 5, 5), Vec3(5, 5.01, 5)})
-        raw.points.push_back(p);
-    raw.faces.push_back({base, base + 1, base + 2});
-    const Mesh mesh = checks::gated(raw);
-    const std::vector<Index> label(mesh.faces.size(), 3);
-    const std::vector<Index> result = atlas::absorb_fragments(mesh, label, 0.5);
-    EXPECT_EQ(result.front(), 0);
-    EXPECT_EQ(result.back(), 1);
 }
 
 } // namespace

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "devseg/atlas/fragments.h"
 #include "devseg/base/parallel.h"
 #include "devseg/flatten/flatten.h"
 #include "devseg/methods/plush/limbs.h"
@@ -206,26 +205,6 @@ TEST(SeamNetwork, CrossOnPlateHasFourSegments) {
     remove_seams(setting, RemovalOptions{}, seam, progress);
     EXPECT_EQ(find_patches(mesh, seam).count, 1);
     EXPECT_EQ(find_segments(mesh, seam, {}, weight).size(), 0U);
-}
-
-TEST(SeamSmoothing, TeethGo) {
-    const Mesh mesh = checks::gated(shapes::grid(10, 10));
-    std::vector<Index> label(mesh.faces.size());
-    for (std::size_t f = 0; f < label.size(); ++f)
-        label[f] = mesh.face_centers[f].x() > 0.0 ? 1 : 0;
-    std::vector<Index> toothed = label;
-    for (const Face f : mesh.all_faces())
-        for (const HalfEdge h : half_edges_of(f))
-            if (mesh.twin[h] >= 0 && label[f] == 0 && f % 4 == 0 && label[mesh.twin[h] / 3] == 1)
-                toothed[f] = 1;
-    EXPECT_NE(toothed, label);
-    atlas::remove_teeth(mesh, toothed);
-    for (const Face f : mesh.all_faces()) {
-        int others = 0;
-        for (const HalfEdge h : half_edges_of(f))
-            others += mesh.twin[h] >= 0 && toothed[mesh.twin[h] / 3] != toothed[f];
-        EXPECT_LT(others, 2);
-    }
 }
 
 } // namespace
