@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "devseg/curves/smoothing.h"
 #include "devseg/curves/splitting.h"
@@ -85,6 +86,26 @@ void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face
             held[h] = held[mesh.twin[h]] = 1;
 }
 
+// Smooth seams, and those that stay on their edges. A seam may consist of several curves, which
+// meet in its vertices that are curved.
+std::pair<Index, Index> count_seams(const Network& network, bool done) {
+    const auto count = static_cast<Index>(network.curves.size());
+    graph::Unions seams(at(count));
+    for (const Node& node : network.nodes)
+        if (!node.is_junction() && node.curves.size() == 2 &&
+            network.curves[node.curves[0]].held == network.curves[node.curves[1]].held)
+            seams.join(seams.find(node.curves[0]), seams.find(node.curves[1]));
+    std::vector<std::uint8_t> is_smooth(at(count), 0);
+    for (Index c = 0; c < count; ++c)
+        if (done && network.curves[c].first >= 0)
+            is_smooth[at(seams.find(c))] = 1;
+    std::pair<Index, Index> counts{0, 0};
+    for (Index c = 0; c < count; ++c)
+        if (seams.find(c) == c)
+            ++(is_smooth[at(c)] != 0 ? counts.first : counts.second);
+    return counts;
+}
+
 } // namespace
 
 double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
@@ -104,11 +125,13 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                                          tuning.least_rounds, tuning.most_rounds))
                            : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
-    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), {}};
+    std::vector<std::uint8_t> firm(held.size(), 0);
     for (std::size_t h = 0; h < firmness.size(); ++h) {
         held[h] = held[h] != 0 || firmness[h] == Firmness::held ? 1 : 0;
-        aims.firm[h] = firmness[h] == Firmness::close ? 1 : 0;
+        firm[h] = firmness[h] == Firmness::close ? 1 : 0;
     }
+    const CurvedVertices curved(mesh, firm);
+    SmoothingAims aims{scale, rounds, {}};
     if (options.symmetric) {
         auto finding = progress.part("finding the mirror plane", 0.2);
         aims.plane = mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
@@ -119,13 +142,11 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
     bool done = false;
     for (int attempt = 0; attempt < tuning.attempts && !done; ++attempt) {
         auto part = progress.part("smoothing seams", (attempt == 0 ? 0.7 : 0.5) * progress.left());
-        Network network(mesh, charts, held);
-        smooth(network, aims, part);
+        Network network(mesh, charts, held, curved);
+        smooth(network, curved, aims, part);
         SplitMesh split = split_along(network, charts, progress);
         done = split.failed.empty();
-        result.smooth_seams = result.kept_seams = 0;
-        for (const Curve& curve : network.curves)
-            ++(curve.held || !done ? result.kept_seams : result.smooth_seams);
+        std::tie(result.smooth_seams, result.kept_seams) = count_seams(network, done);
         if (done) {
             result.refinement = std::move(split.refinement);
             result.charts = std::move(split.charts);

@@ -42,10 +42,10 @@ Vec3 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
 
 class Smoother {
 public:
-    Smoother(Network& network, const SmoothingAims& aims)
+    Smoother(Network& network, const CurvedVertices& curved, const SmoothingAims& aims)
         : net_(network), scale_(aims.scale), rounds_(aims.rounds),
-          chains_(make_chains(network, aims.scale)), anchors_(network, aims.firm),
-          plane_(aims.plane) {}
+          chains_(make_chains(network, aims.scale)), anchors_(network, curved), plane_(aims.plane) {
+    }
 
     void hold_near_vertices() { anchors_.add_near(net_); }
 
@@ -319,8 +319,9 @@ void Smoother::move_junction(Index number, const Vec3& target) {
 
 } // namespace
 
-void smooth(Network& network, const SmoothingAims& aims, Progress& progress) {
-    Smoother smoother(network, aims);
+void smooth(Network& network, const CurvedVertices& curved, const SmoothingAims& aims,
+            Progress& progress) {
+    Smoother smoother(network, curved, aims);
     const int last = static_cast<int>(tuning.last_rounds * aims.rounds);
     for (int k = 0; k < aims.rounds; ++k) {
         if (k == aims.rounds - last)

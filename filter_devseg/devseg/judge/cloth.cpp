@@ -82,6 +82,7 @@ private:
             options.give_up_energy = tuning.hopeless_free_energy * share;
             options.give_up_excess = tuning.hopeless_excess * share;
             options.give_up_overlap = tuning.hopeless_overlap;
+            options.push_apart = false;
         }
         auto uv = flatten::attempt([&] {
             return flatten::least_strain_map(problem_, surface_, tolerance_, options, progress_);

@@ -33,6 +33,7 @@ struct SewingMapOptions {
     // Of the map with the least strain: the mean of ψ − 1 above which the chart is given up.
     double give_up_excess = infinite;
     std::optional<double> give_up_overlap;
+    bool push_apart = true; // parts that overlap, while seams keep their lengths
 };
 
 /// A map by a few as-rigid-as-possible steps; empty where its energy is above a limit, or faces are
