@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/slit_closing.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
@@ -292,6 +293,36 @@ TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
     EXPECT_EQ(made.smooth_seams, 1);
     EXPECT_TRUE(passes_peak(made.refinement.mesh, made.charts));
     EXPECT_LT(made.new_length, 0.9 * made.old_length);
+}
+
+// Three seams that meet at a peak take up its curvature: their junction stays.
+TEST(SmoothSeams, JunctionsStayAtVerticesThatAreCurved) {
+    mesh::RawMesh plate = shapes::grid(40, 40);
+    const Mesh flat = checks::gated(plate);
+    const auto middle =
+        std::min_element(flat.points.begin(), flat.points.end(), [](const Vec3& a, const Vec3& b) {
+            return a.squaredNorm() < b.squaredNorm();
+        });
+    const Vertex peak(static_cast<Index>(middle - flat.points.begin()));
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers) {
+        const double angle = std::atan2(p.y() - middle->y(), p.x() - middle->x());
+        label.push_back(angle < -2.0 || angle > 2.5 ? 0 : angle < 0.3 ? 1 : 2);
+    }
+    const auto stays = [&](double height) {
+        plate.points[peak].z() = height;
+        const Mesh mesh = checks::gated(plate);
+        const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+        EXPECT_EQ(atlas::cut_edges_at_vertices(mesh, charts.seam)[peak], 3);
+        SmoothOptions options;
+        options.smoothness = 0.05;
+        options.keep_creases = 180.0;
+        const SmoothSeams made = smoothed(mesh, charts, options);
+        expect_sound(mesh, charts, made);
+        return atlas::cut_edges_at_vertices(made.refinement.mesh, made.charts.seam)[peak] == 3;
+    };
+    EXPECT_TRUE(stays(0.03));
+    EXPECT_FALSE(stays(0.0));
 }
 
 // An egg whose triangles know nothing of its mirror plane, with a cap on each side.
