@@ -70,6 +70,15 @@ double mean_edge(const Mesh& mesh, const atlas::ChartMap& charts) {
     return edges > 0 ? length / edges : 0.0;
 }
 
+// Whether the curve was drawn to a mirror image until now.
+bool leave_alone(const Curve& curve, const Mesh& mesh, std::vector<std::uint8_t>& alone) {
+    if (curve.held || curve.path.empty() || alone[curve.path.front()] != 0)
+        return false;
+    for (const HalfEdge h : curve.path)
+        alone[h] = alone[mesh.twin[h]] = 1;
+    return true;
+}
+
 // Keeps the edges of a path that are near to the face, at least the nearest one; all of them where
 // there is no face.
 void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face, double reach,
@@ -131,7 +140,7 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
         firm[h] = firmness[h] == Firmness::close ? 1 : 0;
     }
     const CurvedVertices curved(mesh, firm);
-    SmoothingAims aims{scale, rounds, {}};
+    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), {}};
     if (options.symmetric) {
         auto finding = progress.part("finding the mirror plane", 0.2);
         aims.plane = mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
@@ -152,9 +161,11 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
             result.charts = std::move(split.charts);
         }
         const bool whole = attempt + tuning.whole_attempts >= tuning.attempts;
+        // What cannot be cut beside a mirror image is smoothed without one first.
         for (const Failure& failure : split.failed)
-            hold_around(network.curves[failure.curve].path, mesh, whole ? -1 : failure.face, reach,
-                        held);
+            if (const Curve& curve = network.curves[failure.curve];
+                whole || !aims.plane || !leave_alone(curve, mesh, aims.alone))
+                hold_around(curve.path, mesh, whole ? -1 : failure.face, reach, held);
         reach *= 2.0;
     }
     if (!done) { // the mesh as it is

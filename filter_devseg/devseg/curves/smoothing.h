@@ -1,7 +1,9 @@
 // Curves on the surface, smoothed by bending.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "devseg/base/progress.h"
 #include "devseg/curves/curved_vertices.h"
@@ -11,8 +13,9 @@
 namespace devseg::curves {
 
 struct SmoothingAims {
-    double scale;                           // internal units: shorter waves go
-    int rounds;                             // which share the smoothing among them
+    double scale;                    // internal units: shorter waves go
+    int rounds;                      // which share the smoothing among them
+    std::vector<std::uint8_t> alone; // 3 #F: 1 on edges of curves that have no mirror image
     std::optional<mesh::MirrorPlane> plane; // in which curves become mirror images of each other
 };
 

@@ -382,6 +382,25 @@ TEST(SmoothSeams, MirrorEachOtherWhateverTheTriangles) {
     EXPECT_GT(farthest_from_image(smoothed(mesh, charts)), 0.5 * edge);
 }
 
+// Two seams beside each other on one side, and one on the other: it is the image of one of them.
+TEST(SmoothSeams, OnlyTheNearestIsDrawnToAnImage) {
+    const Mesh mesh = checks::gated(egg());
+    const double edge = mesh.edge_length(HalfEdge(0)) * mesh.unit_length;
+    std::vector<Index> label;
+    for (const Vec3& p : mesh.face_centers) {
+        const double x = p.x() * mesh.unit_length;
+        label.push_back(x > 0.75 ? 0 : x > -0.75 ? 1 : x > -0.75 - 1.6 * edge ? 2 : 3);
+    }
+    const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+    ASSERT_EQ(charts.count, 4);
+    SmoothOptions options;
+    options.symmetric = true;
+    const SmoothSeams made = smoothed(mesh, charts, options);
+    expect_sound(mesh, charts, made);
+    EXPECT_EQ(made.smooth_seams, 3);
+    EXPECT_NEAR(made.new_length, smoothed(mesh, charts).new_length, 0.02 * made.new_length);
+}
+
 TEST(SmoothSeams, WithoutSeamsNothingChanges) {
     const Mesh mesh = checks::gated(shapes::sphere(2));
     const ChartMap charts = checks::components(mesh);
