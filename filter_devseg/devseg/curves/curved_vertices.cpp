@@ -1,5 +1,7 @@
 #include "devseg/curves/curved_vertices.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "devseg/mesh/angle_defects.h"
@@ -9,39 +11,45 @@ namespace devseg::curves {
 namespace {
 
 struct Tuning {
-    double sharp = 40.0 * degrees;  // curvature of vertices that seams never leave
-    double curved = 15.0 * degrees; // and of those that they go back to
-    double firm = 2.0 * degrees;    // the same near firm seams, which never leave the former
+    // Curvature, in radians, of vertices that free, near and nearer seams never leave,
+    std::array<double, 3> kept{40.0 * degrees, 10.0 * degrees, 2.0 * degrees};
+    double drawn = 15.0 * degrees; // and of those that free ones go back to.
 };
 constexpr Tuning tuning;
 
-// The vertices of faces that touch a firm seam: curves that leave it stay among them for long.
-std::vector<std::uint8_t> vertices_near(const Mesh& mesh, const std::vector<std::uint8_t>& firm) {
-    std::vector<std::uint8_t> on(mesh.points.size(), 0);
+// The firmest seam at each vertex of a face that touches it: curves that leave it stay among them
+// for long. Held ones go nowhere.
+std::vector<Firmness> firmness_near(const Mesh& mesh, const std::vector<Firmness>& firmness) {
+    std::vector<Firmness> on(mesh.points.size(), Firmness::free);
+    const auto raise = [](Firmness& at_vertex, Firmness of_seam) {
+        if (of_seam != Firmness::held)
+            at_vertex = std::max(at_vertex, of_seam);
+    };
     for (const HalfEdge h : mesh.all_half_edges())
-        if (firm[h] != 0)
-            on[mesh.origin(h)] = on[mesh.target(h)] = 1;
-    std::vector<std::uint8_t> near = on;
+        for (const Vertex v : {mesh.origin(h), mesh.target(h)})
+            raise(on[v], firmness[h]);
+    std::vector<Firmness> near = on;
     for (const HalfEdge h : mesh.all_half_edges())
-        if (on[mesh.origin(h)] != 0)
-            near[mesh.target(h)] = near[mesh.origin(Mesh::previous(h))] = 1;
+        for (const Vertex v : {mesh.target(h), mesh.origin(Mesh::previous(h))})
+            raise(near[v], on[mesh.origin(h)]);
     return near;
 }
 
 } // namespace
 
-CurvedVertices::CurvedVertices(const Mesh& mesh, const std::vector<std::uint8_t>& firm)
-    : defect_(mesh::angle_defects(mesh)), firm_(vertices_near(mesh, firm)) {
+CurvedVertices::CurvedVertices(const Mesh& mesh, const std::vector<Firmness>& firmness)
+    : defect_(mesh::angle_defects(mesh)), firmness_(firmness_near(mesh, firmness)) {
     for (double& d : defect_)
         d = std::abs(d);
 }
 
 bool CurvedVertices::keeps_seams(Vertex v) const {
-    return defect_[v] > (firm_[v] != 0 ? tuning.firm : tuning.sharp);
+    return defect_[v] > tuning.kept[static_cast<std::size_t>(firmness_[v])];
 }
 
 bool CurvedVertices::draws_seams(Vertex v) const {
-    return defect_[v] >= (firm_[v] != 0 ? tuning.firm : tuning.curved);
+    return defect_[v] >=
+           std::min(tuning.drawn, tuning.kept[static_cast<std::size_t>(firmness_[v])]);
 }
 
 } // namespace devseg::curves

@@ -9,10 +9,18 @@
 
 namespace devseg::curves {
 
+/// How free a seam is.
+enum class Firmness : std::uint8_t {
+    free,   // a smooth curve
+    near,   // the same, through those of its vertices that are curved
+    nearer, // through less curved ones as well
+    held,   // stays on its edges
+};
+
 class CurvedVertices {
 public:
-    /// `firm` (3 #F): 1 on edges near which seams stay at less curved vertices as well.
-    CurvedVertices(const Mesh& mesh, const std::vector<std::uint8_t>& firm);
+    /// `firmness` (3 #F): of each seam edge, both half-edges.
+    CurvedVertices(const Mesh& mesh, const std::vector<Firmness>& firmness);
 
     /// So curved that seams and junctions never leave it.
     bool keeps_seams(Vertex v) const;
@@ -21,7 +29,7 @@ public:
 
 private:
     std::vector<double> defect_;     // #V: its magnitude, radians
-    std::vector<std::uint8_t> firm_; // #V: 1 near firm seams
+    std::vector<Firmness> firmness_; // #V: of the firmest seam nearby
 };
 
 } // namespace devseg::curves

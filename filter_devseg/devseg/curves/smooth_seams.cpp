@@ -123,8 +123,24 @@ double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
                     tuning.least_edges * mean_edge(mesh, charts));
 }
 
+std::optional<mesh::MirrorPlane> seam_plane(const Mesh& mesh, const SmoothOptions& options,
+                                            Progress& progress) {
+    if (!options.symmetric)
+        return std::nullopt;
+    auto finding = progress.part("finding the mirror plane", 1.0);
+    return mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
+}
+
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
-                         const SmoothOptions& options, Progress& progress,
+                         const SmoothOptions& options, Progress& progress) {
+    auto finding = progress.part(0.2);
+    const auto plane = seam_plane(mesh, options, finding);
+    return smooth_seams(mesh, charts, options, plane, progress);
+}
+
+SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
+                         const SmoothOptions& options,
+                         const std::optional<mesh::MirrorPlane>& plane, Progress& progress,
                          const std::vector<Firmness>& firmness) {
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
@@ -134,17 +150,11 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                                          tuning.least_rounds, tuning.most_rounds))
                            : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
-    std::vector<std::uint8_t> firm(held.size(), 0);
-    for (std::size_t h = 0; h < firmness.size(); ++h) {
+    for (std::size_t h = 0; h < firmness.size(); ++h)
         held[h] = held[h] != 0 || firmness[h] == Firmness::held ? 1 : 0;
-        firm[h] = firmness[h] == Firmness::close ? 1 : 0;
-    }
-    const CurvedVertices curved(mesh, firm);
-    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), {}};
-    if (options.symmetric) {
-        auto finding = progress.part("finding the mirror plane", 0.2);
-        aims.plane = mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
-    }
+    const CurvedVertices curved(
+        mesh, firmness.empty() ? std::vector<Firmness>(held.size(), Firmness::free) : firmness);
+    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), plane};
     SmoothSeams result;
     result.has_plane = aims.plane.has_value();
     double reach = tuning.around * edge;

@@ -13,9 +13,9 @@
 namespace devseg::curves {
 
 struct SmoothingAims {
-    double scale;                    // internal units: shorter waves go
-    int rounds;                      // which share the smoothing among them
-    std::vector<std::uint8_t> alone; // 3 #F: 1 on edges of curves that have no mirror image
+    double scale;                           // internal units: shorter waves go
+    int rounds;                             // which share the smoothing among them
+    std::vector<std::uint8_t> alone;        // 3 #F: 1 on edges of curves that have no mirror image
     std::optional<mesh::MirrorPlane> plane; // in which curves become mirror images of each other
 };
 

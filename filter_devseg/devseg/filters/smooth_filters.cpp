@@ -30,7 +30,7 @@ constexpr const char* smooth_help =
 struct Tuning {
     // Of smoothing, where charts come out above a bound: seams are made firmer around the places
     // where they are, then all seams of those charts, and in the end of all that ever were above.
-    int local_rounds = 4;
+    int local_rounds = 6;
     int most_rounds = 16;
     double reach = 1.0;    // smoothness: what is made firmer around a place; twice each time
     double exact = 1.0001; // L2 stretch that nobody can measure: charts within it stay within it
@@ -201,8 +201,9 @@ bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts, const std::vec
     for (const HalfEdge h : mesh.all_half_edges()) {
         if (marked[h] == 0 || firmness[h] == Firmness::held)
             continue;
-        firmness[h] =
-            reach == infinite || firmness[h] == Firmness::close ? Firmness::held : Firmness::close;
+        firmness[h] = reach == infinite
+                          ? Firmness::held
+                          : static_cast<Firmness>(static_cast<std::uint8_t>(firmness[h]) + 1);
         changed = true;
     }
     return changed;
@@ -216,6 +217,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
+    auto finding = progress.part(0.1);
+    const auto plane = curves::seam_plane(mesh, options, finding);
     auto looking = progress.part("judging charts", 0.1);
     const std::vector<double> stretch = stretch_bounds(mesh, charts, bound, looking);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
@@ -224,7 +227,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
     double reach = tuning.reach * curves::smoothing_scale(mesh, charts, options);
     for (int round = 1;; ++round) {
         auto smoothing = progress.part(0.5 * progress.left());
-        curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
+        curves::SmoothSeams made =
+            curves::smooth_seams(mesh, charts, options, plane, smoothing, firmness);
         auto judging = progress.part("judging charts", 0.5 * progress.left());
         std::vector<Excess> after =
             above(made.refinement.mesh, made.charts, judged, options, stretch, judging);

@@ -9,6 +9,7 @@
 
 #include "devseg/atlas/disks.h"
 #include "devseg/atlas/slit_closing.h"
+#include "devseg/mesh/angle_defects.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
@@ -293,6 +294,47 @@ TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
     EXPECT_EQ(made.smooth_seams, 1);
     EXPECT_TRUE(passes_peak(made.refinement.mesh, made.charts));
     EXPECT_LT(made.new_length, 0.9 * made.old_length);
+}
+
+// The firmer a seam, the less curved are the vertices that it goes through.
+TEST(SmoothSeams, FirmSeamsGoThroughLessCurvedVertices) {
+    mesh::RawMesh plate = shapes::grid(40, 40);
+    const Mesh flat = checks::gated(plate);
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers)
+        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    const std::vector<std::uint8_t> seam = atlas::make_chart_map(flat, label, {}, false).seam;
+    Vertex top; // of the stairs that the seam makes
+    for (const HalfEdge h : flat.all_half_edges())
+        if (seam[h] != 0 && flat.points[flat.origin(h)].norm() < 0.1 &&
+            (top < 0 || flat.points[flat.origin(h)].x() + 0.5 * flat.points[flat.origin(h)].y() >
+                            flat.points[top].x() + 0.5 * flat.points[top].y()))
+            top = flat.origin(h);
+    ASSERT_GE(top, 0);
+    const auto passes = [&](double curvature, Firmness firmness) {
+        Mesh mesh = flat;
+        for (double height = 0.0;; height += 5e-5) {
+            plate.points[top].z() = height;
+            mesh = checks::gated(plate);
+            if (std::abs(mesh::angle_defects(mesh)[top]) > curvature * degrees)
+                break;
+        }
+        SmoothOptions options;
+        options.smoothness = 0.05;
+        options.keep_creases = 180.0;
+        Progress progress;
+        const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+        const SmoothSeams made = smooth_seams(mesh, charts, options, std::nullopt, progress,
+                                              std::vector<Firmness>(mesh.twin.size(), firmness));
+        expect_sound(mesh, charts, made);
+        return atlas::cut_edges_at_vertices(made.refinement.mesh, made.charts.seam)[top] == 2;
+    };
+    for (const double curvature : {5.0, 12.0, 45.0}) {
+        EXPECT_EQ(passes(curvature, Firmness::free), curvature > 40.0) << curvature;
+        EXPECT_EQ(passes(curvature, Firmness::near), curvature > 10.0) << curvature;
+        EXPECT_TRUE(passes(curvature, Firmness::nearer)) << curvature;
+        EXPECT_TRUE(passes(curvature, Firmness::held)) << curvature;
+    }
 }
 
 // Three seams that meet at a peak take up its curvature: their junction stays.
