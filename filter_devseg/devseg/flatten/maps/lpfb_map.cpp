@@ -156,10 +156,10 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
     return is_enough(bent) ? bent : smaller_change(std::move(own), std::move(bent));
 }
 
-std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& problem,
-                                                  const atlas::ChartSurface& surface,
-                                                  double tolerance, const SewingMapOptions& options,
-                                                  const Progress& progress) {
+std::optional<LeastStrainMap> least_strain_map(const FlatteningProblem& problem,
+                                               const atlas::ChartSurface& surface, double tolerance,
+                                               const SewingMapOptions& options,
+                                               const Progress& progress) {
     const std::vector<Vec2> isometric =
         nearly_isometric_map(problem, options.give_up_energy, progress);
     if (isometric.empty() ||
@@ -172,16 +172,19 @@ std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& probl
         return std::nullopt;
     auto uv = with_seam_lengths(problem, bent, progress);
     if (!uv)
-        return uv;
+        return std::nullopt;
     Pairs pairs = overlapping_pairs(surface, *uv, tolerance);
-    if (pairs.empty() || !options.push_apart)
-        return pairs.empty() ? std::move(uv) : std::nullopt;
+    if (pairs.empty())
+        return LeastStrainMap{std::move(*uv)};
+    if (!options.push_apart)
+        return std::nullopt;
     const auto push = [&](const std::vector<Vec2>& start, const ContactPenalty& contacts) {
         const auto pushed =
             with_seam_lengths(problem, push_boundary(problem, start, contacts, progress), progress);
         return pushed.value_or(std::vector<Vec2>());
     };
-    return push_apart_by(push, problem, surface, std::move(*uv), std::move(pairs), tolerance);
+    uv = push_apart_by(push, problem, surface, std::move(*uv), std::move(pairs), tolerance);
+    return uv ? std::optional(LeastStrainMap{std::move(*uv), true}) : std::nullopt;
 }
 
 } // namespace devseg::flatten

@@ -67,11 +67,11 @@ TEST(Strain, IsSummedByArea) {
 }
 
 std::vector<Vec2> sewn(const Disk& disk) {
-    const auto uv = least_strain_map(disk.problem, disk.surface,
-                                     plane::layout_tolerance(disk.problem.model_size),
-                                     SewingMapOptions{}, Progress{});
-    EXPECT_TRUE(uv.has_value());
-    return uv.value_or(std::vector<Vec2>{});
+    const auto map = least_strain_map(disk.problem, disk.surface,
+                                      plane::layout_tolerance(disk.problem.model_size),
+                                      SewingMapOptions{}, Progress{});
+    EXPECT_TRUE(map.has_value());
+    return map ? map->uv : std::vector<Vec2>();
 }
 
 Strain strain_of(const Disk& disk, const std::vector<Vec2>& uv) {
@@ -136,16 +136,18 @@ TEST(LeastStrain, OverlappingPartsArePushedApart) {
     options.push_apart = false;
     EXPECT_FALSE(least_strain_map(disk.problem, disk.surface, tolerance, options, Progress()));
     options.push_apart = true;
-    const auto uv = least_strain_map(disk.problem, disk.surface, tolerance, options, Progress());
-    ASSERT_TRUE(uv.has_value());
-    EXPECT_TRUE(overlapping_pairs(disk.surface, *uv, tolerance).empty());
-    EXPECT_EQ(count_flips(disk.problem, *uv), 0);
+    const auto map = least_strain_map(disk.problem, disk.surface, tolerance, options, Progress());
+    ASSERT_TRUE(map.has_value());
+    EXPECT_TRUE(map->pushed);
+    const std::vector<Vec2>& uv = map->uv;
+    EXPECT_TRUE(overlapping_pairs(disk.surface, uv, tolerance).empty());
+    EXPECT_EQ(count_flips(disk.problem, uv), 0);
     for (std::size_t i = 0; i < disk.problem.boundary.size(); ++i) {
         const Vertex v = disk.problem.boundary[i];
         const Vertex u = disk.problem.boundary[(i + 1) % disk.problem.boundary.size()];
-        EXPECT_NEAR(((*uv)[u] - (*uv)[v]).norm(), disk.problem.boundary_edge[i], 1e-9);
+        EXPECT_NEAR((uv[u] - uv[v]).norm(), disk.problem.boundary_edge[i], 1e-9);
     }
-    EXPECT_LT(measure_strain(face_strains(disk.problem, *uv), disk.problem.area).most_of_it, 0.1);
+    EXPECT_LT(measure_strain(face_strains(disk.problem, uv), disk.problem.area).most_of_it, 0.1);
 }
 
 } // namespace
