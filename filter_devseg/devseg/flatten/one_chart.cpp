@@ -48,6 +48,7 @@ constexpr Tuning tuning;
 struct Map {
     std::vector<Vec2> uv;
     bool converged = true;
+    bool pushed = false; // parts overlapped, and were pushed apart
 };
 
 // One chart with all that its maps need. Methods return nothing where they find no map without
@@ -181,12 +182,12 @@ private:
     }
 
     std::optional<Map> least_strain() const {
-        auto uv = attempt([&] {
+        auto map = attempt([&] {
             return least_strain_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_);
         });
-        if (!uv)
+        if (!map)
             return std::nullopt;
-        return Map{std::move(*uv)};
+        return Map{std::move(map->uv), true, map->pushed};
     }
 
     // Keeps the lengths of boundary edges and evens out areas. Where no map for sewing is found,
@@ -326,6 +327,7 @@ private:
     Pairs take(const Map& map) {
         chart_.uv = map.uv;
         chart_.converged = map.converged;
+        chart_.pushed = map.pushed;
         restore_needles(problem_, chart_.uv);
         finish();
         return overlaps();
