@@ -201,11 +201,13 @@ declare::HostMesh host_for(const declare::FilterDeclaration& filter, const Start
 TEST(ProgressBar, IsNotAtItsEndWhileThereIsWork) {
     const TemporaryFolder folder;
     const Start small = make_start(4);  // 5,120 faces
-    const Start large = make_start(5);  // 20,480 faces
+    const Start large = make_start(6);  // 81,920 faces
     const Start huge = make_octants(7); // 327,680 faces
     const std::map<std::string, const Start*> others = {
         {"Segmentation: Plush Toy Seams", &small},
         {"Charts: Deform to Exact Developability", &small},
+        {"Charts: From Selected Edges", &huge},
+        {"Charts: Cut to Disks", &huge},
         {"Charts: From Texture Coordinates", &huge},
         {"Charts: From Colors or Materials", &huge},
         {"Charts: Cut Mesh Along Seams", &huge},
