@@ -3,13 +3,22 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
-#include "devseg/mesh/coarsen.h"
+#include "devseg/atlas/disks.h"
+#include "devseg/flatten/energy/map_tools.h"
+#include "devseg/flatten/energy/multilevel.h"
+#include "devseg/flatten/energy/vertex_relaxation.h"
+#include "devseg/flatten/flatten.h"
+#include "devseg/flatten/maps/unfold.h"
+#include "devseg/flatten/repair/overlaps.h"
+#include "devseg/plane/overlap.h"
 
 namespace devseg::edit {
 
 using judge::TrialMap;
+using judge::WholeEffort;
 
 namespace {
 
@@ -24,58 +33,125 @@ bool is_large(const std::vector<Index>& faces) {
     return faces.size() > at(tuning.most_faces);
 }
 
-TrialMap coarse_map(const Mesh& mesh, const std::vector<Index>& faces,
-                    const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
-                    Progress& progress) {
-    const atlas::ChartSurface surface =
-        atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, seam));
-    auto decimating = progress.part("decimating what has changed", 0.3);
-    const mesh::CoarseMesh coarse =
-        mesh::coarsen_in_parallel(atlas::mesh_of(mesh, surface), tuning.most_faces, decimating);
-    std::vector<Index> all(coarse.mesh.faces.size());
-    std::iota(all.begin(), all.end(), 0);
-    auto flattening = progress.part("flattening what has changed", progress.left());
-    TrialMap map = std::move(
-        judge::whole_maps(coarse.mesh, {std::move(all)},
-                          std::vector<std::uint8_t>(coarse.mesh.twin.size(), 0), effort, flattening)
-            .front());
-    map.area = atlas::area_of(mesh, surface);
-    map.turns.clear();
-    map.part.clear();
+bool is_within(const TrialMap& map, const WholeEffort& effort) {
+    return effort.most_l2 <= 0.0 || map.l2_squared <= effort.most_l2 * effort.most_l2;
+}
+
+CoarseMap decimated(const Mesh& mesh, const std::vector<Index>& faces,
+                    const std::vector<std::uint8_t>& seam, Progress& progress) {
+    CoarseMap map;
+    map.surface = atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, seam));
+    map.chart = atlas::mesh_of(mesh, map.surface);
+    map.coarse = mesh::coarsen_in_parallel(map.chart, tuning.most_faces, progress);
+    return map;
+}
+
+// Of the coarse chart; fills in `coarse.uv`.
+TrialMap flattened(CoarseMap& coarse, const WholeEffort& effort, Progress& progress) {
+    const Mesh& mesh = coarse.coarse.mesh;
+    flatten::WholeChart asked;
+    asked.push_apart = effort.push_apart;
+    asked.is_good = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+        TrialMap map;
+        judge::measure_stretch(problem, uv, map);
+        return is_within(map, effort);
+    };
+    const std::vector<Index> one(mesh.faces.size(), 0);
+    const atlas::ChartMap disk =
+        atlas::cut_charts_to_disks(mesh, atlas::make_chart_map(mesh, one, {}, false), progress)
+            .charts;
+    flatten::FlatChart flat =
+        std::move(flatten::flatten_whole(mesh, disk, flatten::FlattenMethod::symmetric_dirichlet,
+                                         asked, progress)
+                      .front());
+    TrialMap map;
+    if (flat.uv.empty()) {
+        map.l2_squared = infinite;
+        return map;
+    }
+    judge::measure_stretch(flatten::make_flattening_problem(mesh, flat.surface), flat.uv, map);
+    map.flat = !flat.torn;
+    if (flat.surface.vertex.size() == mesh.points.size())
+        coarse.uv = std::move(flat.uv);
+    return map;
+}
+
+// A map of all faces that is near to the coarse one and to the best one; nothing where it is not
+// good. Charts that unfold exactly are taken as they are: their parts are not pushed apart.
+std::optional<TrialMap> refined(const Mesh& mesh, CoarseMap coarse, const WholeEffort& effort,
+                                const Progress& progress) {
+    const auto problem = flatten::make_flattening_problem(mesh, coarse.surface);
+    if (coarse.uv.empty() || flatten::largest_defect(problem) <= flatten::exact_angle ||
+        flatten::unfold(problem))
+        return std::nullopt;
+    std::vector<Vec2> uv(coarse.chart.points.size(), Vec2::Zero());
+    for (std::size_t v = 0; v < coarse.uv.size(); ++v)
+        uv[at(coarse.coarse.vertex[v])] = coarse.uv[v];
+    uv = flatten::refine_map(coarse.chart, std::move(coarse.coarse.surface), std::move(uv), problem,
+                             progress);
+    flatten::settle_peaks(problem, uv, progress);
+    flatten::relieve_peaks(problem, false, uv, progress);
+    flatten::scale_to_area(problem, uv);
+    TrialMap map;
+    judge::measure_stretch(problem, uv, map);
+    map.flat = true;
+    if (!is_within(map, effort) || flatten::count_flips(problem, uv) > 0 ||
+        flatten::overlaps_itself(coarse.surface, uv, plane::layout_tolerance(problem.model_size)))
+        return std::nullopt;
     return map;
 }
 
 } // namespace
 
-std::vector<TrialMap> quick_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam,
-                                 const judge::WholeEffort& effort, Progress& progress) {
+QuickMaps quick_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                     const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
+                     Progress& progress) {
     std::vector<std::vector<Index>> small;
     std::copy_if(charts.begin(), charts.end(), std::back_inserter(small),
                  [&](const auto& faces) { return !is_large(faces); });
     auto judging = progress.part("flattening what has changed", 0.3);
     std::vector<TrialMap> of_small = judge::whole_maps(mesh, small, seam, effort, judging);
-    std::vector<TrialMap> maps;
+    QuickMaps quick;
     auto next = of_small.begin();
     for (std::size_t c = 0; c < charts.size(); ++c) {
         auto one = progress.part("flattening what has changed",
                                  progress.left() / static_cast<double>(charts.size() - c));
-        maps.push_back(is_large(charts[c]) ? coarse_map(mesh, charts[c], seam, effort, one)
-                                           : std::move(*next++));
+        if (!is_large(charts[c])) {
+            quick.maps.push_back(std::move(*next++));
+            continue;
+        }
+        auto decimating = one.part("decimating what has changed", 0.3);
+        CoarseMap coarse = decimated(mesh, charts[c], seam, decimating);
+        auto flattening = one.part("flattening what has changed", one.left());
+        quick.maps.push_back(flattened(coarse, effort, flattening));
+        quick.maps.back().area = atlas::area_of(mesh, coarse.surface);
+        quick.coarse.push_back(std::move(coarse));
     }
-    return maps;
+    return quick;
 }
 
 void confirm_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                  const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
-                  std::vector<TrialMap>& maps, Progress& progress) {
-    std::vector<std::vector<Index>> large;
-    std::copy_if(charts.begin(), charts.end(), std::back_inserter(large), is_large);
-    std::vector<TrialMap> of_large = judge::whole_maps(mesh, large, seam, effort, progress);
-    auto next = of_large.begin();
-    for (std::size_t c = 0; c < charts.size(); ++c)
-        if (is_large(charts[c]))
-            maps[c] = std::move(*next++);
+                  const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
+                  QuickMaps& quick, Progress& progress) {
+    std::vector<std::size_t> open;
+    std::vector<std::vector<Index>> faces;
+    auto next = quick.coarse.begin();
+    for (std::size_t c = 0; c < charts.size(); ++c) {
+        if (!is_large(charts[c]))
+            continue;
+        auto map =
+            flatten::attempt([&] { return refined(mesh, std::move(*next), effort, progress); });
+        ++next;
+        if (map) {
+            quick.maps[c] = std::move(*map);
+        } else {
+            open.push_back(c);
+            faces.push_back(charts[c]);
+        }
+    }
+    std::vector<TrialMap> whole = judge::whole_maps(mesh, faces, seam, effort, progress);
+    for (std::size_t i = 0; i < open.size(); ++i)
+        quick.maps[open[i]] = std::move(whole[i]);
 }
 
 } // namespace devseg::edit

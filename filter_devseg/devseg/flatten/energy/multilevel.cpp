@@ -209,6 +209,16 @@ private:
 
 } // namespace
 
+std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
+                             const FlatteningProblem& problem, const Progress& progress) {
+    Refinement refinement(chart, std::move(coarse), std::move(uv));
+    while (!refinement.done()) {
+        refinement.refine(progress);
+        refinement.relax(refinement.done() ? &problem : nullptr, progress);
+    }
+    return refinement.take();
+}
+
 std::vector<Vec2> flatten_multilevel(
     const Mesh& mesh, const atlas::ChartSurface& surface, const FlatteningProblem& problem,
     const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
@@ -225,12 +235,7 @@ std::vector<Vec2> flatten_multilevel(
     for (const Vertex v : disk.all_vertices())
         uv[small.vertex[disk.vertex[v]]] = found[v];
 
-    Refinement refinement(local, std::move(small.surface), std::move(uv));
-    while (!refinement.done()) {
-        refinement.refine(progress);
-        refinement.relax(refinement.done() ? &problem : nullptr, progress);
-    }
-    return refinement.take();
+    return refine_map(local, std::move(small.surface), std::move(uv), problem, progress);
 }
 
 } // namespace devseg::flatten

@@ -10,6 +10,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/mesh/coarsen.h"
 
 namespace devseg::flatten {
 
@@ -25,5 +26,11 @@ std::vector<Vec2> flatten_multilevel(
     const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
         solve,
     const Progress& progress);
+
+/// The second half of that alone: `uv` (#v of `chart`, a chart as a mesh of its own) is a map of
+/// its coarse version without flips; `problem` is that of all its faces. Throws NumericalFailure as
+/// above.
+std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
+                             const FlatteningProblem& problem, const Progress& progress);
 
 } // namespace devseg::flatten
