@@ -46,20 +46,37 @@ CoarseMap decimated(const Mesh& mesh, const std::vector<Index>& faces,
     return map;
 }
 
+TrialMap measured(const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    TrialMap map;
+    judge::measure_stretch(problem, uv, map);
+    return map;
+}
+
+// A map whose parts overlap, pushed apart as 'Charts: Flatten' does it; empty where that fails.
+std::vector<Vec2> pushed(const flatten::FlatteningProblem& problem,
+                         const atlas::ChartSurface& surface, const std::vector<Vec2>& uv,
+                         const Progress& progress) {
+    const double tolerance = plane::layout_tolerance(problem.model_size);
+    const auto pairs = flatten::overlapping_pairs(surface, uv, tolerance);
+    if (pairs.empty())
+        return uv;
+    auto apart = flatten::push_apart(problem, surface, uv, pairs, tolerance, progress);
+    if (!apart)
+        return {};
+    std::vector<Vec2> relieved = *apart;
+    flatten::relieve_peaks(problem, true, relieved, progress);
+    return flatten::overlaps_itself(surface, relieved, tolerance) ? *apart : relieved;
+}
+
 // Of the coarse chart; fills in `coarse.uv`.
 TrialMap flattened(CoarseMap& coarse, const WholeEffort& effort, Progress& progress) {
     const Mesh& mesh = coarse.coarse.mesh;
-    flatten::WholeChart asked;
-    asked.push_apart = effort.push_apart;
-    asked.is_good = [&](const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
-        TrialMap map;
-        judge::measure_stretch(problem, uv, map);
-        return is_within(map, effort);
-    };
     const std::vector<Index> one(mesh.faces.size(), 0);
     const atlas::ChartMap disk =
         atlas::cut_charts_to_disks(mesh, atlas::make_chart_map(mesh, one, {}, false), progress)
             .charts;
+    flatten::WholeChart asked;
+    asked.push_apart = false;
     flatten::FlatChart flat =
         std::move(flatten::flatten_whole(mesh, disk, flatten::FlattenMethod::symmetric_dirichlet,
                                          asked, progress)
@@ -69,8 +86,16 @@ TrialMap flattened(CoarseMap& coarse, const WholeEffort& effort, Progress& progr
         map.l2_squared = infinite;
         return map;
     }
-    judge::measure_stretch(flatten::make_flattening_problem(mesh, flat.surface), flat.uv, map);
+    const auto problem = flatten::make_flattening_problem(mesh, flat.surface);
+    map = measured(problem, flat.uv);
     map.flat = !flat.torn;
+    if (flat.torn && !flat.developed && effort.push_apart && is_within(map, effort)) {
+        const std::vector<Vec2> apart = pushed(problem, flat.surface, flat.uv, progress);
+        if (!apart.empty()) {
+            map = measured(problem, apart);
+            map.flat = true;
+        }
+    }
     if (flat.surface.vertex.size() == mesh.points.size())
         coarse.uv = std::move(flat.uv);
     return map;
@@ -92,11 +117,14 @@ std::optional<TrialMap> refined(const Mesh& mesh, CoarseMap coarse, const WholeE
     flatten::settle_peaks(problem, uv, progress);
     flatten::relieve_peaks(problem, false, uv, progress);
     flatten::scale_to_area(problem, uv);
-    TrialMap map;
-    judge::measure_stretch(problem, uv, map);
-    map.flat = true;
-    if (!is_within(map, effort) || flatten::count_flips(problem, uv) > 0 ||
+    if (effort.push_apart)
+        uv = pushed(problem, coarse.surface, uv, progress);
+    if (uv.empty() || flatten::count_flips(problem, uv) > 0 ||
         flatten::overlaps_itself(coarse.surface, uv, plane::layout_tolerance(problem.model_size)))
+        return std::nullopt;
+    TrialMap map = measured(problem, uv);
+    map.flat = true;
+    if (!is_within(map, effort))
         return std::nullopt;
     return map;
 }

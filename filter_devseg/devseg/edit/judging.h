@@ -17,7 +17,7 @@ struct CoarseMap {
     atlas::ChartSurface surface; // all of its faces
     Mesh chart;                  // the same as a mesh of its own
     mesh::CoarseMesh coarse;     // of `chart`
-    std::vector<Vec2> uv;        // #v of `coarse.mesh`; empty where it was cut further
+    std::vector<Vec2> uv;        // #v of `coarse.mesh`, not pushed; empty where that was cut further
 };
 
 struct QuickMaps {
