@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devseg/atlas/join_loops.h"
+#include "devseg/flatten/coarse_map.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/multilevel.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -299,8 +300,13 @@ public:
                 return tear(open);
             return tear([&] { return halve(mesh_, surface_); }); // the halves are easier
         }
-        const Pairs pairs = take(*map);
-        return tear(may_push(pairs) ? push(pairs) : pairs);
+        Pairs pairs = take(*map);
+        if (may_push(pairs)) {
+            pairs = push(pairs);
+            if (!pairs.empty() && whole_ == nullptr && take_coarse())
+                pairs.clear();
+        }
+        return tear(pairs);
     }
 
 private:
@@ -360,6 +366,25 @@ private:
                 return {};
         }
         return overlaps();
+    }
+
+    // A map of a large chart that was pushed apart on few faces, in place of one that is cut apart.
+    bool take_coarse() {
+        if (surface_.face_count() <= coarse_map_faces)
+            return false;
+        const auto may_push = [](const FlatteningProblem&, const std::vector<Vec2>&) {
+            return true;
+        };
+        auto uv = attempt([&] {
+            return refine_coarse_map(mesh_, surface_, problem_,
+                                     map_coarsely(mesh_, surface_, may_push, progress_), progress_);
+        });
+        if (!uv)
+            return false;
+        chart_.uv = std::move(*uv);
+        chart_.pushed = true;
+        chart_.energy = symmetric_dirichlet_energy(problem_, chart_.uv);
+        return true;
     }
 
     const Mesh& mesh_;
