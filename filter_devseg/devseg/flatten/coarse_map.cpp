@@ -81,8 +81,9 @@ std::optional<std::vector<Vec2>> refine_coarse_map(const Mesh& mesh,
     for (const Vertex v : flat.surface.all_vertices())
         uv[coarse.coarse.vertex[flat.surface.vertex[v]]] = flat.uv[v];
     uv = refine_map(coarse.chart, std::move(coarse.coarse.surface), std::move(uv), problem,
-                    progress);
-    settle_peaks(problem, uv, progress);
+                    flat.pushed, progress);
+    if (!flat.pushed) // parts would come together again
+        settle_peaks(problem, uv, progress);
     relieve_peaks(problem, flat.pushed, uv, progress);
     scale_to_area(problem, uv);
     open_closed_slits(mesh, surface, slit_gap * problem.model_size, uv);

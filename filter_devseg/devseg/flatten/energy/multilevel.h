@@ -31,6 +31,7 @@ std::vector<Vec2> flatten_multilevel(
 /// its coarse version without flips; `problem` is that of all its faces. Throws NumericalFailure as
 /// above.
 std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
-                             const FlatteningProblem& problem, const Progress& progress);
+                             const FlatteningProblem& problem, bool hold_boundary,
+                             const Progress& progress);
 
 } // namespace devseg::flatten
