@@ -18,8 +18,8 @@ namespace devseg::flatten {
 namespace {
 
 struct Tuning {
-    // Of a chart's size, between parts that were pushed apart: at half of it, one map in four
-    // closes again somewhere when it is refined, and has to be pushed on all faces.
+    // Of a chart's size, between parts that were pushed apart: at half of it, more of them touch
+    // again when they are refined, and have to be pushed on all faces.
     double wide_gap = 8e-3;
 };
 constexpr Tuning tuning;
@@ -38,12 +38,12 @@ std::optional<std::vector<Vec2>> push_far(const FlatteningProblem& problem,
 } // namespace
 
 CoarseMap map_coarsely(
-    const Mesh& mesh, const atlas::ChartSurface& surface,
+    const Mesh& mesh, const atlas::ChartSurface& surface, Index most_faces,
     const std::function<bool(const FlatteningProblem&, const std::vector<Vec2>&)>& may_push,
     const Progress& progress) {
     CoarseMap map;
     map.chart = atlas::mesh_of(mesh, surface);
-    map.coarse = mesh::coarsen(map.chart, coarse_map_faces, progress);
+    map.coarse = mesh::coarsen(map.chart, most_faces, progress);
     const Mesh& coarse = map.coarse.mesh;
     std::vector<Index> all(coarse.faces.size());
     std::iota(all.begin(), all.end(), 0);
@@ -92,6 +92,19 @@ std::optional<std::vector<Vec2>> refine_coarse_map(const Mesh& mesh,
         overlaps_itself(surface, *apart, plane::layout_tolerance(problem.model_size)))
         return std::nullopt;
     return apart;
+}
+
+std::optional<std::vector<Vec2>> map_by_coarse(const Mesh& mesh, const atlas::ChartSurface& surface,
+                                               const FlatteningProblem& problem,
+                                               const Progress& progress) {
+    if (surface.face_count() <= coarse_map_faces)
+        return std::nullopt;
+    const auto may_push = [](const FlatteningProblem&, const std::vector<Vec2>&) { return true; };
+    return attempt([&] {
+        return refine_coarse_map(mesh, surface, problem,
+                                 map_coarsely(mesh, surface, coarse_map_faces, may_push, progress),
+                                 progress);
+    });
 }
 
 } // namespace devseg::flatten

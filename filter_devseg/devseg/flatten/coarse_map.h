@@ -12,8 +12,8 @@
 
 namespace devseg::flatten {
 
-/// Charts of more faces are decimated to so many. With half as many, more of them look flat that
-/// are not.
+/// Charts of more faces are decimated to so many where their map decides something. With half as
+/// many, more of them look flat that are not.
 constexpr Index coarse_map_faces = 8000;
 
 struct CoarseMap {
@@ -22,11 +22,11 @@ struct CoarseMap {
     FlatChart flat;          // of `coarse.mesh`, see flatten_whole
 };
 
-/// The coarse map of a chart, the same for any number of threads. Where its parts overlap, and
-/// `may_push` says so, they are pushed farther apart than paper needs, so that finer borders have
-/// room. Without uv where the coarse chart has no map.
+/// The map of a chart of that many faces at most, the same for any number of threads. Where its
+/// parts overlap, and `may_push` says so, they are pushed farther apart than paper needs, so that
+/// finer borders have room. Without uv where the coarse chart has no map.
 CoarseMap map_coarsely(
-    const Mesh& mesh, const atlas::ChartSurface& surface,
+    const Mesh& mesh, const atlas::ChartSurface& surface, Index most_faces,
     const std::function<bool(const FlatteningProblem&, const std::vector<Vec2>&)>& may_push,
     const Progress& progress);
 
@@ -37,5 +37,11 @@ std::optional<std::vector<Vec2>> refine_coarse_map(const Mesh& mesh,
                                                    const atlas::ChartSurface& surface,
                                                    const FlatteningProblem& problem,
                                                    CoarseMap coarse, const Progress& progress);
+
+/// The map of all faces that a chart gets which cannot be pushed apart on all faces; nothing for
+/// charts that are not large.
+std::optional<std::vector<Vec2>> map_by_coarse(const Mesh& mesh, const atlas::ChartSurface& surface,
+                                               const FlatteningProblem& problem,
+                                               const Progress& progress);
 
 } // namespace devseg::flatten

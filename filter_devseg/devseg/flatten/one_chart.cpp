@@ -301,12 +301,10 @@ public:
             return tear([&] { return halve(mesh_, surface_); }); // the halves are easier
         }
         Pairs pairs = take(*map);
-        if (may_push(pairs)) {
+        if (may_push(pairs))
             pairs = push(pairs);
-            if (!pairs.empty() && whole_ == nullptr && take_coarse())
-                pairs.clear();
-        }
-        return tear(pairs);
+        const bool is_coarse = may_push(pairs) && whole_ == nullptr && take_coarse();
+        return is_coarse ? std::vector<HalfEdge>() : tear(pairs);
     }
 
 private:
@@ -368,23 +366,15 @@ private:
         return overlaps();
     }
 
-    // A map of a large chart that was pushed apart on few faces, in place of one that is cut apart.
+    // Parts of a large chart that do not come apart on all faces may do so on fewer.
     bool take_coarse() {
-        if (surface_.face_count() <= coarse_map_faces)
-            return false;
-        const auto may_push = [](const FlatteningProblem&, const std::vector<Vec2>&) {
-            return true;
-        };
-        auto uv = attempt([&] {
-            return refine_coarse_map(mesh_, surface_, problem_,
-                                     map_coarsely(mesh_, surface_, may_push, progress_), progress_);
-        });
-        if (!uv)
-            return false;
-        chart_.uv = std::move(*uv);
-        chart_.pushed = true;
-        chart_.energy = symmetric_dirichlet_energy(problem_, chart_.uv);
-        return true;
+        auto uv = map_by_coarse(mesh_, surface_, problem_, progress_);
+        if (uv) {
+            chart_.uv = std::move(*uv);
+            chart_.pushed = true;
+            chart_.energy = symmetric_dirichlet_energy(problem_, chart_.uv);
+        }
+        return uv.has_value();
     }
 
     const Mesh& mesh_;

@@ -28,8 +28,8 @@ std::vector<Vec2> flatten_multilevel(
     const Progress& progress);
 
 /// The second half of that alone: `uv` (#v of `chart`, a chart as a mesh of its own) is a map of
-/// its coarse version without flips; `problem` is that of all its faces. Throws NumericalFailure as
-/// above.
+/// its coarse version without flips, `problem` that of all its faces. With `hold_boundary` vertices
+/// of the boundary stay where they are put back. Throws NumericalFailure as above.
 std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
                              const FlatteningProblem& problem, bool hold_boundary,
                              const Progress& progress);
