@@ -52,7 +52,7 @@ def opened(flavour: str, pymeshlab: ModuleType, folder: Path) -> Iterator[MeshLa
 def find(window: MeshLabWindow, name: str) -> None:
     """Starts a filter as MeshLab's help tells: Ctrl+F, its name, and its line in the list."""
     window.focus("MeshLab")
-    window.press("ctrl+f")
+    window.press("ctrl+f", "ctrl+a")  # the last name may stand there still
     window.type(name)
 
     def listed() -> int:
