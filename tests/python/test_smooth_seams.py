@@ -61,7 +61,7 @@ def test_a_bound_on_strain_is_kept(meshset: Callable[[meshes.Mesh], Any]) -> Non
         return results, ms.get_parametrization_measures()["strain_99"]
 
     _, on_edges = made()
-    bound = 1.01 * on_edges
+    bound = 1.04 * on_edges  # the filter takes each chart as it is: 3 % more than all at one scale
     free, strain = made(max_strain=1.0)
     assert free["kept_charts_number"] == 0
     assert strain > bound

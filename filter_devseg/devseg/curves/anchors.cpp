@@ -3,49 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devseg/mesh/angle_defects.h"
-
 namespace devseg::curves {
 
 namespace {
 
 struct Tuning {
-    double sharp = 40.0 * degrees;  // curvature of vertices that seams never leave
-    double curved = 15.0 * degrees; // and of those that they go back to
-    double firm = 2.0 * degrees;    // the same near firm seams, which never leave the former
-    double near = 0.2;              // of an edge: how far from these curves are drawn to them
+    double near = 0.2; // of an edge: how far from curved vertices curves are drawn to them
 };
 constexpr Tuning tuning;
 
-// The vertices of faces that touch a firm seam: curves that leave it stay among them for long.
-std::vector<std::uint8_t> vertices_near(const Mesh& mesh, const std::vector<std::uint8_t>& firm) {
-    std::vector<std::uint8_t> on(mesh.points.size(), 0);
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (firm[h] != 0)
-            on[mesh.origin(h)] = on[mesh.target(h)] = 1;
-    std::vector<std::uint8_t> near = on;
-    for (const HalfEdge h : mesh.all_half_edges())
-        if (on[mesh.origin(h)] != 0)
-            near[mesh.target(h)] = near[mesh.origin(Mesh::previous(h))] = 1;
-    return near;
-}
-
 } // namespace
 
-Anchors::Anchors(const Network& network, const std::vector<std::uint8_t>& firm)
-    : defect_(mesh::angle_defects(network.mesh)), firm_(vertices_near(network.mesh, firm)),
-      curve_(network.mesh.points.size(), -1) {
-    for (double& d : defect_)
-        d = std::abs(d);
-    for (Index c = 0; c < static_cast<Index>(network.curves.size()); ++c) {
-        const Curve& curve = network.curves[c];
-        for (std::size_t i = curve.is_closed() ? 0 : 1; !curve.held && i < curve.path.size(); ++i) {
-            const Vertex v = network.mesh.origin(curve.path[i]);
-            if (defect_[v] > (firm_[v] != 0 ? tuning.firm : tuning.sharp))
-                curve_[v] = c;
-        }
-    }
-}
+Anchors::Anchors(const Network& network, const CurvedVertices& curved)
+    : curved_(curved), curve_(network.mesh.points.size(), -1) {}
 
 void Anchors::add_near(const Network& network) {
     std::vector<double> least(curve_.size(), infinite);
@@ -56,9 +26,8 @@ void Anchors::add_near(const Network& network) {
         for (const bool left : {true, false}) {
             const Vertex v = left ? network.mesh.target(c.edge) : network.mesh.origin(c.edge);
             const double away = left ? 1.0 - c.t : c.t;
-            const double curved = firm_[v] != 0 ? tuning.firm : tuning.curved;
-            if (defect_[v] < curved || network.occupied[v] != 0 || away > tuning.near ||
-                (curve_[v] >= 0 && least[v] == infinite) || away * length >= least[v])
+            if (!curved_.draws_seams(v) || network.occupied[v] != 0 || away > tuning.near ||
+                away * length >= least[v])
                 continue;
             least[v] = away * length;
             curve_[v] = c.curve;

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "devseg/atlas/charts.h"
+#include "devseg/curves/curved_vertices.h"
 
 namespace devseg::curves {
 
@@ -60,7 +61,8 @@ class Network {
 public:
     /// All seams of the charts. Those marked in `held` (3 #F, both half-edges of an edge) stay
     /// where they are, with their ends. The mesh must outlive the network.
-    Network(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<std::uint8_t>& held);
+    Network(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<std::uint8_t>& held,
+            const CurvedVertices& curved);
 
     const Mesh& mesh;
     std::vector<Node> nodes;

@@ -29,8 +29,8 @@ struct Step {
 class NetworkBuilder {
 public:
     NetworkBuilder(Network& network, const atlas::ChartMap& charts,
-                   const std::vector<std::uint8_t>& held)
-        : net_(network), mesh_(network.mesh), charts_(charts), held_(held) {}
+                   const std::vector<std::uint8_t>& held, const CurvedVertices& curved)
+        : net_(network), mesh_(network.mesh), charts_(charts), held_(held), curved_(curved) {}
 
     void build() {
         find_nodes();
@@ -66,8 +66,9 @@ private:
         for (const Vertex v : Range<VertexKind>(0, mesh_.vertex_count())) {
             if (degree_[v] == 0)
                 continue;
+            const bool kept = held[v] == 0 && curved_.keeps_seams(v);
             const bool inside =
-                degree_[v] == 2 && on_border[v] == 0 && (held[v] == 0 || held[v] == 2);
+                degree_[v] == 2 && on_border[v] == 0 && !kept && (held[v] == 0 || held[v] == 2);
             if (inside) {
                 net_.occupied[v] = held[v] != 0 ? 1 : 0;
                 continue;
@@ -77,7 +78,7 @@ private:
             node.vertex = v;
             net_.nodes.push_back(node);
             net_.occupied[v] = 1;
-            if (degree_[v] > 2 && on_border[v] == 0 && held[v] == 0)
+            if (degree_[v] > 2 && on_border[v] == 0 && held[v] == 0 && !kept)
                 movable_.push_back(node_of_[v]);
         }
     }
@@ -276,6 +277,7 @@ private:
     const Mesh& mesh_;
     const atlas::ChartMap& charts_;
     const std::vector<std::uint8_t>& held_;
+    const CurvedVertices& curved_;
     std::vector<Index> node_of_;    // #V
     std::vector<HalfEdge> leaving_; // #V: a seam edge that leaves
     std::vector<Index> degree_;     // #V: seam edges
@@ -288,9 +290,9 @@ private:
 };
 
 Network::Network(const Mesh& surface, const atlas::ChartMap& charts,
-                 const std::vector<std::uint8_t>& held)
+                 const std::vector<std::uint8_t>& held, const CurvedVertices& curved)
     : mesh(surface), lowest_(surface.twin.size(), -1), junctions_in_(surface.faces.size(), 0) {
-    NetworkBuilder builder(*this, charts, held);
+    NetworkBuilder builder(*this, charts, held, curved);
     builder.build();
     builder.reduce();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "devseg/curves/smoothing.h"
 #include "devseg/curves/splitting.h"
@@ -69,6 +70,15 @@ double mean_edge(const Mesh& mesh, const atlas::ChartMap& charts) {
     return edges > 0 ? length / edges : 0.0;
 }
 
+// Whether the curve was drawn to a mirror image until now.
+bool leave_alone(const Curve& curve, const Mesh& mesh, std::vector<std::uint8_t>& alone) {
+    if (curve.held || curve.path.empty() || alone[curve.path.front()] != 0)
+        return false;
+    for (const HalfEdge h : curve.path)
+        alone[h] = alone[mesh.twin[h]] = 1;
+    return true;
+}
+
 // Keeps the edges of a path that are near to the face, at least the nearest one; all of them where
 // there is no face.
 void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face, double reach,
@@ -85,6 +95,26 @@ void hold_around(const std::vector<HalfEdge>& path, const Mesh& mesh, Index face
             held[h] = held[mesh.twin[h]] = 1;
 }
 
+// Smooth seams, and those that stay on their edges. A seam may consist of several curves, which
+// meet in its vertices that are curved.
+std::pair<Index, Index> count_seams(const Network& network, bool done) {
+    const auto count = static_cast<Index>(network.curves.size());
+    graph::Unions seams(at(count));
+    for (const Node& node : network.nodes)
+        if (!node.is_junction() && node.curves.size() == 2 &&
+            network.curves[node.curves[0]].held == network.curves[node.curves[1]].held)
+            seams.join(seams.find(node.curves[0]), seams.find(node.curves[1]));
+    std::vector<std::uint8_t> is_smooth(at(count), 0);
+    for (Index c = 0; c < count; ++c)
+        if (done && network.curves[c].first >= 0)
+            is_smooth[at(seams.find(c))] = 1;
+    std::pair<Index, Index> counts{0, 0};
+    for (Index c = 0; c < count; ++c)
+        if (seams.find(c) == c)
+            ++(is_smooth[at(c)] != 0 ? counts.first : counts.second);
+    return counts;
+}
+
 } // namespace
 
 double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
@@ -93,8 +123,24 @@ double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
                     tuning.least_edges * mean_edge(mesh, charts));
 }
 
+std::optional<mesh::MirrorPlane> seam_plane(const Mesh& mesh, const SmoothOptions& options,
+                                            Progress& progress) {
+    if (!options.symmetric)
+        return std::nullopt;
+    auto finding = progress.part("finding the mirror plane", 1.0);
+    return mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
+}
+
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
-                         const SmoothOptions& options, Progress& progress,
+                         const SmoothOptions& options, Progress& progress) {
+    auto finding = progress.part(0.2);
+    const auto plane = seam_plane(mesh, options, finding);
+    return smooth_seams(mesh, charts, options, plane, progress);
+}
+
+SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
+                         const SmoothOptions& options,
+                         const std::optional<mesh::MirrorPlane>& plane, Progress& progress,
                          const std::vector<Firmness>& firmness) {
     check_ranges(options);
     const double edge = mean_edge(mesh, charts);
@@ -104,36 +150,32 @@ SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
                                                          tuning.least_rounds, tuning.most_rounds))
                            : 1;
     std::vector<std::uint8_t> held = crease_edges(mesh, charts, options.keep_creases, scale);
-    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), {}};
-    for (std::size_t h = 0; h < firmness.size(); ++h) {
+    for (std::size_t h = 0; h < firmness.size(); ++h)
         held[h] = held[h] != 0 || firmness[h] == Firmness::held ? 1 : 0;
-        aims.firm[h] = firmness[h] == Firmness::close ? 1 : 0;
-    }
-    if (options.symmetric) {
-        auto finding = progress.part("finding the mirror plane", 0.2);
-        aims.plane = mesh::find_mirror_plane(mesh, tuning.symmetric_within, finding);
-    }
+    const CurvedVertices curved(
+        mesh, firmness.empty() ? std::vector<Firmness>(held.size(), Firmness::free) : firmness);
+    SmoothingAims aims{scale, rounds, std::vector<std::uint8_t>(held.size(), 0), plane};
     SmoothSeams result;
     result.has_plane = aims.plane.has_value();
     double reach = tuning.around * edge;
     bool done = false;
     for (int attempt = 0; attempt < tuning.attempts && !done; ++attempt) {
         auto part = progress.part("smoothing seams", (attempt == 0 ? 0.7 : 0.5) * progress.left());
-        Network network(mesh, charts, held);
-        smooth(network, aims, part);
+        Network network(mesh, charts, held, curved);
+        smooth(network, curved, aims, part);
         SplitMesh split = split_along(network, charts, progress);
         done = split.failed.empty();
-        result.smooth_seams = result.kept_seams = 0;
-        for (const Curve& curve : network.curves)
-            ++(curve.held || !done ? result.kept_seams : result.smooth_seams);
+        std::tie(result.smooth_seams, result.kept_seams) = count_seams(network, done);
         if (done) {
             result.refinement = std::move(split.refinement);
             result.charts = std::move(split.charts);
         }
         const bool whole = attempt + tuning.whole_attempts >= tuning.attempts;
+        // What cannot be cut beside a mirror image is smoothed without one first.
         for (const Failure& failure : split.failed)
-            hold_around(network.curves[failure.curve].path, mesh, whole ? -1 : failure.face, reach,
-                        held);
+            if (const Curve& curve = network.curves[failure.curve];
+                whole || !aims.plane || !leave_alone(curve, mesh, aims.alone))
+                hold_around(curve.path, mesh, whole ? -1 : failure.face, reach, held);
         reach *= 2.0;
     }
     if (!done) { // the mesh as it is

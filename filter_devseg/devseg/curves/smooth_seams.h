@@ -5,14 +5,14 @@
 //   Medizin, 2005. doi:10.1007/3-540-26431-0_43
 #pragma once
 
-#include <cstdint>
-#include <utility>
-#include <variant>
+#include <optional>
 #include <vector>
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/option_checks.h"
 #include "devseg/base/progress.h"
+#include "devseg/curves/curved_vertices.h"
+#include "devseg/mesh/mirror_plane.h"
 #include "devseg/mesh/refinement.h"
 
 namespace devseg::curves {
@@ -39,20 +39,22 @@ struct SmoothSeams {
     double new_length = 0.0;
 };
 
-/// How free a seam is.
-enum class Firmness : std::uint8_t {
-    free,  // a smooth curve
-    close, // the same, through all of its vertices that are curved
-    held,  // stays on its edges
-};
-
 /// Length of the waves that go, internal units.
 double smoothing_scale(const Mesh& mesh, const atlas::ChartMap& charts,
                        const SmoothOptions& options);
 
+/// The plane in which `options` want seams to be symmetric; none where the mesh has none.
+std::optional<mesh::MirrorPlane> seam_plane(const Mesh& mesh, const SmoothOptions& options,
+                                            Progress& progress);
+
 /// `firmness` (3 #F, or empty): of each seam edge, both half-edges.
 SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
-                         const SmoothOptions& options, Progress& progress,
+                         const SmoothOptions& options,
+                         const std::optional<mesh::MirrorPlane>& plane, Progress& progress,
                          const std::vector<Firmness>& firmness = {});
+
+/// The same with the plane that is found.
+SmoothSeams smooth_seams(const Mesh& mesh, const atlas::ChartMap& charts,
+                         const SmoothOptions& options, Progress& progress);
 
 } // namespace devseg::curves

@@ -42,24 +42,26 @@ Vec3 barycentric(const std::array<Vec2, 3>& c, const Vec2& p) {
 
 class Smoother {
 public:
-    Smoother(Network& network, const SmoothingAims& aims)
+    Smoother(Network& network, const CurvedVertices& curved, const SmoothingAims& aims)
         : net_(network), scale_(aims.scale), rounds_(aims.rounds),
-          chains_(make_chains(network, aims.scale)), anchors_(network, aims.firm),
+          chains_(make_chains(network, aims.scale)), anchors_(network, curved), alone_(aims.alone),
           plane_(aims.plane) {}
 
     void hold_near_vertices() { anchors_.add_near(net_); }
 
     void round(bool mirrored, const Progress& progress) {
         pulls_.assign(net_.nodes.size(), {});
+        has_image_.assign(net_.nodes.size(), 0);
         image_.reset();
-        if (mirrored && plane_) {
-            image_.emplace(net_, *plane_, tuning.image * scale_, tuning.image_spacing * scale_);
-            pull_to_images();
-        }
+        if (mirrored && plane_)
+            image_.emplace(net_, chain_of_curves(), *plane_, tuning.image * scale_,
+                           tuning.image_spacing * scale_);
         for (const Chain& chain : chains_) {
             progress.check();
             move_chain(chain);
         }
+        if (image_)
+            pull_to_images();
         move_junctions();
     }
 
@@ -67,7 +69,9 @@ private:
     std::vector<Stop> stops_of(const Chain& chain) const;
     void add_stops(Index curve, bool forwards, std::vector<Stop>& stops) const;
     void move_chain(const Chain& chain);
-    void shift_to_image(const std::vector<Stop>& stops, std::vector<FlatStop>& flat) const;
+    std::vector<Index> chain_of_curves() const;
+    bool is_alone(const Chain& chain) const;
+    void shift_to_image(Index chain, const std::vector<Stop>& stops, std::vector<FlatStop>& flat);
     void pull_to_images();
     void slide(const std::vector<Stop>& stops, const std::vector<FlatStop>& flat,
                const SmoothCurve& curve, std::size_t first, std::size_t end);
@@ -84,9 +88,11 @@ private:
     int rounds_;
     std::vector<Chain> chains_;
     Anchors anchors_;
+    const std::vector<std::uint8_t>& alone_;
     std::optional<mesh::MirrorPlane> plane_;
     std::optional<MirrorImage> image_; // of the curves as they were before the round
     std::vector<Pull> pulls_;
+    std::vector<std::uint8_t> has_image_; // of each node: a curve that is drawn to one meets it
 };
 
 void Smoother::add_stops(Index number, bool forwards, std::vector<Stop>& stops) const {
@@ -139,15 +145,32 @@ void Smoother::move_chain(const Chain& chain) {
     if (!(flat.back().along > 0.0))
         return;
     const std::vector<Hold> holds = anchors_.holds(net_, stops, flat);
-    if (image_)
-        shift_to_image(stops, flat);
+    if (image_ && !is_alone(chain))
+        shift_to_image(static_cast<Index>(&chain - chains_.data()), stops, flat);
     const SmoothCurve curve = smooth_curve(flat, holds, scale_, rounds_);
     pull_junctions(chain, stops, flat, curve, first, end);
     slide(stops, flat, curve, first, end);
 }
 
-// Half the way to the mirror image, across the curve.
-void Smoother::shift_to_image(const std::vector<Stop>& stops, std::vector<FlatStop>& flat) const {
+// Of each curve; −1 where it stays on its edges.
+std::vector<Index> Smoother::chain_of_curves() const {
+    std::vector<Index> chain(net_.curves.size(), -1);
+    for (std::size_t c = 0; c < chains_.size(); ++c)
+        for (const auto& [curve, forwards] : chains_[c].links)
+            chain[at(curve)] = static_cast<Index>(c);
+    return chain;
+}
+
+bool Smoother::is_alone(const Chain& chain) const {
+    return std::any_of(chain.links.begin(), chain.links.end(), [&](const auto& link) {
+        return alone_[net_.curves[link.first].path.front()] != 0;
+    });
+}
+
+// Half the way to the mirror image, across the curves: if all of them have one, since curves that
+// are drawn in part get kinks.
+void Smoother::shift_to_image(Index chain, const std::vector<Stop>& stops,
+                              std::vector<FlatStop>& flat) {
     std::vector<Vec3> places;
     for (const Stop& stop : stops)
         places.push_back(stop.crossing >= 0 ? place_of_crossing(net_, stop.crossing)
@@ -156,9 +179,9 @@ void Smoother::shift_to_image(const std::vector<Stop>& stops, std::vector<FlatSt
     for (std::size_t i = 1; i + 1 < stops.size(); ++i) {
         const Vec3 along = (places[i + 1] - places[i - 1]).normalized();
         const Vec2 flat_along = (flat[i + 1].point - flat[i - 1].point).normalized();
-        const std::optional<Vec3> way = image_->way(places[i], along);
+        const std::optional<Vec3> way = image_->way(chain, places[i], along);
         if (!way)
-            continue;
+            return;
         const Face f = stops[i].crossing >= 0                    ? face_of(stops[i].leaving)
                        : net_.nodes[stops[i].node].is_junction() ? net_.nodes[stops[i].node].face
                                                                  : Face();
@@ -167,16 +190,19 @@ void Smoother::shift_to_image(const std::vector<Stop>& stops, std::vector<FlatSt
         const double across = tuning.half_way * way->dot(net_.mesh.face_normals[f].cross(along));
         shifts[i] = across * Vec2(-flat_along.y(), flat_along.x());
     }
-    for (std::size_t i = 0; i < flat.size(); ++i)
+    for (std::size_t i = 0; i < flat.size(); ++i) {
         if (shifts[i].allFinite())
             flat[i].point += shifts[i];
+        if (stops[i].node >= 0)
+            has_image_[stops[i].node] = 1;
+    }
 }
 
-// Junctions that end a curve go half the way to their mirror images; others move with the curve.
+// Junctions of curves that are drawn to their mirror images go half the way to their own.
 void Smoother::pull_to_images() {
     for (Index n = 0; n < static_cast<Index>(net_.nodes.size()); ++n) {
         const Node& node = net_.nodes[n];
-        if (!node.is_junction())
+        if (!node.is_junction() || has_image_[n] == 0)
             continue;
         const std::optional<Vec3> way = image_->way_of_junction(place_of_node(net_, n));
         if (!way)
@@ -319,8 +345,9 @@ void Smoother::move_junction(Index number, const Vec3& target) {
 
 } // namespace
 
-void smooth(Network& network, const SmoothingAims& aims, Progress& progress) {
-    Smoother smoother(network, aims);
+void smooth(Network& network, const CurvedVertices& curved, const SmoothingAims& aims,
+            Progress& progress) {
+    Smoother smoother(network, curved, aims);
     const int last = static_cast<int>(tuning.last_rounds * aims.rounds);
     for (int k = 0; k < aims.rounds; ++k) {
         if (k == aims.rounds - last)

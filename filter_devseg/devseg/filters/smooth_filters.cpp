@@ -28,9 +28,11 @@ constexpr const char* smooth_help =
     "Bildverarbeitung f&uuml;r die Medizin, 2005, doi:10.1007/3-540-26431-0_43";
 
 struct Tuning {
-    int rounds = 6;     // of smoothing, where charts come out above a bound
-    double reach = 1.0; // smoothness: what is made firmer around a place that is above; twice each
-                        // time, and all of the chart's seams at the end
+    // Of smoothing, where charts come out above a bound: seams are made firmer around the places
+    // where they are, then all seams of those charts, and in the end of all that ever were above.
+    int local_rounds = 6;
+    int most_rounds = 16;
+    double reach = 1.0;    // smoothness: what is made firmer around a place; twice each time
     double exact = 1.0001; // L2 stretch that nobody can measure: charts within it stay within it
 };
 constexpr Tuning tuning;
@@ -162,14 +164,24 @@ std::vector<Excess> above(const Mesh& mesh, const atlas::ChartMap& charts,
     return result;
 }
 
-// Whether the edge is nearer than `reach` to a place where its chart is above.
-bool is_near(const Mesh& mesh, HalfEdge h, const Excess& excess, double reach) {
-    if (!excess.is_above || excess.places.empty() || reach == infinite)
-        return excess.is_above;
-    const Vec3 middle = 0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)]);
-    return std::any_of(excess.places.begin(), excess.places.end(), [&](const Vec3& place) {
-        return (place - middle).squaredNorm() < reach * reach;
-    });
+Vec3 middle_of(const Mesh& mesh, HalfEdge h) {
+    return 0.5 * (mesh.points[mesh.origin(h)] + mesh.points[mesh.target(h)]);
+}
+
+// Marks the seam edges of a chart around the places where it is above: up to `reach` farther away
+// than the nearest of them. All of them where it is above everywhere.
+void mark_around(const Mesh& mesh, const std::vector<HalfEdge>& seam, const Excess& excess,
+                 double reach, std::vector<std::uint8_t>& marked) {
+    const bool everywhere = excess.places.empty() || reach == infinite;
+    const std::vector<Vec3> none{Vec3::Zero()};
+    for (const Vec3& place : everywhere ? none : excess.places) {
+        double nearest = infinite;
+        for (const HalfEdge h : seam)
+            nearest = std::min(nearest, (place - middle_of(mesh, h)).norm());
+        for (const HalfEdge h : seam)
+            if (everywhere || (place - middle_of(mesh, h)).norm() <= nearest + reach)
+                marked[h] = marked[mesh.twin[h]] = 1;
+    }
 }
 
 // The seams of a chart that is above come nearer to where they were, and then all the way, around
@@ -177,15 +189,21 @@ bool is_near(const Mesh& mesh, HalfEdge h, const Excess& excess, double reach) {
 bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts, const std::vector<Excess>& excess,
                  double reach, std::vector<curves::Firmness>& firmness) {
     using curves::Firmness;
+    std::vector<std::vector<HalfEdge>> seam(excess.size());
+    for (const HalfEdge h : mesh.all_half_edges())
+        if (mesh.twin[h] >= 0 && charts.seam[h] != 0)
+            seam[at(charts.chart[face_of(h)])].push_back(h);
+    std::vector<std::uint8_t> marked(firmness.size(), 0);
+    for (std::size_t c = 0; c < excess.size(); ++c)
+        if (excess[c].is_above)
+            mark_around(mesh, seam[c], excess[c], reach, marked);
     bool changed = false;
     for (const HalfEdge h : mesh.all_half_edges()) {
-        if (mesh.twin[h] < 0 || charts.seam[h] == 0 || firmness[h] == Firmness::held)
+        if (marked[h] == 0 || firmness[h] == Firmness::held)
             continue;
-        if (!is_near(mesh, h, excess[at(charts.chart[face_of(h)])], reach) &&
-            !is_near(mesh, h, excess[at(charts.chart[mesh.across(h)])], reach))
-            continue;
-        firmness[h] =
-            reach == infinite || firmness[h] == Firmness::close ? Firmness::held : Firmness::close;
+        firmness[h] = reach == infinite
+                          ? Firmness::held
+                          : static_cast<Firmness>(static_cast<std::uint8_t>(firmness[h]) + 1);
         changed = true;
     }
     return changed;
@@ -199,6 +217,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
     if (!options.has_bounds())
         return curves::smooth_seams(mesh, charts, options, progress);
+    auto finding = progress.part(0.1);
+    const auto plane = curves::seam_plane(mesh, options, finding);
     auto looking = progress.part("judging charts", 0.1);
     const std::vector<double> stretch = stretch_bounds(mesh, charts, bound, looking);
     std::vector<curves::Firmness> firmness(mesh.twin.size(), curves::Firmness::free);
@@ -207,7 +227,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
     double reach = tuning.reach * curves::smoothing_scale(mesh, charts, options);
     for (int round = 1;; ++round) {
         auto smoothing = progress.part(0.5 * progress.left());
-        curves::SmoothSeams made = curves::smooth_seams(mesh, charts, options, smoothing, firmness);
+        curves::SmoothSeams made =
+            curves::smooth_seams(mesh, charts, options, plane, smoothing, firmness);
         auto judging = progress.part("judging charts", 0.5 * progress.left());
         std::vector<Excess> after =
             above(made.refinement.mesh, made.charts, judged, options, stretch, judging);
@@ -225,8 +246,9 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         }
         kept_charts = static_cast<int>(
             std::count_if(kept.begin(), kept.end(), [](const Excess& e) { return e.is_above; }));
-        const bool is_last = round + 1 >= tuning.rounds;
-        if (!make_firmer(mesh, charts, is_last ? kept : after, is_last ? infinite : reach,
+        const bool is_last = round + 1 >= tuning.most_rounds;
+        const bool is_local = round < tuning.local_rounds;
+        if (!make_firmer(mesh, charts, is_last ? kept : after, is_local ? reach : infinite,
                          firmness))
             return made;
         reach *= 2.0;

@@ -11,6 +11,7 @@
 #include "devseg/flatten/one_chart.h"
 #include "devseg/flatten/repair/overlaps.h"
 #include "devseg/flatten/repair/slits.h"
+#include "devseg/flatten/repair/snap.h"
 #include "devseg/plane/overlap.h"
 
 namespace devseg::flatten {
@@ -86,6 +87,7 @@ std::optional<std::vector<Vec2>> refine_coarse_map(const Mesh& mesh,
         settle_peaks(problem, uv, progress);
     relieve_peaks(problem, flat.pushed, uv, progress);
     scale_to_area(problem, uv);
+    restore_needles(problem, uv);
     open_closed_slits(mesh, surface, slit_gap * problem.model_size, uv);
     auto apart = push_far(problem, surface, uv, progress);
     if (!apart || count_flips(problem, *apart) > 0 ||

@@ -49,6 +49,7 @@ constexpr Tuning tuning;
 struct Map {
     std::vector<Vec2> uv;
     bool converged = true;
+    bool pushed = false; // parts overlapped, and were pushed apart
 };
 
 // One chart with all that its maps need. Methods return nothing where they find no map without
@@ -182,12 +183,12 @@ private:
     }
 
     std::optional<Map> least_strain() const {
-        auto uv = attempt([&] {
+        auto map = attempt([&] {
             return least_strain_map(problem_, surface_, tolerance_, SewingMapOptions{}, progress_);
         });
-        if (!uv)
+        if (!map)
             return std::nullopt;
-        return Map{std::move(*uv)};
+        return Map{std::move(map->uv), true, map->pushed};
     }
 
     // Keeps the lengths of boundary edges and evens out areas. Where no map for sewing is found,
@@ -303,8 +304,9 @@ public:
         Pairs pairs = take(*map);
         if (may_push(pairs))
             pairs = push(pairs);
-        const bool is_coarse = may_push(pairs) && whole_ == nullptr && take_coarse();
-        return is_coarse ? std::vector<HalfEdge>() : tear(pairs);
+        if (may_push(pairs) && whole_ == nullptr)
+            pairs = push_coarse(pairs);
+        return tear(pairs);
     }
 
 private:
@@ -330,6 +332,7 @@ private:
     Pairs take(const Map& map) {
         chart_.uv = map.uv;
         chart_.converged = map.converged;
+        chart_.pushed = map.pushed;
         restore_needles(problem_, chart_.uv);
         finish();
         return overlaps();
@@ -367,14 +370,9 @@ private:
     }
 
     // Parts of a large chart that do not come apart on all faces may do so on fewer.
-    bool take_coarse() {
-        auto uv = map_by_coarse(mesh_, surface_, problem_, progress_);
-        if (uv) {
-            chart_.uv = std::move(*uv);
-            chart_.pushed = true;
-            chart_.energy = symmetric_dirichlet_energy(problem_, chart_.uv);
-        }
-        return uv.has_value();
+    Pairs push_coarse(const Pairs& pairs) {
+        const auto uv = map_by_coarse(mesh_, surface_, problem_, progress_);
+        return uv ? take({*uv, true, true}) : pairs;
     }
 
     const Mesh& mesh_;

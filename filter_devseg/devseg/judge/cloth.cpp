@@ -82,12 +82,14 @@ private:
             options.give_up_energy = tuning.hopeless_free_energy * share;
             options.give_up_excess = tuning.hopeless_excess * share;
             options.give_up_overlap = tuning.hopeless_overlap;
+            options.push_apart = false;
         }
-        auto uv = flatten::attempt([&] {
+        auto map = flatten::attempt([&] {
             return flatten::least_strain_map(problem_, surface_, tolerance_, options, progress_);
         });
-        if (!uv)
-            return uv;
+        if (!map)
+            return std::nullopt;
+        std::optional<std::vector<Vec2>> uv(std::move(map->uv));
         open_slits(*uv);
         trial.area_change = flatten::measure_area_change(problem_, *uv).largest();
         trial.strain = flatten::measure_strain(flatten::face_strains(problem_, *uv), problem_.area);

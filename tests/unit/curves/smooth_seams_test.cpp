@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "devseg/atlas/disks.h"
+#include "devseg/atlas/slit_closing.h"
+#include "devseg/mesh/angle_defects.h"
 #include "unit/checks.h"
 #include "unit/mesh_edits.h"
 #include "unit/shapes.h"
@@ -294,6 +296,77 @@ TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
     EXPECT_LT(made.new_length, 0.9 * made.old_length);
 }
 
+// The firmer a seam, the less curved are the vertices that it goes through.
+TEST(SmoothSeams, FirmSeamsGoThroughLessCurvedVertices) {
+    mesh::RawMesh plate = shapes::grid(40, 40);
+    const Mesh flat = checks::gated(plate);
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers)
+        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    const std::vector<std::uint8_t> seam = atlas::make_chart_map(flat, label, {}, false).seam;
+    Vertex top; // of the stairs that the seam makes
+    for (const HalfEdge h : flat.all_half_edges())
+        if (seam[h] != 0 && flat.points[flat.origin(h)].norm() < 0.1 &&
+            (top < 0 || flat.points[flat.origin(h)].x() + 0.5 * flat.points[flat.origin(h)].y() >
+                            flat.points[top].x() + 0.5 * flat.points[top].y()))
+            top = flat.origin(h);
+    ASSERT_GE(top, 0);
+    const auto passes = [&](double curvature, Firmness firmness) {
+        Mesh mesh = flat;
+        for (double height = 0.0;; height += 5e-5) {
+            plate.points[top].z() = height;
+            mesh = checks::gated(plate);
+            if (std::abs(mesh::angle_defects(mesh)[top]) > curvature * degrees)
+                break;
+        }
+        SmoothOptions options;
+        options.smoothness = 0.05;
+        options.keep_creases = 180.0;
+        Progress progress;
+        const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+        const SmoothSeams made = smooth_seams(mesh, charts, options, std::nullopt, progress,
+                                              std::vector<Firmness>(mesh.twin.size(), firmness));
+        expect_sound(mesh, charts, made);
+        return atlas::cut_edges_at_vertices(made.refinement.mesh, made.charts.seam)[top] == 2;
+    };
+    for (const double curvature : {5.0, 12.0, 45.0}) {
+        EXPECT_EQ(passes(curvature, Firmness::free), curvature > 40.0) << curvature;
+        EXPECT_EQ(passes(curvature, Firmness::near), curvature > 10.0) << curvature;
+        EXPECT_TRUE(passes(curvature, Firmness::nearer)) << curvature;
+        EXPECT_TRUE(passes(curvature, Firmness::held)) << curvature;
+    }
+}
+
+// Three seams that meet at a peak take up its curvature: their junction stays.
+TEST(SmoothSeams, JunctionsStayAtVerticesThatAreCurved) {
+    mesh::RawMesh plate = shapes::grid(40, 40);
+    const Mesh flat = checks::gated(plate);
+    const auto middle =
+        std::min_element(flat.points.begin(), flat.points.end(), [](const Vec3& a, const Vec3& b) {
+            return a.squaredNorm() < b.squaredNorm();
+        });
+    const Vertex peak(static_cast<Index>(middle - flat.points.begin()));
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers) {
+        const double angle = std::atan2(p.y() - middle->y(), p.x() - middle->x());
+        label.push_back(angle < -2.0 || angle > 2.5 ? 0 : angle < 0.3 ? 1 : 2);
+    }
+    const auto stays = [&](double height) {
+        plate.points[peak].z() = height;
+        const Mesh mesh = checks::gated(plate);
+        const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+        EXPECT_EQ(atlas::cut_edges_at_vertices(mesh, charts.seam)[peak], 3);
+        SmoothOptions options;
+        options.smoothness = 0.05;
+        options.keep_creases = 180.0;
+        const SmoothSeams made = smoothed(mesh, charts, options);
+        expect_sound(mesh, charts, made);
+        return atlas::cut_edges_at_vertices(made.refinement.mesh, made.charts.seam)[peak] == 3;
+    };
+    EXPECT_TRUE(stays(0.03));
+    EXPECT_FALSE(stays(0.0));
+}
+
 // An egg whose triangles know nothing of its mirror plane, with a cap on each side.
 mesh::RawMesh egg() {
     mesh::RawMesh mesh = shapes::sphere(4);
@@ -349,6 +422,25 @@ TEST(SmoothSeams, MirrorEachOtherWhateverTheTriangles) {
     const double edge = mesh.edge_length(HalfEdge(0));
     EXPECT_LT(farthest_from_image(made), 0.25 * edge);
     EXPECT_GT(farthest_from_image(smoothed(mesh, charts)), 0.5 * edge);
+}
+
+// Two seams beside each other on one side, and one on the other: it is the image of one of them.
+TEST(SmoothSeams, OnlyTheNearestIsDrawnToAnImage) {
+    const Mesh mesh = checks::gated(egg());
+    const double edge = mesh.edge_length(HalfEdge(0)) * mesh.unit_length;
+    std::vector<Index> label;
+    for (const Vec3& p : mesh.face_centers) {
+        const double x = p.x() * mesh.unit_length;
+        label.push_back(x > 0.75 ? 0 : x > -0.75 ? 1 : x > -0.75 - 1.6 * edge ? 2 : 3);
+    }
+    const ChartMap charts = atlas::make_chart_map(mesh, label, {}, false);
+    ASSERT_EQ(charts.count, 4);
+    SmoothOptions options;
+    options.symmetric = true;
+    const SmoothSeams made = smoothed(mesh, charts, options);
+    expect_sound(mesh, charts, made);
+    EXPECT_EQ(made.smooth_seams, 3);
+    EXPECT_NEAR(made.new_length, smoothed(mesh, charts).new_length, 0.02 * made.new_length);
 }
 
 TEST(SmoothSeams, WithoutSeamsNothingChanges) {

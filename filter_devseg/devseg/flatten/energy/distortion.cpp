@@ -89,8 +89,13 @@ private:
 };
 
 // Stiff boundary edges, without the part that turns them: it may be negative.
-void add_boundary(const FlatteningProblem& problem, double stiffness, const Positions& x,
+void add_boundary(const FlatteningProblem& problem, double stiffness,
+                  const std::vector<Eigen::Matrix2d>& blocks, const Positions& x,
                   HessianMatrix& hessian) {
+    for (const Vertex v : problem.boundary)
+        for (int r = 0; r < 2; ++r)
+            for (int s = 0; s < 2; ++s) // without blocks as well: the places stay the same
+                hessian.add(2 * v + r, 2 * v + s, blocks.empty() ? 0.0 : blocks[v](r, s));
     for (std::size_t i = 0; i < problem.boundary.size(); ++i) {
         const Vertex v = problem.boundary[i];
         const Vertex u = problem.boundary[(i + 1) % problem.boundary.size()];
@@ -341,6 +346,7 @@ struct ProjectedNewton::State {
     std::vector<std::uint8_t> fixed;
     FaceHessian face_hessian;
     double boundary_stiffness = 0.0;
+    std::vector<Eigen::Matrix2d> boundary_blocks; // #v, or empty
     HessianMatrix hessian;
     BlockCholesky solver;
 };
@@ -348,11 +354,15 @@ struct ProjectedNewton::State {
 ProjectedNewton::ProjectedNewton(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
                                  FaceHessian face_hessian, double boundary_stiffness)
     : state_(new State{
-          problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}}) {}
+          problem, std::move(fixed), std::move(face_hessian), boundary_stiffness, {}, {}, {}}) {}
 ProjectedNewton::~ProjectedNewton() = default;
 
 void ProjectedNewton::set_boundary_stiffness(double stiffness) {
     state_->boundary_stiffness = stiffness;
+}
+
+void ProjectedNewton::set_boundary_blocks(std::vector<Eigen::Matrix2d> blocks) {
+    state_->boundary_blocks = std::move(blocks);
 }
 
 Positions ProjectedNewton::direction(const Positions& x, const Positions& gradient) {
@@ -392,7 +402,7 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
             }
     }
     if (state_->boundary_stiffness > 0.0)
-        add_boundary(problem, state_->boundary_stiffness, x, hessian);
+        add_boundary(problem, state_->boundary_stiffness, state_->boundary_blocks, x, hessian);
     for (Index i = 0; i < unknowns; ++i) {
         const bool stays = !state_->fixed.empty() && state_->fixed[i / 2] != 0;
         hessian.add(i, i, (stays ? tuning.locked_share : tuning.shift_share) * trace / unknowns);

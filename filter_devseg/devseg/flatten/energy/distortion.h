@@ -77,6 +77,8 @@ public:
 
     /// Another stiffness, above 0 where it was.
     void set_boundary_stiffness(double stiffness);
+    /// Adds to H, where the boundary is stiff, a block for each boundary vertex (`blocks` #v).
+    void set_boundary_blocks(std::vector<Eigen::Matrix2d> blocks);
 
     /// A descent direction (#v by 2); throws NumericalFailure where H cannot be factorized.
     Positions direction(const Positions& x, const Positions& gradient);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -134,8 +135,9 @@ private:
 class Descent {
 public:
     Descent(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
-            const std::vector<Vec2>& start, double stiffness)
-        : problem_(problem), fixed_(std::move(fixed)), energy_(problem), x_(positions_of(start)),
+            const std::vector<Vec2>& start, double stiffness, ContactPenalty contacts = {})
+        : problem_(problem), fixed_(std::move(fixed)), energy_(problem),
+          contacts_(std::move(contacts)), x_(positions_of(start)),
           newton_(
               problem, fixed_,
               [this](std::size_t, const Eigen::Matrix2d& j) { return energy_.hessian(j); },
@@ -145,11 +147,14 @@ public:
     double run(const Stage& stage, const Progress& progress) {
         energy_.begin(stage, x_);
         newton_.set_boundary_stiffness(stage.stiffness);
-        const auto value_at = [&](const Positions& y) { return energy_.value(y); };
+        const auto value_at = [&](const Positions& y) {
+            return energy_.value(y) + contacts_.energy(y);
+        };
         double value = value_at(x_);
         for (int i = 0; i < stage.newton_steps; ++i) {
             progress.check();
             Positions gradient = energy_.gradient(x_);
+            push(gradient);
             hold_fixed(fixed_, gradient);
             Positions d = newton_.direction(x_, gradient);
             hold_fixed(fixed_, d);
@@ -164,9 +169,19 @@ public:
     std::vector<Vec2> uv() const { return points_of(x_); }
 
 private:
+    void push(Positions& gradient) {
+        if (contacts_.contacts.empty())
+            return;
+        contacts_.add_gradient(x_, gradient);
+        std::vector<Eigen::Matrix2d> blocks(at(problem_.vertex_count), Eigen::Matrix2d::Zero());
+        contacts_.add_diagonal(x_, blocks);
+        newton_.set_boundary_blocks(std::move(blocks));
+    }
+
     const FlatteningProblem& problem_;
     const std::vector<std::uint8_t> fixed_;
     SteepEnergy energy_;
+    ContactPenalty contacts_;
     Positions x_;
     ProjectedNewton newton_; // finds the order of elimination once for all stages
 };
@@ -225,6 +240,14 @@ std::vector<Vec2> least_strain_with_boundary(const FlatteningProblem& problem,
         if (stage.share == 0.0 && energy > give_up)
             return {};
     }
+    return descent.uv();
+}
+
+std::vector<Vec2> push_boundary(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                                const ContactPenalty& contacts, const Progress& progress) {
+    const Stage& last = *std::rbegin(bending);
+    Descent descent(problem, {}, uv, last.stiffness, contacts);
+    descent.run(last, progress);
     return descent.uv();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/contacts.h"
 #include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
@@ -37,5 +38,10 @@ std::vector<Vec2> least_strain(const FlatteningProblem& problem, const std::vect
 std::vector<Vec2> least_strain_with_boundary(const FlatteningProblem& problem,
                                              const std::vector<Vec2>& uv, double give_up,
                                              const Progress& progress);
+
+/// The last part of that, from a map whose boundary has its lengths, with contacts that are pushed
+/// out.
+std::vector<Vec2> push_boundary(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
+                                const ContactPenalty& contacts, const Progress& progress);
 
 } // namespace devseg::flatten

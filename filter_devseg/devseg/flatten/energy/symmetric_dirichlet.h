@@ -8,38 +8,15 @@
 #pragma once
 
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/contacts.h"
 #include "devseg/flatten/energy/distortion.h"
 
 namespace devseg::flatten {
 
 class Laplacian;
-
-/// A boundary vertex that lies on another part of the chart, and the boundary edge from → to (the
-/// chart on its left) across which it leaves that part on the shortest way.
-struct Contact {
-    Vertex vertex = -1;
-    Vertex from = -1;
-    Vertex to = -1;
-
-    bool operator<(const Contact& o) const {
-        return std::tie(vertex, from, to) < std::tie(o.vertex, o.from, o.to);
-    }
-};
-
-/// ½ stiffness Σ max(0, d + gap)² with d the distance of the vertex to the left of its edge: zero
-/// once each vertex is `gap` outside. Lengths are in the plane.
-struct ContactPenalty {
-    std::vector<Contact> contacts;
-    double stiffness = 0.0;
-    double gap = 0.0;
-
-    double energy(const Positions& x) const;
-    void add_gradient(const Positions& x, Positions& gradient) const;
-};
 
 struct SymmetricDirichletOptions {
     int max_iterations = 300;         // quasi-Newton steps at most

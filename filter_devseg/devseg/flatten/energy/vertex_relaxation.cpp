@@ -249,6 +249,32 @@ Vec2 kernel_point(const VertexStar& star, const Vec2& hint) {
     return area > 0.0 ? Vec2(centre / area) : polygon.front();
 }
 
+bool turn_back(const FlatteningProblem& problem, std::vector<Vec2>& uv) {
+    VertexStar star;
+    for (bool moved = true; moved;) {
+        moved = false;
+        bool is_flipped = false;
+        for (const HalfEdge h : Range<HalfEdgeKind>(0, static_cast<Index>(problem.twin.size()))) {
+            if (jacobian(problem, uv, face_of(h)).determinant() > 0.0)
+                continue;
+            is_flipped = true;
+            const Vertex v = problem.faces[face_of(h)][corner_of(h)];
+            if (!mesh::visit_star(problem.twin, h, [](Index) {}))
+                continue; // on the outline
+            gather_star({problem.faces, problem.twin, problem.area, problem.cotangent}, uv, h,
+                        star);
+            const Vec2 p = kernel_point(star, uv[v]);
+            if (star.energy(p) < infinite) {
+                uv[v] = p;
+                moved = true;
+            }
+        }
+        if (!is_flipped)
+            return true;
+    }
+    return false;
+}
+
 void settle_peaks(const FlatteningProblem& problem, std::vector<Vec2>& uv,
                   const Progress& progress) {
     const std::vector<double> stretches = face_stretches(problem, uv);

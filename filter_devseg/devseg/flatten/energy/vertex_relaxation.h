@@ -48,6 +48,10 @@ Vec2 relax_vertex(const VertexStar& star, const Vec2& start);
 /// stays within the bounds of the star. Falls back to `hint` where rounding leaves nothing.
 Vec2 kernel_point(const VertexStar& star, const Vec2& hint);
 
+/// Turns flipped faces back: inner vertices go to where none of the faces around them is flipped.
+/// The outline stays. False where faces stay flipped. uv is #v.
+bool turn_back(const FlatteningProblem& problem, std::vector<Vec2>& uv);
+
 /// Lowers the largest stretch where few faces stand out: the vertices around them are relaxed under
 /// Σ A exp(s (ψ − 1)), with ψ the symmetric Dirichlet density, which shares the stretch out among
 /// the faces nearby. No face flips; all other vertices stay. The map stays as it is if that would

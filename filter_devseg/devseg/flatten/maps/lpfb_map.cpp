@@ -7,6 +7,7 @@
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/strain.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
+#include "devseg/flatten/energy/vertex_relaxation.h"
 #include "devseg/flatten/maps/arap.h"
 #include "devseg/flatten/maps/tutte.h"
 #include "devseg/flatten/repair/overlaps.h"
@@ -93,6 +94,16 @@ std::optional<LpfbMap> bent_map(const FlatteningProblem& problem,
     return map_beside(problem, surface, even, tolerance, progress);
 }
 
+// The map whose boundary has exactly its lengths, beside one that nearly has them.
+std::optional<std::vector<Vec2>> with_seam_lengths(const FlatteningProblem& problem,
+                                                   const std::vector<Vec2>& near,
+                                                   const Progress& progress) {
+    auto uv = restore_seam_lengths(problem, near, progress);
+    if (!uv || !turn_back(problem, *uv))
+        return std::nullopt;
+    return least_strain(problem, *uv, progress);
+}
+
 } // namespace
 
 std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double give_up_energy,
@@ -104,7 +115,7 @@ std::vector<Vec2> nearly_isometric_map(const FlatteningProblem& problem, double 
     ArapOptions options;
     options.max_rounds = tuning.isometric_steps;
     ArapResult map = minimise_arap(problem, start, options, progress);
-    if (map.energy > give_up_energy || map.flips > 0)
+    if (map.energy > give_up_energy || (map.flips > 0 && !turn_back(problem, map.uv)))
         return {};
     return map.uv;
 }
@@ -145,10 +156,10 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
     return is_enough(bent) ? bent : smaller_change(std::move(own), std::move(bent));
 }
 
-std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& problem,
-                                                  const atlas::ChartSurface& surface,
-                                                  double tolerance, const SewingMapOptions& options,
-                                                  const Progress& progress) {
+std::optional<LeastStrainMap> least_strain_map(const FlatteningProblem& problem,
+                                               const atlas::ChartSurface& surface, double tolerance,
+                                               const SewingMapOptions& options,
+                                               const Progress& progress) {
     const std::vector<Vec2> isometric =
         nearly_isometric_map(problem, options.give_up_energy, progress);
     if (isometric.empty() ||
@@ -159,13 +170,21 @@ std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& probl
         least_strain_with_boundary(problem, isometric, options.give_up_excess, progress);
     if (bent.empty())
         return std::nullopt;
-    auto uv = restore_seam_lengths(problem, bent, progress);
-    if (!uv || count_flips(problem, *uv) > 0)
+    auto uv = with_seam_lengths(problem, bent, progress);
+    if (!uv)
         return std::nullopt;
-    *uv = least_strain(problem, *uv, progress);
-    if (!overlapping_pairs(surface, *uv, tolerance).empty())
+    Pairs pairs = overlapping_pairs(surface, *uv, tolerance);
+    if (pairs.empty())
+        return LeastStrainMap{std::move(*uv)};
+    if (!options.push_apart)
         return std::nullopt;
-    return uv;
+    const auto push = [&](const std::vector<Vec2>& start, const ContactPenalty& contacts) {
+        const auto pushed =
+            with_seam_lengths(problem, push_boundary(problem, start, contacts, progress), progress);
+        return pushed.value_or(std::vector<Vec2>());
+    };
+    uv = push_apart_by(push, problem, surface, std::move(*uv), std::move(pairs), tolerance);
+    return uv ? std::optional(LeastStrainMap{std::move(*uv), true}) : std::nullopt;
 }
 
 } // namespace devseg::flatten

@@ -33,6 +33,7 @@ struct SewingMapOptions {
     // Of the map with the least strain: the mean of ψ − 1 above which the chart is given up.
     double give_up_excess = infinite;
     std::optional<double> give_up_overlap;
+    bool push_apart = true; // parts that overlap, while seams keep their lengths
 };
 
 /// A map by a few as-rigid-as-possible steps; empty where its energy is above a limit, or faces are
@@ -50,14 +51,19 @@ std::optional<LpfbMap> sewing_map(const FlatteningProblem& problem,
                                   const atlas::ChartSurface& surface, double tolerance,
                                   const SewingMapOptions& options, const Progress& progress);
 
+struct LeastStrainMap {
+    std::vector<Vec2> uv; // #v, internal units
+    bool pushed = false;  // parts overlapped and were pushed apart
+};
+
 /// The map for sewing with the least strain: from a nearly isometric map, the boundary bends while
 /// its edges stay nearly as long as they are on the surface; then they get exactly that length, and
-/// the inside follows. Nothing where faces flip, parts overlap by more than `tolerance`, or a limit
-/// of the options is exceeded.
-std::optional<std::vector<Vec2>> least_strain_map(const FlatteningProblem& problem,
-                                                  const atlas::ChartSurface& surface,
-                                                  double tolerance, const SewingMapOptions& options,
-                                                  const Progress& progress);
+/// the inside follows. Nothing where faces flip, parts overlap by more than `tolerance` and do not
+/// come apart, or a limit of the options is exceeded.
+std::optional<LeastStrainMap> least_strain_map(const FlatteningProblem& problem,
+                                               const atlas::ChartSurface& surface, double tolerance,
+                                               const SewingMapOptions& options,
+                                               const Progress& progress);
 
 /// An LPFB map without flips, with its inside moved as above; nothing where it has flips.
 std::optional<LpfbMap> settle_lpfb(const FlatteningProblem& problem, LpfbResult lpfb,

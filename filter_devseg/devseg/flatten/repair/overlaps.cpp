@@ -343,20 +343,15 @@ std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& 
     return path;
 }
 
-std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
-                                            const atlas::ChartSurface& surface,
-                                            std::vector<Vec2> uv, Pairs pairs, double tolerance,
-                                            const Progress& progress, double gap_share) {
-    const auto laplacian = attempt([&] { return std::make_unique<Laplacian>(problem); });
-    if (!laplacian) // needles: a cut is left
-        return std::nullopt;
+std::optional<std::vector<Vec2>> push_apart_by(const PushContacts& push,
+                                               const FlatteningProblem& problem,
+                                               const atlas::ChartSurface& surface,
+                                               std::vector<Vec2> uv, Pairs pairs, double tolerance,
+                                               double gap_share) {
     const double before = symmetric_dirichlet_energy(problem, uv);
     ContactPenalty penalty;
     penalty.stiffness = tuning.first_stiffness / problem.total_area;
     penalty.gap = gap_share * std::sqrt(problem.total_area);
-    SymmetricDirichletOptions options;
-    options.max_iterations = 30;
-    options.laplacian = laplacian.get();
     std::size_t fewest = pairs.size();
     int idle = 0;
     for (int round = 0; round < tuning.push_rounds && idle < tuning.idle_rounds; ++round) {
@@ -364,13 +359,8 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
         if (found.energy(positions_of(uv)) == 0.0) // nothing to push: more than a turn too much
             return std::nullopt;
         penalty.contacts = merge_contacts(penalty.contacts, found.contacts);
-        uv = attempt([&] {
-            return minimise_symmetric_dirichlet(problem, uv, options, progress, penalty).uv;
-        });
-        if (uv.empty())
-            return std::nullopt;
-        scale_to_area(problem, uv);
-        if (symmetric_dirichlet_energy(problem, uv) > before + tuning.push_cost)
+        uv = push(uv, penalty);
+        if (uv.empty() || symmetric_dirichlet_energy(problem, uv) > before + tuning.push_cost)
             return std::nullopt;
         pairs = overlapping_pairs(surface, uv, tolerance);
         if (pairs.empty())
@@ -380,6 +370,28 @@ std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
         penalty.stiffness *= 2.0;
     }
     return std::nullopt;
+}
+
+std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
+                                            const atlas::ChartSurface& surface,
+                                            std::vector<Vec2> uv, Pairs pairs, double tolerance,
+                                            const Progress& progress, double gap_share) {
+    const auto laplacian = attempt([&] { return std::make_unique<Laplacian>(problem); });
+    if (!laplacian) // needles: a cut is left
+        return std::nullopt;
+    SymmetricDirichletOptions options;
+    options.max_iterations = 30;
+    options.laplacian = laplacian.get();
+    const auto push = [&](const std::vector<Vec2>& start, const ContactPenalty& contacts) {
+        std::vector<Vec2> moved = attempt([&] {
+            return minimise_symmetric_dirichlet(problem, start, options, progress, contacts).uv;
+        });
+        if (!moved.empty())
+            scale_to_area(problem, moved);
+        return moved;
+    };
+    return push_apart_by(push, problem, surface, std::move(uv), std::move(pairs), tolerance,
+                         gap_share);
 }
 
 } // namespace devseg::flatten

@@ -5,12 +5,14 @@
 //            Texture Atlas Generation. ACM Transactions on Graphics 21(3), 2002, section 3.2.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "devseg/atlas/charts.h"
 #include "devseg/base/progress.h"
+#include "devseg/flatten/energy/contacts.h"
 #include "devseg/flatten/energy/rest_shape.h"
 
 namespace devseg::flatten {
@@ -42,9 +44,20 @@ std::vector<Index> separating_path(const Mesh& mesh, const atlas::ChartSurface& 
                                    const Pairs& pairs, const Progress& progress = Progress(),
                                    bool at_folds = false);
 
+/// Moves a map (#v) while contacts push on it; empty where that fails.
+using PushContacts =
+    std::function<std::vector<Vec2>(const std::vector<Vec2>& uv, const ContactPenalty& contacts)>;
+
 /// The map with its overlapping parts pushed apart by a penalty on contacts; `pairs` are the faces
 /// that overlap. Nothing if that does not help, or costs too much shape: then a cut
 /// keeps the pattern truer. `gap_share` is the distance to leave, of the chart's size.
+std::optional<std::vector<Vec2>> push_apart_by(const PushContacts& push,
+                                               const FlatteningProblem& problem,
+                                               const atlas::ChartSurface& surface,
+                                               std::vector<Vec2> uv, Pairs pairs, double tolerance,
+                                               double gap_share = 3e-4);
+
+/// The same towards the least symmetric Dirichlet energy.
 std::optional<std::vector<Vec2>> push_apart(const FlatteningProblem& problem,
                                             const atlas::ChartSurface& surface,
                                             std::vector<Vec2> uv, Pairs pairs, double tolerance,

@@ -9,6 +9,7 @@
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
 #include "devseg/flatten/maps/lpfb_map.h"
 #include "devseg/flatten/maps/tutte.h"
+#include "devseg/flatten/repair/overlaps.h"
 #include "devseg/plane/overlap.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
@@ -66,11 +67,11 @@ TEST(Strain, IsSummedByArea) {
 }
 
 std::vector<Vec2> sewn(const Disk& disk) {
-    const auto uv = least_strain_map(disk.problem, disk.surface,
-                                     plane::layout_tolerance(disk.problem.model_size),
-                                     SewingMapOptions{}, Progress{});
-    EXPECT_TRUE(uv.has_value());
-    return uv.value_or(std::vector<Vec2>{});
+    const auto map = least_strain_map(disk.problem, disk.surface,
+                                      plane::layout_tolerance(disk.problem.model_size),
+                                      SewingMapOptions{}, Progress{});
+    EXPECT_TRUE(map.has_value());
+    return map ? map->uv : std::vector<Vec2>();
 }
 
 Strain strain_of(const Disk& disk, const std::vector<Vec2>& uv) {
@@ -124,6 +125,29 @@ TEST(LeastStrain, HopelessMapsAreGivenUp) {
     EXPECT_TRUE(least_strain_map(disk.problem, disk.surface, tolerance, options, Progress{}));
     options.give_up_excess = 0.005;
     EXPECT_FALSE(least_strain_map(disk.problem, disk.surface, tolerance, options, Progress{}));
+}
+
+// A ring of a little more than a turn lies on itself where it is developed. Its sides keep their
+// lengths, and cloth between them gives way.
+TEST(LeastStrain, OverlappingPartsArePushedApart) {
+    const Disk disk(shapes::helix_strip(120, 1.01, 20.0, 26.0, 0.5));
+    const double tolerance = plane::layout_tolerance(disk.problem.model_size);
+    SewingMapOptions options;
+    options.push_apart = false;
+    EXPECT_FALSE(least_strain_map(disk.problem, disk.surface, tolerance, options, Progress()));
+    options.push_apart = true;
+    const auto map = least_strain_map(disk.problem, disk.surface, tolerance, options, Progress());
+    ASSERT_TRUE(map.has_value());
+    EXPECT_TRUE(map->pushed);
+    const std::vector<Vec2>& uv = map->uv;
+    EXPECT_TRUE(overlapping_pairs(disk.surface, uv, tolerance).empty());
+    EXPECT_EQ(count_flips(disk.problem, uv), 0);
+    for (std::size_t i = 0; i < disk.problem.boundary.size(); ++i) {
+        const Vertex v = disk.problem.boundary[i];
+        const Vertex u = disk.problem.boundary[(i + 1) % disk.problem.boundary.size()];
+        EXPECT_NEAR((uv[u] - uv[v]).norm(), disk.problem.boundary_edge[i], 1e-9);
+    }
+    EXPECT_LT(measure_strain(face_strains(disk.problem, uv), disk.problem.area).most_of_it, 0.1);
 }
 
 } // namespace

@@ -224,5 +224,26 @@ TEST(KernelPoint, AStarWithoutKernelKeepsTheHint) {
     EXPECT_EQ(kernel_point(star, hint), hint);
 }
 
+TEST(TurnBack, InnerVerticesGoWhereNoFaceIsFlipped) {
+    const checks::Disk disk(shapes::grid(6, 6));
+    std::vector<Vec2> flat;
+    for (const Vertex v : disk.surface.vertex)
+        flat.emplace_back(disk.mesh.points[v].head<2>());
+    ASSERT_EQ(count_flips(disk.problem, flat), 0);
+    std::vector<std::uint8_t> on_outline(flat.size(), 0);
+    for (const Vertex v : disk.problem.boundary)
+        on_outline[v] = 1;
+    for (std::size_t v = 0; v < flat.size(); ++v) {
+        std::vector<Vec2> uv = flat;
+        uv[v] += Vec2(0.4, 0.3); // past its neighbours
+        if (count_flips(disk.problem, uv) == 0)
+            continue;
+        EXPECT_EQ(turn_back(disk.problem, uv), on_outline[v] == 0) << v;
+        for (std::size_t w = 0; w < uv.size(); ++w)
+            EXPECT_TRUE(w == v || on_outline[w] == 0 || uv[w] == flat[w]);
+        EXPECT_TRUE(on_outline[v] != 0 || count_flips(disk.problem, uv) == 0);
+    }
+}
+
 } // namespace
 } // namespace devseg::flatten
