@@ -56,6 +56,9 @@ def find(window: MeshLabWindow, name: str) -> None:
     window.type(name)
 
     def listed() -> int:
+        typed = [w for w in window.widgets(text=name) if "LineEdit" in w["class"]]
+        if not typed:  # the list will change
+            return 0
         for menu in window.menus():
             entries = [e["text"] for e in menu["entries"] if e["text"]]
             if menu["visible"] and name in entries:
