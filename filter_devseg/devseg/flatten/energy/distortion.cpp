@@ -6,11 +6,11 @@
 #include "devseg/flatten/energy/distortion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <Eigen/SparseCore>
 
 #include "devseg/base/errors.h"
@@ -246,35 +246,42 @@ double distortion_with_gradient(const FlatteningProblem& problem, const Position
     return sum / (4.0 * problem.total_area);
 }
 
+// J = U Σ Vᵀ with rotations U and V of φ and −θ: what the modes of [SGK19, section 4] need of them
+// are R(φ + θ) and R(φ − θ), which come from the parts of J that turn and that mirror.
 Eigen::Matrix4d projected_hessian(const Eigen::Matrix2d& j) {
-    const Eigen::JacobiSVD<Eigen::Matrix2d> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    // J = U Σ Vᵀ with det J > 0, so that U and V are both rotations or both reflections: the modes
-    // below are products of the two, in which the reflections cancel up to signs.
-    const Eigen::Matrix2d& u = svd.matrixU();
-    const Eigen::Matrix2d& v = svd.matrixV();
-    const double s1 = svd.singularValues()[0];
-    const double s2 = svd.singularValues()[1];
+    const double turn_c = 0.5 * (j(0, 0) + j(1, 1));
+    const double turn_s = 0.5 * (j(1, 0) - j(0, 1));
+    const double mirror_c = 0.5 * (j(0, 0) - j(1, 1));
+    const double mirror_s = 0.5 * (j(1, 0) + j(0, 1));
+    const double turned = std::hypot(turn_c, turn_s);
+    const double mirrored = std::hypot(mirror_c, mirror_s);
+    const double s1 = turned + mirrored;
+    const double s2 = turned - mirrored;
+    const double c2 = turn_c / turned;
+    const double n2 = turn_s / turned;
+    const double c1 = mirrored > 0.0 ? mirror_c / mirrored : 1.0; // any for s1 = s2
+    const double n1 = mirrored > 0.0 ? mirror_s / mirrored : 0.0;
     const double cube1 = s1 * s1 * s1;
     const double cube2 = s2 * s2 * s2;
-    // [SGK19, section 4]: two scaling modes, the twist and the flip.
-    const double scale1 = 0.5 * (1.0 + 3.0 / (cube1 * s1));
-    const double scale2 = 0.5 * (1.0 + 3.0 / (cube2 * s2));
-    const double twist = 0.5 * (s1 + s2 - 1.0 / cube1 - 1.0 / cube2) / (s1 + s2);
-    const double flip = 0.5 * (1.0 + (s1 * s1 + s1 * s2 + s2 * s2) / (cube1 * cube2));
-    Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
-    const auto add = [&](double eigenvalue, const Eigen::Matrix2d& mode) {
-        if (eigenvalue <= 0.0)
-            return;
-        const Eigen::Matrix2d m = u * mode * v.transpose();
-        const Eigen::Vector4d column(m(0, 0), m(1, 0), m(0, 1), m(1, 1));
-        hessian += eigenvalue * column * column.transpose();
-    };
+    // Two scaling modes, the twist and the flip, column by column.
     const double half = std::sqrt(0.5);
-    Eigen::Matrix2d mode;
-    add(scale1, (mode << 1.0, 0.0, 0.0, 0.0).finished());
-    add(scale2, (mode << 0.0, 0.0, 0.0, 1.0).finished());
-    add(twist, (mode << 0.0, -half, half, 0.0).finished());
-    add(flip, (mode << 0.0, half, half, 0.0).finished());
+    const std::array<double, 4> eigenvalue{
+        0.5 * (1.0 + 3.0 / (cube1 * s1)), 0.5 * (1.0 + 3.0 / (cube2 * s2)),
+        std::max(0.0, 0.5 * (s1 + s2 - 1.0 / cube1 - 1.0 / cube2) / (s1 + s2)),
+        0.5 * (1.0 + (s1 * s1 + s1 * s2 + s2 * s2) / (cube1 * cube2))};
+    const std::array<std::array<double, 4>, 4> mode{
+        {{0.5 * (c2 + c1), 0.5 * (n2 + n1), 0.5 * (n1 - n2), 0.5 * (c2 - c1)},
+         {0.5 * (c2 - c1), 0.5 * (n2 - n1), -0.5 * (n1 + n2), 0.5 * (c2 + c1)},
+         {-half * n2, half * c2, -half * c2, -half * n2},
+         {-half * n1, half * c1, half * c1, half * n1}}};
+    Eigen::Matrix4d hessian;
+    for (std::size_t column = 0; column < 4; ++column)
+        for (std::size_t row = 0; row < 4; ++row) {
+            double sum = 0.0;
+            for (std::size_t k = 0; k < 4; ++k)
+                sum += eigenvalue[k] * mode[k][row] * mode[k][column];
+            hessian(static_cast<int>(row), static_cast<int>(column)) = sum;
+        }
     return hessian;
 }
 
@@ -374,32 +381,35 @@ Positions ProjectedNewton::direction(const Positions& x, const Positions& gradie
     for (std::size_t f = 0; f < problem.faces.size(); ++f) {
         // J's columns are linear in the corners: ∂(J column c)/∂ corner k = weight(k, c) ·
         // identity.
-        const Eigen::Matrix2d& inverse = problem.inverse[f];
-        Eigen::Matrix<double, 3, 2> weight;
-        weight.row(1) = inverse.row(0);
-        weight.row(2) = inverse.row(1);
-        weight.row(0) = -inverse.row(0) - inverse.row(1);
+        const double* const inverse = problem.inverse[f].data(); // column by column
+        const double weight[3][2] = {{-inverse[0] - inverse[1], -inverse[2] - inverse[3]},
+                                     {inverse[0], inverse[2]},
+                                     {inverse[1], inverse[3]}};
         const Eigen::Matrix2d map = jacobian(problem, x, f);
         Eigen::Matrix4d h =
             state_->face_hessian ? state_->face_hessian(f, map) : projected_hessian(map);
         h *= problem.area[f] / problem.total_area;
         const Triangle& t = problem.faces[f];
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-                const Vertex v = t[static_cast<std::size_t>(i)];
+        for (int j = 0; j < 3; ++j) {
+            // Columns of h for corner j: rows 2 c + r, columns s.
+            double at_corner[2][4];
+            for (int s = 0; s < 2; ++s)
+                for (int row = 0; row < 4; ++row)
+                    at_corner[s][row] = weight[j][0] * h(row, s) + weight[j][1] * h(row, 2 + s);
+            for (int i = 0; i < 3; ++i) {
+                const Index v = t[static_cast<std::size_t>(i)];
                 const Index u = t[static_cast<std::size_t>(j)];
                 if (v < u)
                     continue;
-                Eigen::Matrix2d block = Eigen::Matrix2d::Zero();
-                for (int c = 0; c < 2; ++c)
-                    for (int d = 0; d < 2; ++d)
-                        block += weight(i, c) * weight(j, d) * h.block<2, 2>(2 * c, 2 * d);
                 for (int r = 0; r < 2; ++r)
-                    for (int s = 0; s < 2; ++s)
-                        hessian.add(2 * v + r, 2 * u + s, block(r, s));
-                if (i == j)
-                    trace += block.trace();
+                    for (int s = 0; s < 2; ++s) {
+                        const double value =
+                            weight[i][0] * at_corner[s][r] + weight[i][1] * at_corner[s][2 + r];
+                        hessian.add(2 * v + r, 2 * u + s, value);
+                        trace += i == j && r == s ? value : 0.0;
+                    }
             }
+        }
     }
     if (state_->boundary_stiffness > 0.0)
         add_boundary(problem, state_->boundary_stiffness, state_->boundary_blocks, x, hessian);

@@ -135,13 +135,17 @@ private:
 class Descent {
 public:
     Descent(const FlatteningProblem& problem, std::vector<std::uint8_t> fixed,
-            const std::vector<Vec2>& start, double stiffness, ContactPenalty contacts = {})
-        : problem_(problem), fixed_(std::move(fixed)), energy_(problem),
-          contacts_(std::move(contacts)), x_(positions_of(start)),
+            const std::vector<Vec2>& start, double stiffness)
+        : problem_(problem), fixed_(std::move(fixed)), energy_(problem), x_(positions_of(start)),
           newton_(
               problem, fixed_,
               [this](std::size_t, const Eigen::Matrix2d& j) { return energy_.hessian(j); },
               stiffness) {}
+
+    void restart(const std::vector<Vec2>& start, const ContactPenalty& contacts) {
+        x_ = positions_of(start);
+        contacts_ = contacts;
+    }
 
     // Returns the energy.
     double run(const Stage& stage, const Progress& progress) {
@@ -243,12 +247,19 @@ std::vector<Vec2> least_strain_with_boundary(const FlatteningProblem& problem,
     return descent.uv();
 }
 
-std::vector<Vec2> push_boundary(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                const ContactPenalty& contacts, const Progress& progress) {
-    const Stage& last = *std::rbegin(bending);
-    Descent descent(problem, {}, uv, last.stiffness, contacts);
-    descent.run(last, progress);
-    return descent.uv();
+struct BoundaryPush::State {
+    Descent descent;
+};
+
+BoundaryPush::BoundaryPush(const FlatteningProblem& problem, const std::vector<Vec2>& uv)
+    : state_(new State{Descent(problem, {}, uv, std::rbegin(bending)->stiffness)}) {}
+BoundaryPush::~BoundaryPush() = default;
+
+std::vector<Vec2> BoundaryPush::run(const std::vector<Vec2>& uv, const ContactPenalty& contacts,
+                                    const Progress& progress) {
+    state_->descent.restart(uv, contacts);
+    state_->descent.run(*std::rbegin(bending), progress);
+    return state_->descent.uv();
 }
 
 } // namespace devseg::flatten

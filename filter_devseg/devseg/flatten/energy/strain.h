@@ -2,6 +2,7 @@
 // boundary keeps its lengths.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "devseg/base/progress.h"
@@ -39,9 +40,19 @@ std::vector<Vec2> least_strain_with_boundary(const FlatteningProblem& problem,
                                              const std::vector<Vec2>& uv, double give_up,
                                              const Progress& progress);
 
-/// The last part of that, from a map whose boundary has its lengths, with contacts that are pushed
-/// out.
-std::vector<Vec2> push_boundary(const FlatteningProblem& problem, const std::vector<Vec2>& uv,
-                                const ContactPenalty& contacts, const Progress& progress);
+/// The last part of that again and again, from maps whose boundary has its lengths, while contacts
+/// push. The order of elimination is found once.
+class BoundaryPush {
+public:
+    BoundaryPush(const FlatteningProblem& problem, const std::vector<Vec2>& uv);
+    ~BoundaryPush();
+
+    std::vector<Vec2> run(const std::vector<Vec2>& uv, const ContactPenalty& contacts,
+                          const Progress& progress);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 } // namespace devseg::flatten

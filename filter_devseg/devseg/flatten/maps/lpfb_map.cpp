@@ -99,9 +99,9 @@ std::optional<std::vector<Vec2>> with_seam_lengths(const FlatteningProblem& prob
                                                    const std::vector<Vec2>& near,
                                                    const Progress& progress) {
     auto uv = restore_seam_lengths(problem, near, progress);
-    if (!uv || !turn_back(problem, *uv))
-        return std::nullopt;
-    return least_strain(problem, *uv, progress);
+    if (uv && !turn_back(problem, *uv))
+        uv.reset();
+    return uv;
 }
 
 } // namespace
@@ -173,18 +173,22 @@ std::optional<LeastStrainMap> least_strain_map(const FlatteningProblem& problem,
     auto uv = with_seam_lengths(problem, bent, progress);
     if (!uv)
         return std::nullopt;
+    // Without flips, the boundary alone decides whether parts overlap.
     Pairs pairs = overlapping_pairs(surface, *uv, tolerance);
-    if (pairs.empty())
-        return LeastStrainMap{std::move(*uv)};
-    if (!options.push_apart)
-        return std::nullopt;
-    const auto push = [&](const std::vector<Vec2>& start, const ContactPenalty& contacts) {
-        const auto pushed =
-            with_seam_lengths(problem, push_boundary(problem, start, contacts, progress), progress);
-        return pushed.value_or(std::vector<Vec2>());
-    };
-    uv = push_apart_by(push, problem, surface, std::move(*uv), std::move(pairs), tolerance);
-    return uv ? std::optional(LeastStrainMap{std::move(*uv), true}) : std::nullopt;
+    const bool pushed = !pairs.empty();
+    if (pushed) {
+        if (!options.push_apart)
+            return std::nullopt;
+        BoundaryPush pushing(problem, *uv);
+        const auto push = [&](const std::vector<Vec2>& start, const ContactPenalty& contacts) {
+            return with_seam_lengths(problem, pushing.run(start, contacts, progress), progress)
+                .value_or(std::vector<Vec2>());
+        };
+        uv = push_apart_by(push, problem, surface, std::move(*uv), std::move(pairs), tolerance);
+        if (!uv)
+            return std::nullopt;
+    }
+    return LeastStrainMap{least_strain(problem, *uv, progress), pushed};
 }
 
 } // namespace devseg::flatten
