@@ -1,6 +1,7 @@
 // Filters on a part of random meshes, with seams that stay, and meshes cut open.
 #include <cmath>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ std::vector<int> bits_to_selected(const HostMesh& host) {
 }
 
 TEST(PropertyOfParts, NothingOutsideOfTheSelectionChanges) {
-    int runs = 0;
+    std::set<std::string> ran;
     checks::for_random_cases(12, [&](Random& random) {
         const shapes::RandomMesh mesh = shapes::random_mesh(
             random, random.below(2) == 0 ? shapes::Defects::none : shapes::Defects::any);
@@ -77,7 +78,7 @@ TEST(PropertyOfParts, NothingOutsideOfTheSelectionChanges) {
             const auto r = attempt(filter, *host, values, true);
             if (!r)
                 continue;
-            ++runs;
+            ran.insert(filter.menu_name);
             for (std::size_t f = 0; f < host->geometry.faces.size(); ++f) {
                 if (host->face_selected[f] != 0)
                     continue;
@@ -95,11 +96,12 @@ TEST(PropertyOfParts, NothingOutsideOfTheSelectionChanges) {
             }
         }
     });
-    EXPECT_GT(runs, 0);
+    for (const FilterDeclaration& filter : filters::filter_table())
+        EXPECT_EQ(ran.count(filter.menu_name) != 0, filter.on_part) << filter.menu_name;
 }
 
 TEST(PropertyOfParts, SeamsThatAreKeptStayInEveryFilter) {
-    int runs = 0;
+    std::set<std::string> ran;
     checks::for_random_cases(12, [&](Random& random) {
         const shapes::RandomMesh mesh = shapes::random_mesh(random, shapes::Defects::none);
         SCOPED_TRACE(mesh.recipe);
@@ -117,11 +119,12 @@ TEST(PropertyOfParts, SeamsThatAreKeptStayInEveryFilter) {
             const auto r = attempt(filter, *host, values, true);
             if (!r)
                 continue;
-            ++runs;
+            ran.insert(filter.menu_name);
             checks::expect_kept_seams(*host, *r);
         }
     });
-    EXPECT_GT(runs, 0);
+    for (const FilterDeclaration& filter : filters::filter_table())
+        EXPECT_EQ(ran.count(filter.menu_name) != 0, filter.keeps) << filter.menu_name;
 }
 
 // Two faces share an edge of the opened mesh if they did, and no seam lies on it. A slit of a

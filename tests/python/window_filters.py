@@ -52,10 +52,13 @@ def opened(flavour: str, pymeshlab: ModuleType, folder: Path) -> Iterator[MeshLa
 def find(window: MeshLabWindow, name: str) -> None:
     """Starts a filter as MeshLab's help tells: Ctrl+F, its name, and its line in the list."""
     window.focus("MeshLab")
-    window.press("ctrl+f")
+    window.press("ctrl+f", "ctrl+a")  # the last name may stand there still
     window.type(name)
 
     def listed() -> int:
+        typed = [w for w in window.widgets(text=name) if "LineEdit" in w["class"]]
+        if not typed:  # the list will change
+            return 0
         for menu in window.menus():
             entries = [e["text"] for e in menu["entries"] if e["text"]]
             if menu["visible"] and name in entries:

@@ -69,13 +69,13 @@ auto or_refuse(Flatten flatten) {
 }
 
 // Of charts that may be cut apart; with an effort, of charts that are to stay in one piece.
-std::vector<TrialMap> maps_of(const Mesh& mesh, const ChartMap& charts,
-                              const std::vector<Index>& which, const WholeEffort* effort,
-                              Progress& progress) {
+QuickMaps maps_of(const Mesh& mesh, const ChartMap& charts, const std::vector<Index>& which,
+                  const WholeEffort* effort, Progress& progress) {
     return or_refuse([&] {
         const std::vector<std::vector<Index>> faces = faces_of(charts, which);
-        return effort != nullptr ? quick_maps(mesh, faces, charts.seam, *effort, progress)
-                                 : judge::final_maps(mesh, faces, charts.seam, progress);
+        return effort != nullptr
+                   ? quick_maps(mesh, faces, charts.seam, *effort, progress)
+                   : QuickMaps{judge::final_maps(mesh, faces, charts.seam, progress), {}};
     });
 }
 
@@ -87,8 +87,8 @@ void measure(const std::vector<TrialMap>& maps, Edit& edit) {
 }
 
 // Cuts the charts open where they are no disks, flattens and measures them.
-std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
-                             const WholeEffort* effort, Edit& edit, Progress& progress) {
+QuickMaps finish(const Mesh& mesh, const std::vector<Index>& which, const WholeEffort* effort,
+                 Edit& edit, Progress& progress) {
     for (const std::vector<Index>& faces : faces_of(edit.charts, which)) {
         atlas::ChartSurface surface = atlas::extract_surface(mesh, faces, edit.charts.seam);
         if (!surface.is_disk())
@@ -96,19 +96,19 @@ std::vector<TrialMap> finish(const Mesh& mesh, const std::vector<Index>& which,
                                &edit.cut_length);
     }
     auto judging = progress.part("flattening what has changed", 0.6 * progress.left());
-    std::vector<TrialMap> maps = maps_of(mesh, edit.charts, which, effort, judging);
+    QuickMaps quick = maps_of(mesh, edit.charts, which, effort, judging);
     edit.changed = static_cast<Index>(which.size());
-    measure(maps, edit);
-    return maps;
+    measure(quick.maps, edit);
+    return quick;
 }
 
 // The same where nothing is refused for charts that lie on themselves: nothing needs to be pushed.
 std::vector<TrialMap> finish_unpushed(const Mesh& mesh, const std::vector<Index>& which, Edit& edit,
                                       Progress& progress) {
     const WholeEffort effort{0.0, false};
-    std::vector<TrialMap> maps = finish(mesh, which, &effort, edit, progress);
+    std::vector<TrialMap> maps = finish(mesh, which, &effort, edit, progress).maps;
     if (!std::isfinite(edit.l2_stretch)) // some chart has no map in one piece
-        maps = finish(mesh, which, nullptr, edit, progress);
+        maps = finish(mesh, which, nullptr, edit, progress).maps;
     return maps;
 }
 
@@ -198,15 +198,15 @@ Edit remove_seams(const Mesh& mesh, const ChartMap& charts, const std::vector<st
         return edit;
     }
     const WholeEffort effort{bounds.max_chart_l2_stretch};
-    std::vector<TrialMap> maps = finish(mesh, changed, &effort, edit, progress);
-    check_joined(maps, bounds);
+    QuickMaps quick = finish(mesh, changed, &effort, edit, progress);
+    check_joined(quick.maps, bounds);
     auto confirming = progress.part("flattening what has changed", progress.left());
     or_refuse([&] {
-        confirm_maps(mesh, faces_of(edit.charts, changed), edit.charts.seam, effort, maps,
+        confirm_maps(mesh, faces_of(edit.charts, changed), edit.charts.seam, effort, quick,
                      confirming);
     });
-    check_joined(maps, bounds);
-    measure(maps, edit);
+    check_joined(quick.maps, bounds);
+    measure(quick.maps, edit);
     return edit;
 }
 
@@ -303,9 +303,9 @@ Edit add_darts(const Mesh& mesh, const ChartMap& charts, const std::vector<Index
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     auto before = progress.part("flattening the charts", 0.5);
-    const std::vector<TrialMap> old = maps_of(mesh, charts, changed, nullptr, before);
+    const std::vector<TrialMap> old = maps_of(mesh, charts, changed, nullptr, before).maps;
     edit.l2_before = worst_l2(old);
-    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress);
+    const std::vector<TrialMap> maps = finish(mesh, changed, nullptr, edit, progress).maps;
     for (std::size_t i = 0; i < maps.size(); ++i)
         if (!bounds.force &&
             !(maps[i].excess() < old[i].excess() - tuning.least_gain * maps[i].area))

@@ -2,80 +2,126 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 #include <utility>
 
-#include "devseg/mesh/coarsen.h"
+#include "devseg/flatten/energy/map_tools.h"
 
 namespace devseg::edit {
 
 using judge::TrialMap;
+using judge::WholeEffort;
 
 namespace {
 
 struct Tuning {
-    // Of a chart that is judged: with so many its map, pushed apart, takes up to 0.15 s, and as
-    // much for any chart. With half as many, more joins look flat that are not.
-    Index most_faces = 8000;
+    // Of a chart whose map is measured and refuses nothing: its L2 stretch is good to 1e-3.
+    Index most_measured_faces = 4000;
 };
 constexpr Tuning tuning;
 
 bool is_large(const std::vector<Index>& faces) {
-    return faces.size() > at(tuning.most_faces);
+    return faces.size() > at(flatten::coarse_map_faces);
 }
 
-TrialMap coarse_map(const Mesh& mesh, const std::vector<Index>& faces,
-                    const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
-                    Progress& progress) {
-    const atlas::ChartSurface surface =
-        atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, seam));
-    auto decimating = progress.part("decimating what has changed", 0.3);
-    const mesh::CoarseMesh coarse =
-        mesh::coarsen_in_parallel(atlas::mesh_of(mesh, surface), tuning.most_faces, decimating);
-    std::vector<Index> all(coarse.mesh.faces.size());
-    std::iota(all.begin(), all.end(), 0);
-    auto flattening = progress.part("flattening what has changed", progress.left());
-    TrialMap map = std::move(
-        judge::whole_maps(coarse.mesh, {std::move(all)},
-                          std::vector<std::uint8_t>(coarse.mesh.twin.size(), 0), effort, flattening)
-            .front());
-    map.area = atlas::area_of(mesh, surface);
-    map.turns.clear();
-    map.part.clear();
+bool is_within(const TrialMap& map, const WholeEffort& effort) {
+    return effort.most_l2 <= 0.0 || map.l2_squared <= effort.most_l2 * effort.most_l2;
+}
+
+TrialMap measured(const flatten::FlatteningProblem& problem, const std::vector<Vec2>& uv) {
+    TrialMap map;
+    judge::measure_stretch(problem, uv, map);
     return map;
+}
+
+CoarseChart decimated(const Mesh& mesh, const std::vector<Index>& faces,
+                      const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
+                      const Progress& progress) {
+    CoarseChart chart;
+    chart.surface = atlas::extract_surface(mesh, faces, atlas::enclose(mesh, faces, seam));
+    const auto may_push = [&](const flatten::FlatteningProblem& problem,
+                              const std::vector<Vec2>& uv) {
+        return effort.push_apart && is_within(measured(problem, uv), effort);
+    };
+    chart.map = flatten::map_coarsely(mesh, chart.surface,
+                                      effort.push_apart ? flatten::coarse_map_faces
+                                                        : tuning.most_measured_faces,
+                                      may_push, progress);
+    return chart;
+}
+
+// Of the coarse chart; nothing where it has no map.
+std::optional<TrialMap> coarse_map(const Mesh& mesh, const CoarseChart& chart) {
+    const flatten::FlatChart& flat = chart.map.flat;
+    if (flat.uv.empty())
+        return std::nullopt;
+    TrialMap map =
+        measured(flatten::make_flattening_problem(chart.map.coarse.mesh, flat.surface), flat.uv);
+    map.area = atlas::area_of(mesh, chart.surface);
+    map.flat = !flat.torn;
+    return map;
+}
+
+// Of all faces; nothing where it is not good.
+std::optional<TrialMap> refined_map(const Mesh& mesh, CoarseChart chart, const WholeEffort& effort,
+                                    const Progress& progress) {
+    const auto problem = flatten::make_flattening_problem(mesh, chart.surface);
+    const auto uv =
+        flatten::refine_coarse_map(mesh, chart.surface, problem, std::move(chart.map), progress);
+    if (!uv)
+        return std::nullopt;
+    TrialMap map = measured(problem, *uv);
+    map.flat = true;
+    return is_within(map, effort) ? std::optional(std::move(map)) : std::nullopt;
 }
 
 } // namespace
 
-std::vector<TrialMap> quick_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                                 const std::vector<std::uint8_t>& seam,
-                                 const judge::WholeEffort& effort, Progress& progress) {
-    std::vector<std::vector<Index>> small;
-    std::copy_if(charts.begin(), charts.end(), std::back_inserter(small),
-                 [&](const auto& faces) { return !is_large(faces); });
-    auto judging = progress.part("flattening what has changed", 0.3);
-    std::vector<TrialMap> of_small = judge::whole_maps(mesh, small, seam, effort, judging);
-    std::vector<TrialMap> maps;
-    auto next = of_small.begin();
+QuickMaps quick_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
+                     const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
+                     Progress& progress) {
+    QuickMaps quick;
+    quick.maps.resize(charts.size());
+    quick.coarse.resize(charts.size());
+    std::vector<std::size_t> whole;
+    std::vector<std::vector<Index>> faces;
     for (std::size_t c = 0; c < charts.size(); ++c) {
-        auto one = progress.part("flattening what has changed",
-                                 progress.left() / static_cast<double>(charts.size() - c));
-        maps.push_back(is_large(charts[c]) ? coarse_map(mesh, charts[c], seam, effort, one)
-                                           : std::move(*next++));
+        if (is_large(charts[c])) {
+            CoarseChart chart = decimated(mesh, charts[c], seam, effort, progress);
+            if (auto map = coarse_map(mesh, chart)) {
+                quick.maps[c] = std::move(*map);
+                quick.coarse[c] = std::move(chart);
+                continue;
+            }
+        }
+        whole.push_back(c);
+        faces.push_back(charts[c]);
     }
-    return maps;
+    std::vector<TrialMap> maps = judge::whole_maps(mesh, faces, seam, effort, progress);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        quick.maps[whole[i]] = std::move(maps[i]);
+    return quick;
 }
 
 void confirm_maps(const Mesh& mesh, const std::vector<std::vector<Index>>& charts,
-                  const std::vector<std::uint8_t>& seam, const judge::WholeEffort& effort,
-                  std::vector<TrialMap>& maps, Progress& progress) {
-    std::vector<std::vector<Index>> large;
-    std::copy_if(charts.begin(), charts.end(), std::back_inserter(large), is_large);
-    std::vector<TrialMap> of_large = judge::whole_maps(mesh, large, seam, effort, progress);
-    auto next = of_large.begin();
-    for (std::size_t c = 0; c < charts.size(); ++c)
-        if (is_large(charts[c]))
-            maps[c] = std::move(*next++);
+                  const std::vector<std::uint8_t>& seam, const WholeEffort& effort,
+                  QuickMaps& quick, Progress& progress) {
+    std::vector<std::size_t> whole;
+    std::vector<std::vector<Index>> faces;
+    for (std::size_t c = 0; c < charts.size(); ++c) {
+        if (!quick.coarse[c])
+            continue;
+        auto map = flatten::attempt(
+            [&] { return refined_map(mesh, std::move(*quick.coarse[c]), effort, progress); });
+        if (map) {
+            quick.maps[c] = std::move(*map);
+        } else {
+            whole.push_back(c);
+            faces.push_back(charts[c]);
+        }
+    }
+    std::vector<TrialMap> maps = judge::whole_maps(mesh, faces, seam, effort, progress);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        quick.maps[whole[i]] = std::move(maps[i]);
 }
 
 } // namespace devseg::edit

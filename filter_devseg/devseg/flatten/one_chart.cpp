@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "devseg/atlas/join_loops.h"
+#include "devseg/flatten/coarse_map.h"
 #include "devseg/flatten/energy/map_tools.h"
 #include "devseg/flatten/energy/multilevel.h"
 #include "devseg/flatten/energy/symmetric_dirichlet.h"
@@ -300,8 +301,12 @@ public:
                 return tear(open);
             return tear([&] { return halve(mesh_, surface_); }); // the halves are easier
         }
-        const Pairs pairs = take(*map);
-        return tear(may_push(pairs) ? push(pairs) : pairs);
+        Pairs pairs = take(*map);
+        if (may_push(pairs))
+            pairs = push(pairs);
+        if (may_push(pairs) && whole_ == nullptr)
+            pairs = push_coarse(pairs);
+        return tear(pairs);
     }
 
 private:
@@ -362,6 +367,12 @@ private:
                 return {};
         }
         return overlaps();
+    }
+
+    // Parts of a large chart that do not come apart on all faces may do so on fewer.
+    Pairs push_coarse(const Pairs& pairs) {
+        const auto uv = map_by_coarse(mesh_, surface_, problem_, progress_);
+        return uv ? take({*uv, true, true}) : pairs;
     }
 
     const Mesh& mesh_;

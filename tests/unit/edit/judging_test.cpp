@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "devseg/flatten/flatten.h"
 #include "unit/checks.h"
 #include "unit/shapes.h"
 
@@ -36,7 +37,7 @@ Both judged(const mesh::RawMesh& raw, const WholeEffort& effort) {
     const Mesh mesh = checks::gated(raw);
     Progress progress;
     const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
-    return {quick_maps(mesh, faces, no_seams(mesh), effort, progress).front(),
+    return {quick_maps(mesh, faces, no_seams(mesh), effort, progress).maps.front(),
             judge::whole_maps(mesh, faces, no_seams(mesh), effort, progress).front()};
 }
 
@@ -55,12 +56,13 @@ mesh::RawMesh hill() {
 }
 
 // A ring of more than a turn, which rises slowly: laid flat, it lies on itself.
-mesh::RawMesh ramp() {
+mesh::RawMesh ramp(double turns = 1.3, double waves = 0.0) {
     mesh::RawMesh raw = shapes::grid(200, 50);
     for (Vec3& p : raw.points) {
-        const double angle = 2.0 * pi * 1.3 * p.x();
+        const double angle = 2.0 * pi * turns * p.x();
         const double radius = 0.5 + 0.5 * p.y();
-        p = Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.02 * angle);
+        p = Vec3(radius * std::cos(angle), radius * std::sin(angle),
+                 0.02 * angle + waves * std::sin(40.0 * p.x()) * std::sin(17.0 * p.y()));
     }
     return raw;
 }
@@ -100,7 +102,7 @@ TEST(QuickMaps, OfSmallChartsAreTheWholeOnesAndAllKeepTheirOrder) {
             seam[h] = chart_of(face_of(h)) != chart_of(mesh.across(h)) ? 1 : 0;
     Progress progress;
     const std::vector<TrialMap> whole = judge::whole_maps(mesh, charts, seam, {}, progress);
-    const std::vector<TrialMap> quick = quick_maps(mesh, charts, seam, {}, progress);
+    const std::vector<TrialMap> quick = quick_maps(mesh, charts, seam, {}, progress).maps;
     ASSERT_EQ(quick.size(), charts.size());
     for (std::size_t c = 0; c < charts.size(); ++c) {
         const bool is_small = charts[c].size() < 8000;
@@ -115,12 +117,44 @@ TEST(QuickMaps, WhatTheyTakeIsConfirmedOnAllFaces) {
     Progress progress;
     const WholeEffort effort;
     const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
-    std::vector<TrialMap> maps = quick_maps(mesh, faces, no_seams(mesh), effort, progress);
+    QuickMaps quick = quick_maps(mesh, faces, no_seams(mesh), effort, progress);
+    const double coarse = quick.maps.front().l2_squared;
     const TrialMap whole = judge::whole_maps(mesh, faces, no_seams(mesh), effort, progress).front();
-    ASSERT_NE(maps.front().l2_squared, whole.l2_squared);
-    confirm_maps(mesh, faces, no_seams(mesh), effort, maps, progress);
-    EXPECT_EQ(maps.front().l2_squared, whole.l2_squared);
-    EXPECT_EQ(maps.front().turns.size(), mesh.faces.size());
+    confirm_maps(mesh, faces, no_seams(mesh), effort, quick, progress);
+    const TrialMap& fine = quick.maps.front();
+    EXPECT_TRUE(fine.flat);
+    EXPECT_LT(std::abs(fine.l2_squared - whole.l2_squared),
+              0.5 * std::abs(coarse - whole.l2_squared));
+    EXPECT_NEAR(fine.linf, whole.linf, 0.05);
+    EXPECT_NEAR(fine.area, whole.area, 1e-9 * whole.area);
+}
+
+TEST(QuickMaps, WhatIsTooMuchOnAllFacesIsNotConfirmed) {
+    const Mesh mesh = checks::gated(hill());
+    Progress progress;
+    const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
+    const TrialMap whole = judge::whole_maps(mesh, faces, no_seams(mesh), {}, progress).front();
+    QuickMaps quick = quick_maps(mesh, faces, no_seams(mesh), {}, progress);
+    // Another bound than before: the refined map is above it, and the answer is the best map.
+    const WholeEffort strict{std::sqrt(whole.l2_squared) - 1e-3};
+    confirm_maps(mesh, faces, no_seams(mesh), strict, quick, progress);
+    EXPECT_EQ(quick.maps.front().l2_squared, whole.l2_squared);
+}
+
+// All faces do not come apart: flattening tries fewer of them as well.
+TEST(QuickMaps, WhatIsPushedApartIsLeftInOnePieceByFlattening) {
+    const Mesh mesh = checks::gated(ramp(1.07, 0.02));
+    Progress progress;
+    const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
+    QuickMaps quick = quick_maps(mesh, faces, no_seams(mesh), {}, progress);
+    ASSERT_TRUE(quick.coarse.front() && quick.coarse.front()->map.flat.pushed);
+    confirm_maps(mesh, faces, no_seams(mesh), {}, quick, progress);
+    EXPECT_TRUE(quick.maps.front().flat);
+    const atlas::ChartMap one =
+        atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, false);
+    const auto flat =
+        flatten::flatten_charts(mesh, one, flatten::FlattenMethod::symmetric_dirichlet, progress);
+    EXPECT_EQ(flat.cuts, 0);
 }
 
 } // namespace

@@ -50,12 +50,14 @@ public:
     }
 
     // `rest` has the areas and cotangents of the full chart; other levels measure their own faces.
-    void relax(const FlatteningProblem* rest, const Progress& progress) {
+    void relax(const FlatteningProblem* rest, bool hold_boundary, const Progress& progress) {
         measure(rest);
         Heartbeat heartbeat(progress);
         for (int i = 0; i < tuning.sweeps; ++i)
             for (const Vertex v : alive_) {
                 heartbeat();
+                if (hold_boundary && !mesh::visit_star(s_.twin, leaving_[v], [](HalfEdge) {}))
+                    continue;
                 gather_star({s_.faces, s_.twin, area_, cotangent_}, uv_, leaving_[v], star_);
                 uv_[v] = relax_vertex(star_, uv_[v]);
             }
@@ -209,6 +211,17 @@ private:
 
 } // namespace
 
+std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
+                             const FlatteningProblem& problem, bool hold_boundary,
+                             const Progress& progress) {
+    Refinement refinement(chart, std::move(coarse), std::move(uv));
+    while (!refinement.done()) {
+        refinement.refine(progress);
+        refinement.relax(refinement.done() ? &problem : nullptr, hold_boundary, progress);
+    }
+    return refinement.take();
+}
+
 std::vector<Vec2> flatten_multilevel(
     const Mesh& mesh, const atlas::ChartSurface& surface, const FlatteningProblem& problem,
     const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
@@ -225,12 +238,7 @@ std::vector<Vec2> flatten_multilevel(
     for (const Vertex v : disk.all_vertices())
         uv[small.vertex[disk.vertex[v]]] = found[v];
 
-    Refinement refinement(local, std::move(small.surface), std::move(uv));
-    while (!refinement.done()) {
-        refinement.refine(progress);
-        refinement.relax(refinement.done() ? &problem : nullptr, progress);
-    }
-    return refinement.take();
+    return refine_map(local, std::move(small.surface), std::move(uv), problem, false, progress);
 }
 
 } // namespace devseg::flatten

@@ -10,6 +10,7 @@
 
 #include "devseg/base/progress.h"
 #include "devseg/flatten/energy/rest_shape.h"
+#include "devseg/mesh/coarsen.h"
 
 namespace devseg::flatten {
 
@@ -25,5 +26,12 @@ std::vector<Vec2> flatten_multilevel(
     const std::function<std::vector<Vec2>(const FlatteningProblem&, const atlas::ChartSurface&)>&
         solve,
     const Progress& progress);
+
+/// The second half of that alone: `uv` (#v of `chart`, a chart as a mesh of its own) is a map of
+/// its coarse version without flips, `problem` that of all its faces. With `hold_boundary` vertices
+/// of the boundary stay where they are put back. Throws NumericalFailure as above.
+std::vector<Vec2> refine_map(const Mesh& chart, mesh::CoarseSurface coarse, std::vector<Vec2> uv,
+                             const FlatteningProblem& problem, bool hold_boundary,
+                             const Progress& progress);
 
 } // namespace devseg::flatten
