@@ -8,14 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 # Pixels that are worked on at once: bounds the memory, whatever the mesh.
 _CHUNK = 1 << 21
 # Pixels of all triangles together, seen or hidden, that are worth drawing: where hundreds of sheets
 # lie behind each other, pixels are drawn as blocks, so that a picture takes no longer than others.
 _MOST_PIXELS = 2e6
+# Pixels along a tile, whose farthest depth tells what is hidden: as large as small triangles.
+_TILE = 8
 
 
 @dataclass(frozen=True)
@@ -60,36 +66,74 @@ def rasterize(points: np.ndarray, depth: np.ndarray | None, width: int, height: 
     x0, x1, x2, y0, y1, y2 = (points[:, k, c] for c in (0, 1) for k in range(3))
     area = 0.5 * float(np.abs((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)).sum())
     coarseness = math.ceil(math.sqrt(area / _MOST_PIXELS)) or 1
-    owner = _owners(points / coarseness, depth, -(-width // coarseness), -(-height // coarseness))
+    weights = _weights(points)
     if coarseness > 1:
+        blocks = points / coarseness
+        owner = _owners(
+            blocks, _weights(blocks), depth, -(-width // coarseness), -(-height // coarseness)
+        )
         owner = owner.repeat(coarseness, axis=0).repeat(coarseness, axis=1)[:height, :width]
+    else:
+        owner = _owners(points, weights, depth, width, height)
     covered = np.flatnonzero(owner >= 0)
-    return Visible(owner, covered, owner.ravel()[covered], _weights(points))
+    return Visible(owner, covered, owner.ravel()[covered], weights)
 
 
-def _owners(points: np.ndarray, depth: np.ndarray | None, width: int, height: int) -> np.ndarray:
+def _owners(
+    points: np.ndarray, weights: np.ndarray, depth: np.ndarray | None, width: int, height: int
+) -> np.ndarray:
     """The triangle in front at the centre of each pixel, height by width, -1 for none."""
-    hidden = _HiddenSurfaces(_weights(points), depth, width * height)
+    hidden = _HiddenSurfaces(weights, depth, width, height)
     edges = _Edges.of(points)
-    top = np.clip(np.ceil(edges.top - 0.5), 0, height).astype(np.int64)
-    bottom = np.clip(np.ceil(edges.bottom - 0.5), 0, height).astype(np.int64)
-    for chunk in _chunks(bottom - top, points, width):
-        rows = (bottom - top)[chunk]
-        which, row = np.repeat(chunk, rows), _ranges(top[chunk], rows)
-        y = row + 0.5
-        left, right = edges.span(which, y)
-        first = np.clip(np.ceil(left - 0.5), 0, width).astype(np.int64)
-        last = np.clip(np.ceil(right - 0.5), 0, width).astype(np.int64)
-        count = np.maximum(last - first, 0)
-        hidden.draw(which, y, count, _ranges(first, count), row * width)
+    x0, x1, x2 = points[:, :, 0].T
+    sides = [end(end(x0, x1), x2) for end in (np.minimum, np.maximum)]
+    box = _Boxes(
+        *(_pixels(side, width) for side in sides),
+        *(_pixels(side, height) for side in (edges.top, edges.bottom)),
+    )
+    rows = box.bottom - box.top
+    for group in hidden.groups(box):
+        for chunk in _chunks(group, rows, box):
+            which, row = np.repeat(chunk, rows[chunk]), _ranges(box.top[chunk], rows[chunk])
+            y = row + 0.5
+            left, right = edges.span(which, y)
+            first = _pixels(left, width)
+            count = np.maximum(_pixels(right, width) - first, 0)
+            hidden.draw(which, y, count, _ranges(first, count), row * width)
     return hidden.owner.reshape(height, width)
 
 
-class _HiddenSurfaces:
-    """Which triangle is in front at each pixel, -1 for none."""
+def _pixels(side: np.ndarray, size: int) -> np.ndarray:
+    """The first pixel whose centre is not before it, in rows or columns of `size`."""
+    return np.clip(np.ceil(side - 0.5), 0, size).astype(np.int64)
 
-    def __init__(self, weights: np.ndarray, depth: np.ndarray | None, pixels: int) -> None:
-        self.owner = np.full(pixels, -1, dtype=np.int64)
+
+@dataclass(frozen=True)
+class _Boxes:
+    """Pixels that triangles may cover: columns left … right - 1, rows top … bottom - 1."""
+
+    left: np.ndarray
+    right: np.ndarray
+    top: np.ndarray
+    bottom: np.ndarray
+
+    def covered(self) -> np.ndarray:
+        """The triangles that may cover any."""
+        return np.flatnonzero((self.left < self.right) & (self.top < self.bottom))
+
+
+class _HiddenSurfaces:
+    """Which triangle is in front at each pixel, -1 for none.
+
+    Reference:
+        N. Greene, M. Kass, G. Miller: Hierarchical Z-Buffer Visibility. SIGGRAPH 1993.
+    """
+
+    def __init__(
+        self, weights: np.ndarray, depth: np.ndarray | None, width: int, height: int
+    ) -> None:
+        self.size = height, width
+        self.owner = np.full(width * height, -1, dtype=np.int64)
         self.plane = None
         if depth is not None:
             # The depth of a triangle is a x + b y + c.
@@ -100,7 +144,33 @@ class _HiddenSurfaces:
             self.plane = parts
             self.nearest = np.minimum(np.minimum(depth[:, 0], depth[:, 1]), depth[:, 2])
             self.farthest = np.maximum(np.maximum(depth[:, 0], depth[:, 1]), depth[:, 2])
-            self.zbuffer = np.full(pixels, np.inf)
+            self.zbuffer = np.full(width * height, np.inf)
+
+    def groups(self, box: _Boxes) -> Iterator[np.ndarray]:
+        """All triangles to be drawn: the near half, then what it does not hide of the others."""
+        alive = box.covered()
+        if self.plane is None or not len(alive):
+            yield alive
+            return
+        near = self.nearest[alive] <= np.median(self.nearest[alive])
+        yield alive[near]
+        yield self._not_hidden(alive[~near], box)
+
+    def _not_hidden(self, which: np.ndarray, box: _Boxes) -> np.ndarray:
+        """Those of the triangles that are not behind all that tiles of pixels show."""
+        farthest = self.zbuffer.reshape(self.size)
+        for axis in (0, 1):
+            farthest = np.maximum.reduceat(
+                farthest, np.arange(0, self.size[axis], _TILE), axis=axis
+            )
+        low, high = box.top[which] // _TILE, (box.bottom[which] - 1) // _TILE
+        left, right = box.left[which] // _TILE, (box.right[which] - 1) // _TILE
+        shown = np.maximum(
+            np.maximum(farthest[low, left], farthest[low, right]),
+            np.maximum(farthest[high, left], farthest[high, right]),
+        )
+        large = (high - low > 1) | (right - left > 1)  # over more tiles than their corners are in
+        return which[large | (self.nearest[which] <= shown)]
 
     def draw(
         self,
@@ -135,15 +205,11 @@ class _HiddenSurfaces:
         self.owner[pixel[front]] = owner[front]
 
 
-def _chunks(rows: np.ndarray, points: np.ndarray, width: int) -> list[np.ndarray]:
-    """Groups of triangles that together cover at most about _CHUNK pixels."""
-    x0, x1, x2 = points[:, :, 0].T
-    extent = np.maximum(np.maximum(x0, x1), x2) - np.minimum(np.minimum(x0, x1), x2)
-    extent = np.clip(extent, 1, width)
-    total = np.cumsum(rows * (extent + 1))
-    alive = np.flatnonzero(rows > 0)
-    group = (total[alive] // _CHUNK).astype(np.int64)
-    return np.split(alive, np.flatnonzero(np.diff(group)) + 1)
+def _chunks(group: np.ndarray, rows: np.ndarray, box: _Boxes) -> list[np.ndarray]:
+    """Parts of a group of triangles that cover at most about _CHUNK pixels."""
+    extent = (box.right - box.left)[group]
+    part = np.cumsum(rows[group] * (extent + 1)) // _CHUNK
+    return np.split(group, np.flatnonzero(np.diff(part)) + 1)
 
 
 @dataclass(frozen=True)

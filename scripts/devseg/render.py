@@ -107,12 +107,15 @@ def _mesh_panel(data: MeshData, size: int) -> np.ndarray:
     # Far from the origin, differences would drown in large coordinates.
     seen = (data.vertices - data.vertices[data.faces[0, 0]]) @ rotation.T
     corners = seen[data.faces]
-    points = _fit(corners[:, :, :2], size)
+    points = _fit(seen[:, :2], size)[data.faces]
     visible = rasterize(points, -corners[:, :, 2], size, size)
-    light = _corner_light(seen, data.faces)
+    lit = np.zeros(len(data.faces), dtype=bool)
+    lit[visible.shown] = True
+    light = _corner_light(seen, data.faces, lit)
+    face_of = (np.cumsum(lit) - 1)[visible.shown]
     inside = visible.barycentric()
     brightness, gloss = (
-        np.einsum("pk,pk->p", inside, part.astype(np.float32)[visible.shown]) for part in light
+        np.einsum("pk,pk->p", inside, part.astype(np.float32)[face_of]) for part in light
     )
     color = data.colors.astype(np.float32)[visible.shown] * brightness[:, None]
     color = np.clip(color + gloss[:, None], 0, 1)
@@ -142,17 +145,21 @@ def _compose(
     near, darkness = _edge_lines(points, visible, data.seams)
     line[near] = np.maximum(line[near], darkness)
     image = np.full((line.size, 3), 255, dtype=np.uint8)
+    image[visible.pixels] = (color * 255 + 0.5).astype(np.uint8)
+    inked = np.flatnonzero(line[visible.pixels])
     for pixels, below in (
-        (np.flatnonzero(line), np.ones(3, dtype=np.float32)),
-        (visible.pixels, color),
+        (np.flatnonzero((line > 0) & (charts.ravel() < 0)), np.ones(3, dtype=np.float32)),
+        (visible.pixels[inked], color[inked]),
     ):
         shade = below + line[pixels, None] * (INK - below)
         image[pixels] = (shade * 255 + 0.5).astype(np.uint8)
     return image.reshape(*charts.shape, 3)
 
 
-def _corner_light(seen: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Brightness and highlight at the corners of the faces, each #F by 3.
+def _corner_light(
+    seen: np.ndarray, faces: np.ndarray, lit: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Brightness and highlight at the corners of the faces that are `lit`, each by 3.
 
     Corners have the normal of their vertex, or of their face where the vertex lies on a crease;
     faces that show their back are lit as their front.
@@ -166,11 +173,12 @@ def _corner_light(seen: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.n
     )
     of_corner = _normalized(of_vertex)[faces]
     # A vertex on a crease has no normal that serves both of its sides.
-    straightness = np.ones(len(seen))
     cosine = np.einsum("fkx,fx->fk", of_corner, of_face)
-    np.minimum.at(straightness, faces.ravel(), cosine.ravel())
-    creased = (straightness < SMOOTH_COSINE)[faces]
-    normals = np.where(creased[:, :, None], of_face[:, None, :], of_corner)
+    on_crease = np.zeros(len(seen), dtype=bool)
+    on_crease[faces[cosine < SMOOTH_COSINE]] = True
+    creased = on_crease[faces[lit]]
+    of_face = of_face[lit]
+    normals = np.where(creased[:, :, None], of_face[:, None, :], of_corner[lit])
     normals *= np.where(of_face[:, 2] < 0, -1.0, 1.0)[:, None, None]
     return _shade(normals)
 
@@ -196,8 +204,9 @@ def _edge_lines(
     """Pixels of triangles with edges that are marked in #T by 3, and how dark they make them."""
     marked = np.asarray(edges.any(axis=1))
     near = np.flatnonzero(marked[visible.shown])
-    shown = visible.shown[near]
     inside = visible.barycentric(near)
+    shown = (np.cumsum(marked) - 1)[visible.shown[near]]
+    points, edges = points[marked], edges[marked]
     e1, e2 = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     area = np.abs(e1[:, 0] * e2[:, 1] - e1[:, 1] * e2[:, 0])
     line = np.zeros(len(near), dtype=np.float32)

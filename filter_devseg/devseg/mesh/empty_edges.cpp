@@ -17,6 +17,10 @@ Triangle sorted(Triangle t) {
     return t;
 }
 
+bool repeats_a_vertex(const Triangle& t) {
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 // Vertices that become one, and those of them that must not.
 class Clusters {
 public:
@@ -45,7 +49,7 @@ public:
         std::vector<std::pair<Edge, Edge>> edges;
         for (const Triangle& t : faces_) {
             const Triangle joint{joined(t[0]), joined(t[1]), joined(t[2])};
-            if (joint[0] == joint[1] || joint[1] == joint[2] || joint[2] == joint[0])
+            if (repeats_a_vertex(joint))
                 continue;
             triangles.emplace_back(sorted(joint), sorted(t));
             for (std::size_t k = 0; k < 3; ++k)
@@ -86,6 +90,27 @@ private:
     bool any_ = false;
 };
 
+// Faces whose ends stay apart repeat a vertex, each on its own. Not at an edge of more than two
+// faces: the others there would become neighbours.
+void draw_together(const std::vector<Vec3>& points, std::vector<Triangle>& faces) {
+    std::vector<Edge> edges;
+    for (const Triangle& t : faces)
+        for (std::size_t k = 0; k < 3 && !repeats_a_vertex(t); ++k)
+            edges.emplace_back(std::minmax({t[k], t[(k + 1) % 3]}));
+    std::sort(edges.begin(), edges.end());
+    const auto is_crowded = [&](Index v, Index w) {
+        const auto range = std::equal_range(edges.begin(), edges.end(), Edge(std::minmax({v, w})));
+        return range.second - range.first > 2;
+    };
+    for (Triangle& t : faces) {
+        if (is_crowded(t[0], t[1]) || is_crowded(t[1], t[2]) || is_crowded(t[2], t[0]))
+            continue;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (points[t[k]] == points[t[(k + 1) % 3]])
+                t[(k + 1) % 3] = t[k];
+    }
+}
+
 } // namespace
 
 Index join_ends_of_empty_edges(const std::vector<Vec3>& points, std::vector<Triangle>& faces) {
@@ -102,6 +127,7 @@ Index join_ends_of_empty_edges(const std::vector<Vec3>& points, std::vector<Tria
             gone[at(v)] = to != v ? 1 : 0;
             v = to;
         }
+    draw_together(points, joined);
     faces = std::move(joined);
     return static_cast<Index>(std::count(gone.begin(), gone.end(), 1));
 }

@@ -150,7 +150,7 @@ FitImage::FitImage(ChartCells image) : cells(std::move(image)) {
 
 FreeCells::FreeCells(Index width, Index longest_run)
     : width_(width), words_(at(width / word_bits) + 2),
-      levels_(log2_floor(std::min(width, longest_run)) + 1), blocked_(words_) {}
+      levels_(log2_floor(std::min(width, longest_run)) + 1), blocked_(words_), free_from_(words_) {}
 
 bool FreeCells::put(const std::vector<FitImage>& poses, Index from, Index limit, Spot& spot) {
     return put(poses, {0, width_, from, limit - 1}, spot);
@@ -254,23 +254,34 @@ void FreeCells::bring_up_to_date(Index y) {
         const Index shift = Index{1} << (k - 1);
         add_shifted(finer, shift, words_ - 1 - at(shift / word_bits), level(y, k));
     }
-    const Word* row = level(y, 0);
-    Index longest = 0;
-    Index free = 0;
-    for (Index x = 0; x < width_;) {
-        const Word word = row[x / word_bits];
-        if (word == 0 && x + word_bits <= width_) {
-            free += word_bits;
-            x += word_bits;
-            longest = std::max(longest, free);
+    room_[at(y)] = most_free(y);
+}
+
+// The most free cells in a line of a row whose levels are up to date, or as many as the longest run
+// of an image: a power of two after the other, the largest first, is put behind those found.
+Index FreeCells::most_free(Index y) {
+    std::fill(free_from_.begin(), free_from_.end(), Word{0});
+    Index length = 0;
+    for (Index k = levels_ - 1; k >= 0; --k) {
+        const Index longer = length + (Index{1} << k);
+        if (longer > width_)
             continue;
-        }
-        for (const Index end = std::min(width_, x + word_bits); x < end; ++x) {
-            free = (word >> (x % word_bits) & 1) != 0 ? 0 : free + 1;
-            longest = std::max(longest, free);
-        }
+        const Index last = width_ - longer; // where so many may begin
+        const std::size_t count = at(last / word_bits) + 1;
+        std::copy_n(free_from_.begin(), count, blocked_.begin());
+        add_shifted(level(y, k), length, count, blocked_.data());
+        blocked_[count - 1] |= ~Word{0} << (last % word_bits) << 1;
+        if (all_taken(count))
+            continue;
+        std::copy_n(blocked_.begin(), count, free_from_.begin());
+        length = longer;
     }
-    room_[y] = longest;
+    return length;
+}
+
+bool FreeCells::all_taken(std::size_t count) const {
+    return std::all_of(blocked_.begin(), blocked_.begin() + static_cast<std::ptrdiff_t>(count),
+                       [](Word word) { return word == ~Word{0}; });
 }
 
 // Marks the places in row y, from `left` to `last_`, where the image lies on others; false if none
@@ -294,8 +305,7 @@ bool FreeCells::find_blocked(const FitImage& image, Index y, Index left) {
         add_shifted(level(row, k), run.first, count, blocked_.data());
         if (rest > 0)
             add_shifted(level(row, k), run.first + rest, count, blocked_.data());
-        if (std::all_of(blocked_.begin(), blocked_.begin() + static_cast<std::ptrdiff_t>(count),
-                        [](Word word) { return word == ~Word{0}; }))
+        if (all_taken(count))
             return false;
     }
     return true;

@@ -69,6 +69,8 @@ private:
     bool find_blocked(const FitImage& image, Index y, Index left);
     Index first_free() const;
     void bring_up_to_date(Index y);
+    Index most_free(Index y);
+    bool all_taken(std::size_t count) const;
 
     Index width_;
     std::size_t words_; // of a row, one more than it needs
@@ -76,9 +78,10 @@ private:
     Index height_ = 0;
     Index last_ = 0;                     // the last place of the image that is looked at
     std::vector<Word> bits_;             // row by row, level by level
-    std::vector<Index> room_;            // #rows: the most free cells in a line, or
+    std::vector<Index> room_;            // #rows: the most free cells in a line that matter, or
     static constexpr Index unknown = -1; // the row has changed, and higher levels have not
-    std::vector<Word> blocked_;
+    std::vector<Word> blocked_;          // places where a part of an image lies on others
+    std::vector<Word> free_from_;        // 0 where as many cells are free as are looked for
 };
 
 } // namespace devseg::pack

@@ -12,6 +12,7 @@ namespace {
 // Places along an outline that are compared at first; afterwards each is brought to the nearest
 // point of the other outline.
 constexpr std::size_t places = 96;
+constexpr std::size_t few_places = places / 4; // enough to see that most others are not alike
 constexpr int motion_rounds = 12;
 // Sooner when the squared distance falls no more below this share of it.
 constexpr double settled = 0.98;
@@ -29,31 +30,38 @@ Vec2 point(const Complex& z) {
     return {z.real(), z.imag()};
 }
 
+Vec2 mean(const std::vector<Vec2>& points) {
+    Vec2 sum = Vec2::Zero();
+    for (const Vec2& p : points)
+        sum += p;
+    return sum / static_cast<double>(points.size());
+}
+
 // The rigid motion that brings from[i] nearest to to[(i + offset) mod n], in the mean square.
 // `error`: what is left.
 Motion fit_motion(const std::vector<Vec2>& from, const std::vector<Vec2>& to, std::size_t offset,
                   double& error) {
     const std::size_t n = from.size();
-    Complex mean_from{0.0, 0.0};
-    Complex mean_to{0.0, 0.0};
-    for (std::size_t i = 0; i < n; ++i) {
-        mean_from += number(from[i]) / static_cast<double>(n);
-        mean_to += number(to[i]) / static_cast<double>(n);
-    }
-    Complex product{0.0, 0.0};
+    const Vec2 mean_from = mean(from);
+    const Vec2 mean_to = mean(to);
+    double along = 0.0;
+    double across = 0.0;
     double spread = 0.0;
     for (std::size_t i = 0, j = offset; i < n; ++i, ++j) {
         j = j < n ? j : 0;
-        const Complex a = number(from[i]) - mean_from;
-        const Complex b = number(to[j]) - mean_to;
-        product += std::conj(a) * b;
-        spread += std::norm(a) + std::norm(b);
+        const Vec2 a = from[i] - mean_from;
+        const Vec2 b = to[j] - mean_to;
+        along += a.dot(b);
+        across += plane::cross(a, b);
+        spread += a.squaredNorm() + b.squaredNorm();
     }
+    const Complex product{along, across};
+    const double size = std::abs(product);
     Motion motion;
-    if (std::abs(product) > 0.0)
-        motion.turn = product / std::abs(product);
-    motion.shift = mean_to - motion.turn * mean_from;
-    error = spread - 2.0 * std::abs(product);
+    if (size > 0.0)
+        motion.turn = product / size;
+    motion.shift = number(mean_to) - motion.turn * number(mean_from);
+    error = spread - 2.0 * size;
     return motion;
 }
 
@@ -73,12 +81,12 @@ std::vector<std::vector<Vec2>> outlines_of(const PatternPiece& piece, bool mirro
     return outlines;
 }
 
-// Whether all points, moved, lie on one of the outlines.
-bool lie_on(const std::vector<Vec2>& points, const std::vector<Sides>& outlines,
+// Whether all points, moved, lie on one of the outlines from `first` to before `last`.
+bool lie_on(const std::vector<Vec2>& points, const Sides* first, const Sides* last,
             const Motion& motion, double tolerance) {
     return std::all_of(points.begin(), points.end(), [&](const Vec2& p) {
         const Vec2 moved = motion(p);
-        return std::any_of(outlines.begin(), outlines.end(), [&](const Sides& sides) {
+        return std::any_of(first, last, [&](const Sides& sides) {
             return (sides.nearest(moved) - moved).norm() <= tolerance;
         });
     });
@@ -86,24 +94,34 @@ bool lie_on(const std::vector<Vec2>& points, const std::vector<Sides>& outlines,
 
 bool lies_on(const Shape& a, const Shape& b, const Motion& motion, double tolerance) {
     return std::all_of(a.outlines.begin(), a.outlines.end(), [&](const std::vector<Vec2>& outline) {
-        return lie_on(outline, b.sides, motion, tolerance);
+        return lie_on(outline, b.sides.data(), b.sides.data() + b.sides.size(), motion, tolerance);
     });
 }
 
-// Brings the points to the nearest ones of the other outline, again and again.
-bool fits_from(const Shape& a, const Shape& b, Motion& motion, double tolerance) {
+// Brings the points to the nearest ones of the outline, again and again. False, sooner, where even
+// at the pace of the last round they would not get within the tolerance.
+bool approach(const std::vector<Vec2>& points, const Sides& outline, double tolerance,
+              Motion& motion) {
+    const double small = static_cast<double>(points.size()) * tolerance * tolerance;
     double last = infinite;
-    std::vector<Vec2> nearest(a.even.size());
-    for (int round = 0; round < motion_rounds; ++round) {
-        std::transform(a.even.begin(), a.even.end(), nearest.begin(),
-                       [&](const Vec2& p) { return b.sides.front().nearest(motion(p)); });
+    std::vector<Vec2> nearest(points.size());
+    for (int left = motion_rounds - 1; left >= 0; --left) {
+        std::transform(points.begin(), points.end(), nearest.begin(),
+                       [&](const Vec2& p) { return outline.nearest(motion(p)); });
         double error = 0.0;
-        motion = fit_motion(a.even, nearest, 0, error);
+        motion = fit_motion(points, nearest, 0, error);
         if (!(error < settled * last))
             break;
+        if (error * std::pow(error / last, left) > small)
+            return false;
         last = error;
     }
-    return lies_on(a, b, motion, tolerance) && lies_on(b, a, motion.inverse(), tolerance);
+    return true;
+}
+
+bool fits_from(const Shape& a, const Shape& b, Motion& motion, double tolerance) {
+    return approach(a.even, b.sides.front(), tolerance, motion) &&
+           lies_on(a, b, motion, tolerance) && lies_on(b, a, motion.inverse(), tolerance);
 }
 
 double frequency(std::size_t wave) {
@@ -125,25 +143,47 @@ Shape::Waves waves_of(const std::vector<Vec2>& points) {
     return waves;
 }
 
+// Cosines and sines of how far each wave has turned where it begins at each place.
+struct Turns {
+    std::array<std::array<double, begins>, Shape::frequencies> cosine, sine;
+
+    Turns() {
+        for (std::size_t w = 0; w < Shape::frequencies; ++w)
+            for (std::size_t i = 0; i < begins; ++i) {
+                const auto steps = static_cast<double>((w + 1) * i % begins);
+                cosine[w][i] = std::cos(2.0 * pi * steps / static_cast<double>(begins));
+                sine[w][i] = std::sin(2.0 * pi * steps / static_cast<double>(begins));
+            }
+    }
+};
+
 // How far the points of two outlines are apart at least, in the mean square, however one of them is
 // turned; higher Shape::frequencies only add to it. `begin`: where b's points then begin.
 double least_distance(const Shape::Waves& a, const Shape::Waves& b, std::size_t& begin) {
-    Shape::Waves products;
+    static const Turns turns;
+    std::array<double, begins> real{};
+    std::array<double, begins> imaginary{};
     double spread = 0.0;
-    for (std::size_t w = 0; w < products.size(); ++w) {
-        products[w] = std::conj(a[w]) * b[w];
-        spread += std::norm(a[w]) + std::norm(b[w]);
+    for (std::size_t w = 0; w < Shape::frequencies; ++w) {
+        const std::size_t back = Shape::frequencies + w;
+        const Complex p = std::conj(a[w]) * b[w];
+        const Complex q = std::conj(a[back]) * b[back];
+        spread += std::norm(a[w]) + std::norm(b[w]) + std::norm(a[back]) + std::norm(b[back]);
+        // With z the turn of a beginning, p z + q conj(z).
+        const Complex sum = p + q;
+        const Complex difference = p - q;
+        for (std::size_t i = 0; i < begins; ++i) {
+            const double c = turns.cosine[w][i];
+            const double s = turns.sine[w][i];
+            real[i] += c * sum.real() - s * difference.imag();
+            imaginary[i] += c * sum.imag() + s * difference.real();
+        }
     }
     double most = -1.0;
-    const Complex next = std::polar(1.0, 2.0 * pi / static_cast<double>(begins));
-    Complex step{1.0, 0.0};
-    for (std::size_t i = 0; i < begins; ++i, step *= next) {
-        Complex forth = step;
-        Complex sum{0.0, 0.0};
-        for (std::size_t w = 0; w < Shape::frequencies; ++w, forth *= step)
-            sum += forth * products[w] + std::conj(forth) * products[Shape::frequencies + w];
-        if (std::norm(sum) > most) {
-            most = std::norm(sum);
+    for (std::size_t i = 0; i < begins; ++i) {
+        const double square = real[i] * real[i] + imaginary[i] * imaginary[i];
+        if (square > most) {
+            most = square;
             begin = i;
         }
     }
@@ -201,21 +241,31 @@ std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t coun
 
 Shape::Shape(const PatternPiece& piece, bool mirrored)
     : outlines(outlines_of(piece, mirrored)), sides(outlines.begin(), outlines.end()),
-      even(even_points(outlines.front(), places)), waves(waves_of(even)) {}
+      even(even_points(outlines.front(), places)), few(even_points(outlines.front(), few_places)),
+      waves(waves_of(even)) {}
+
+double most_apart(double longer, double around, double tolerance) {
+    // Evenly spaced points of ragged outlines are not at the same places, but as far apart as half
+    // of what one is longer at most; and between two beginnings.
+    return 2.0 * tolerance + 0.5 * longer + 0.5 * around / static_cast<double>(begins);
+}
 
 std::optional<Motion> same_shape(const Shape& a, const Shape& b, double longer, double around,
                                  double tolerance) {
-    // Evenly spaced points of ragged outlines are not at the same places, but as far apart as half
-    // of what one is longer at most; and between two beginnings.
-    const double apart =
-        2.0 * tolerance + 0.5 * longer + 0.5 * around / static_cast<double>(begins);
+    const double apart = most_apart(longer, around, tolerance);
     std::size_t begin = 0;
     if (least_distance(a.waves, b.waves, begin) > apart)
         return std::nullopt;
     double error = 0.0;
     Motion motion = fit_motion(a.even, b.even, begin, error);
-    if (!lie_on(a.even, {b.sides.front()}, motion, 2.0 * apart) ||
-        !fits_from(a, b, motion, tolerance))
+    if (error > apart * apart * static_cast<double>(places))
+        return std::nullopt;
+    // Most shapes are told apart by a few points.
+    const Sides* rim = b.sides.data();
+    Motion tried = motion;
+    if (!lie_on(a.few, rim, rim + 1, motion, 2.0 * apart) ||
+        !approach(a.few, *rim, tolerance, tried) ||
+        !lie_on(a.even, rim, rim + 1, motion, 2.0 * apart) || !fits_from(a, b, motion, tolerance))
         return std::nullopt;
     return motion;
 }

@@ -47,6 +47,7 @@ struct Shape {
     std::vector<std::vector<Vec2>> outlines;
     std::vector<Sides> sides; // of each outline
     std::vector<Vec2> even;
+    std::vector<Vec2> few; // of them
     Waves waves;
 
     Shape(const PatternPiece& piece, bool mirrored);
@@ -54,6 +55,10 @@ struct Shape {
 
 /// `count` points along a closed outline at equal distances, from its first point.
 std::vector<Vec2> even_points(const std::vector<Vec2>& outline, std::size_t count);
+
+/// How far evenly spaced points of two outlines of one shape are apart at most, in the mean square.
+/// `longer`: the difference of their perimeters; `around`: that of one.
+double most_apart(double longer, double around, double tolerance);
 
 /// The motion that brings a onto b so that neither has a point farther than `tolerance` from the
 /// other, if there is one. `longer`: the difference of their perimeters; `around`: that of a.

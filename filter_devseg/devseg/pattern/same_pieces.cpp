@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "devseg/plane/plane.h"
@@ -22,83 +21,110 @@ constexpr double length_raggedness = 0.1;
 // shapes must not be compared each with each.
 constexpr std::size_t closest_models = 8;
 
-// What pieces of one shape agree on, however they are turned or mirrored.
-struct Signature {
-    double around = 0.0;                                    // length of the outline
-    std::array<double, 2 * Shape::frequencies> strengths{}; // of its waves
+// What pieces of one shape agree on, however they are turned or mirrored: the strengths of the
+// waves of their outlines.
+using Signature = std::array<double, 2 * Shape::frequencies>;
 
-    Signature(const PatternPiece& piece, const Shape& shape)
-        : around(plane::perimeter(piece.outer.points)) {
-        for (std::size_t w = 0; w < strengths.size(); ++w)
-            strengths[w] = std::abs(shape.waves[w]);
-    }
+Signature signature_of(const Shape& shape) {
+    Signature strengths{};
+    for (std::size_t w = 0; w < strengths.size(); ++w)
+        strengths[w] = std::abs(shape.waves[w]);
+    return strengths;
+}
 
-    double squared_distance(const Signature& other) const {
-        double sum = 0.0;
-        for (std::size_t w = 0; w < strengths.size(); ++w)
-            sum += (strengths[w] - other.strengths[w]) * (strengths[w] - other.strengths[w]);
-        return sum;
-    }
-};
+double squared_distance(const Signature& a, const Signature& b) {
+    double sum = 0.0;
+    for (std::size_t w = 0; w < a.size(); ++w)
+        sum += (a[w] - b[w]) * (a[w] - b[w]);
+    return sum;
+}
 
-struct Known {
+// What is known of a piece before its shape is: enough to tell most pairs apart.
+struct Size {
+    double around = 0.0; // length of the outline
+    double area = 0.0;
+    double edges = 0.0; // of the outline
+    std::size_t holes = 0;
     std::size_t piece = 0;
-    Shape shape;
-    Signature signature;
+    bool is_model = false; // others are compared with it
 };
 
-bool may_be_same(const PatternPiece& a, const PatternPiece& b, const Signature& of_a,
-                 const Signature& of_b, double tolerance) {
+bool may_be_same(const Size& a, const Size& b, double tolerance) {
     // An outline that moves by d changes the area by d times its length at most, and each of its
     // edges by twice d.
-    const double edges =
-        static_cast<double>(std::max(a.outer.points.size(), b.outer.points.size()));
-    return a.holes.size() == b.holes.size() &&
-           std::abs(a.area - b.area) <= tolerance * std::max(of_a.around, of_b.around) &&
-           std::abs(of_a.around - of_b.around) <=
-               std::min(length_raggedness * of_a.around, 2.0 * tolerance * edges);
+    return a.holes == b.holes &&
+           std::abs(a.area - b.area) <= tolerance * std::max(a.around, b.around) &&
+           std::abs(a.around - b.around) <=
+               std::min(length_raggedness * a.around, 2.0 * tolerance * std::max(a.edges, b.edges));
 }
 
-// The pieces that others are compared with, found by the length of their outlines.
-struct Models {
-    std::vector<Known> known;
-    std::multimap<double, std::size_t> by_length;
-    double most_edges = 0.0; // of an outline
-
-    void add(Known model, const PatternPiece& piece) {
-        by_length.emplace(model.signature.around, known.size());
-        most_edges = std::max(most_edges, static_cast<double>(piece.outer.points.size()));
-        known.push_back(std::move(model));
+// All pieces, sorted by the length of their outlines, and the shapes of those that are models.
+class Models {
+public:
+    explicit Models(const std::vector<PatternPiece>& pieces)
+        : place_(pieces.size()), shapes_(pieces.size()), signatures_(pieces.size()) {
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const std::vector<Vec2>& outline = pieces[i].outer.points;
+            sizes_.push_back({plane::perimeter(outline), pieces[i].area,
+                              static_cast<double>(outline.size()), pieces[i].holes.size(), i,
+                              false});
+            most_edges_ = std::max(most_edges_, sizes_.back().edges);
+        }
+        std::stable_sort(sizes_.begin(), sizes_.end(),
+                         [](const Size& a, const Size& b) { return a.around < b.around; });
+        for (std::size_t k = 0; k < sizes_.size(); ++k)
+            place_[sizes_[k].piece] = k;
     }
+
+    const Size& size(std::size_t piece) const { return sizes_[place_[piece]]; }
+    const Shape& shape(std::size_t model) const { return *shapes_[model]; }
+
+    void add(std::size_t piece, Shape shape, const Signature& signature) {
+        sizes_[place_[piece]].is_model = true;
+        shapes_[piece] = std::move(shape);
+        signatures_[piece] = signature;
+    }
+
+    // The models that are most similar, in their order.
+    std::vector<std::size_t> closest(std::size_t piece, const Signature& signature,
+                                     double tolerance) const {
+        const Size& mine = size(piece);
+        const double longer =
+            std::min(length_raggedness * mine.around, 2.0 * tolerance * most_edges_);
+        std::vector<std::pair<double, std::size_t>> found;
+        auto it =
+            std::lower_bound(sizes_.begin(), sizes_.end(), mine.around - longer,
+                             [](const Size& size, double around) { return size.around < around; });
+        for (; it != sizes_.end() && it->around <= mine.around + longer; ++it) {
+            if (!it->is_model || !may_be_same(mine, *it, tolerance))
+                continue;
+            // However outlines are turned, they are as far apart as their strengths at least.
+            const double apart =
+                most_apart(std::abs(mine.around - it->around), mine.around, tolerance);
+            const double distance = squared_distance(signature, signatures_[it->piece]);
+            if (distance > apart * apart)
+                continue;
+            const std::pair<double, std::size_t> entry{distance, it->piece};
+            if (found.size() == closest_models && !(entry < found.back()))
+                continue;
+            if (found.size() == closest_models)
+                found.pop_back();
+            found.insert(std::upper_bound(found.begin(), found.end(), entry), entry);
+        }
+        std::vector<std::size_t> result;
+        for (const auto& entry : found)
+            result.push_back(entry.second);
+        std::sort(result.begin(), result.end());
+        return result;
+    }
+
+private:
+    std::vector<Size> sizes_;
+    std::vector<std::size_t> place_; // of each piece in sizes_
+    std::vector<std::optional<Shape>> shapes_;
+    std::vector<Signature> signatures_;
+    double most_edges_ = 0.0; // of an outline
 };
-
-// The models that are most similar, in their order.
-std::vector<std::size_t> closest(const Models& models, const std::vector<PatternPiece>& pieces,
-                                 const PatternPiece& piece, const Signature& signature,
-                                 double tolerance) {
-    const double edges =
-        std::max(models.most_edges, static_cast<double>(piece.outer.points.size()));
-    const double longer = std::min(length_raggedness * signature.around, 2.0 * tolerance * edges);
-    std::vector<std::pair<double, std::size_t>> found;
-    const auto end = models.by_length.upper_bound(signature.around + longer);
-    for (auto it = models.by_length.lower_bound(signature.around - longer); it != end; ++it) {
-        const Known& model = models.known[it->second];
-        if (!may_be_same(piece, pieces[model.piece], signature, model.signature, tolerance))
-            continue;
-        const std::pair<double, std::size_t> entry{signature.squared_distance(model.signature),
-                                                   it->second};
-        if (found.size() == closest_models && !(entry < found.back()))
-            continue;
-        if (found.size() == closest_models)
-            found.pop_back();
-        found.insert(std::upper_bound(found.begin(), found.end(), entry), entry);
-    }
-    std::vector<std::size_t> result;
-    for (const auto& entry : found)
-        result.push_back(entry.second);
-    std::sort(result.begin(), result.end());
-    return result;
-}
 
 // Direction of the axis of a mirror image, which has half the angle of −turn.
 std::complex<double> axis_of(const Motion& mirror) {
@@ -135,33 +161,35 @@ std::optional<MirrorAxis> find_mirror_axis(const PatternPiece& piece, double tol
 
 std::vector<Likeness> find_likenesses(const std::vector<PatternPiece>& pieces, double tolerance_mm,
                                       double share, const Progress& progress) {
-    Models models;
+    Models models(pieces);
     std::vector<Likeness> result(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         progress.check();
-        const PatternPiece& piece = pieces[i];
         result[i].model = i;
-        const double tolerance = tolerance_for(piece, tolerance_mm, share);
-        Shape straight(piece, false);
-        const Signature signature(piece, straight);
-        const Shape mirrored(piece, true);
-        for (const std::size_t m : closest(models, pieces, piece, signature, tolerance)) {
-            const Known& model = models.known[m];
-            const double longer = std::abs(signature.around - model.signature.around);
+        const double tolerance = tolerance_for(pieces[i], tolerance_mm, share);
+        Shape straight(pieces[i], false);
+        const Signature signature = signature_of(straight);
+        const std::vector<std::size_t> candidates = models.closest(i, signature, tolerance);
+        const std::optional<Shape> mirrored =
+            candidates.empty() ? std::nullopt
+                               : std::optional<Shape>(std::in_place, pieces[i], true);
+        for (const std::size_t m : candidates) {
+            const double around = models.size(i).around;
+            const double longer = std::abs(around - models.size(m).around);
             const auto motion_of = [&](const Shape& shape) {
-                return same_shape(shape, model.shape, longer, signature.around, tolerance);
+                return same_shape(shape, models.shape(m), longer, around, tolerance);
             };
             std::optional<Motion> motion = motion_of(straight);
             const bool same = motion.has_value();
             if (!same)
-                motion = motion_of(mirrored);
+                motion = motion_of(*mirrored);
             if (!motion)
                 continue;
-            result[i] = {model.piece, !same, *motion};
+            result[i] = {m, !same, *motion};
             break;
         }
         if (result[i].model == i)
-            models.add({i, std::move(straight), signature}, piece);
+            models.add(i, std::move(straight), signature);
     }
     return result;
 }

@@ -73,6 +73,36 @@ TEST(EmptyEdges, SheetsWithoutThicknessKeepBothSides) {
     EXPECT_TRUE(checks::is_valid(gated.mesh));
 }
 
+// A square tube drawn to a line, but for one corner of an end: two triangles back to back, which
+// stay two. The needles between them lay on each other.
+TEST(EmptyEdges, FacesBetweenSheetsThatStayApartAreLeftOut) {
+    RawMesh raw = rings({{0.0, 0.0}, {0.0, -0.5}, {0.0, -1.0}}, 4);
+    raw.points[3] = Vec3(0.2, 0.0, 0.0);
+    const GatedMesh gated = gate_mesh(raw);
+    EXPECT_EQ(gated.source_face, (std::vector<Index>{4, 6}));
+    EXPECT_TRUE(checks::is_valid(gated.mesh));
+    declare::HostMesh host = checks::host_of(raw);
+    checks::take_charts(host, checks::run("Segmentation: D-Charts", host));
+    const declare::HostResult flat = checks::run("Charts: Flatten", host);
+    host.wedge_uv = flat.wedge_uv;
+    const declare::HostResult measured = checks::run("Charts: Measure Flattening", host);
+    EXPECT_EQ(checks::value(measured, "overlapping_faces_number"), 0);
+    EXPECT_EQ(checks::value(measured, "flipped_faces_number"), 0);
+    for (const auto& corners : flat.wedge_uv)
+        EXPECT_GT(checks::signed_area(corners), 0.0);
+}
+
+// A needle between two faces, at an edge that a third one has: without it, that would be the
+// neighbour of the wrong one.
+TEST(EmptyEdges, FacesAtCrowdedEdgesStay) {
+    RawMesh raw;
+    raw.points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    raw.faces = {{0, 1, 3}, {1, 0, 2}, {2, 0, 4}};
+    EXPECT_EQ(gate_mesh(raw).mesh.face_count(), 2);
+    raw.faces.push_back({0, 1, 5});
+    EXPECT_EQ(gate_mesh(raw).mesh.face_count(), 4);
+}
+
 TEST(EmptyEdges, OtherMeshesStayAsTheyAre) {
     const RawMesh raw = shapes::sphere(2);
     std::vector<Triangle> faces = raw.faces;
