@@ -23,6 +23,13 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double degrees = pi / 180.0; // 45.0 * degrees: in radians
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+/// The nearest number of 32 bits. Volatile, because GCC 12 at -O2 drops the two conversions of the
+/// last of an odd number of values when it makes vector instructions of them.
+inline double in_32_bits(double x) {
+    const volatile float single = static_cast<float>(x);
+    return static_cast<double>(single);
+}
+
 /// Index is signed (−1 = none), the containers' sizes are not.
 inline std::size_t at(Index i) {
     return static_cast<std::size_t>(i);

@@ -16,6 +16,14 @@
 
 namespace devseg::declare {
 
+Mesh FilterInput::as_stored(const Mesh& made) const {
+    Mesh stored = made;
+    for (Vec3& p : stored.points)
+        p = from_model(to_model(p).unaryExpr(&in_32_bits));
+    mesh::compute_face_geometry(stored);
+    return stored;
+}
+
 namespace {
 
 std::vector<Index> read_chart_id(const HostMesh& host, const mesh::GatedMesh& gated) {

@@ -103,6 +103,9 @@ struct FilterInput {
     /// Between internal units and model coordinates.
     Vec3 to_model(const Vec3& p) const { return center + mesh.unit_length * p; }
     Vec3 from_model(const Vec3& p) const { return (p - center) / mesh.unit_length; }
+    /// A mesh of this one's units with its points where the host keeps them, in 32 bits: whether
+    /// the parts of a chart come apart may hang on the last digit.
+    Mesh as_stored(const Mesh& made) const;
 };
 
 constexpr const char* new_vertices_number = "new_vertices_number";

@@ -211,8 +211,9 @@ bool make_firmer(const Mesh& mesh, const atlas::ChartMap& charts, const std::vec
 }
 
 // Smooth seams; those of charts that are above a bound then, and were not before, stay.
-curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& charts,
+curves::SmoothSeams smooth_within(const FilterInput& input, const atlas::ChartMap& charts,
                                   const Options& options, int& kept_charts, Progress& progress) {
+    const Mesh& mesh = input.mesh;
     const double bound = options.max_chart_l2_stretch;
     if (bound > 0.0 && bound <= 1.0)
         refuse_option("max_chart_l2_stretch", "0 for no bound, or a number above 1", bound);
@@ -231,8 +232,8 @@ curves::SmoothSeams smooth_within(const Mesh& mesh, const atlas::ChartMap& chart
         curves::SmoothSeams made =
             curves::smooth_seams(mesh, charts, options, plane, smoothing, firmness);
         auto judging = progress.part("judging charts", 0.5 * progress.left());
-        std::vector<Excess> after =
-            above(made.refinement.mesh, made.charts, judged, options, stretch, judging);
+        std::vector<Excess> after = above(input.as_stored(made.refinement.mesh), made.charts, judged,
+                                          options, stretch, judging);
         std::vector<std::uint8_t> doubtful(after.size(), 0);
         for (std::size_t c = 0; c < after.size(); ++c)
             doubtful[c] = after[c].is_above ? 1 : 0;
@@ -280,7 +281,7 @@ std::optional<std::vector<Color>> colors_of_charts(const std::vector<Color>& col
 FilterOutput run_smooth(const FilterInput& input, const Options& options, Progress& progress) {
     const atlas::ChartMap charts = find_charts(input);
     int kept_charts = 0;
-    curves::SmoothSeams made = smooth_within(input.mesh, charts, options, kept_charts, progress);
+    curves::SmoothSeams made = smooth_within(input, charts, options, kept_charts, progress);
     FilterOutput output;
     const double unit = input.mesh.unit_length;
     output.values = {

@@ -247,8 +247,7 @@ private:
         if (others.front() == h)
             return false; // the only outline is this dart: the chart would have none
         const Vec2 middle = 0.5 * (uv_[h] + uv_[Mesh::next(back)]);
-        const Vec2 rounded(static_cast<double>(static_cast<float>(middle.x())),
-                           static_cast<double>(static_cast<float>(middle.y())));
+        const Vec2 rounded(in_32_bits(middle.x()), in_32_bits(middle.y()));
         corners.insert(corners.end(), others.begin(), others.end());
         const double side = plane::uv_area(uv_, h / 3);
         std::vector<Vec2> old;

@@ -173,5 +173,25 @@ TEST(RefinedFaces, LeaveOutWhatTheGateLeavesOut) {
         EXPECT_NE(part.source, 100);
 }
 
+// Far from the origin, 32 bits tell points apart by little.
+TEST(AsStored, PointsLieWhereTheHostKeepsThem) {
+    const mesh::RawMesh raw = noisy_torus();
+    const Mesh mesh = checks::gated(raw);
+    const std::vector<Index> none;
+    const FilterInput input{mesh, {}, {}, none, none, {}, {}, Vec3(1000.1, -2000.3, 4000.7),
+                            {},   {}, {}, {},   {},   {}, {}, {}};
+    const Mesh stored = input.as_stored(input.mesh);
+    double farthest = 0.0;
+    for (const Vertex v : stored.all_vertices()) {
+        const Vec3 p = input.to_model(stored.points[v]);
+        const Vec3 given = input.to_model(input.mesh.points[v]);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(p[k], in_32_bits(given[k]), 1e-11);
+        farthest = std::max(farthest, (p - given).norm());
+    }
+    EXPECT_GT(farthest, 1e-5);
+    EXPECT_NE(stored.face_areas, input.mesh.face_areas);
+}
+
 } // namespace
 } // namespace devseg::declare

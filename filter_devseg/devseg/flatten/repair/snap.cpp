@@ -34,13 +34,6 @@ struct Tuning {
 };
 constexpr Tuning tuning;
 
-double rounded(double x) {
-    // Volatile, because GCC 12 at -O3 drops the two conversions for the last element of an odd
-    // number when it turns the loop over a map into vector instructions.
-    const volatile float single = static_cast<float>(x);
-    return static_cast<double>(single);
-}
-
 // Faces of each vertex: [begin[v], begin[v + 1]).
 struct Stars {
     std::vector<Index> begin;
@@ -99,7 +92,7 @@ public:
             for (int x = -most; x <= most; ++x)
                 for (int y = -most; y <= most; ++y) {
                     const Vec2 moved = home + unit * Vec2(x, y);
-                    uv_[v] = Vec2(rounded(moved.x()), rounded(moved.y()));
+                    uv_[v] = Vec2(in_32_bits(moved.x()), in_32_bits(moved.y()));
                     const double loss = loss_around(v);
                     if (loss < least) {
                         least = loss;
@@ -285,7 +278,7 @@ Index snap_to_single(const std::vector<Triangle>& faces, std::vector<Vec2>& uv) 
     for (const Triangle& t : faces)
         area.push_back(orientation(uv[t[0]], uv[t[1]], uv[t[2]]));
     for (Vec2& p : uv)
-        p = Vec2(rounded(p.x()), rounded(p.y()));
+        p = Vec2(in_32_bits(p.x()), in_32_bits(p.y()));
     std::vector<Index> thin;
     for (Face f = 0; f < static_cast<Index>(faces.size()); ++f) {
         const Triangle& t = faces[f];
