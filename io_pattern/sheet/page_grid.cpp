@@ -70,6 +70,13 @@ pack::Window PageGrid::shown(Index page) const {
     return {x[0], x[1], y[0], y[1]};
 }
 
+pack::Window PageGrid::own(Index page) const {
+    const std::size_t column = 2 * at(page % columns_);
+    const std::size_t row = 2 * at(page / columns_);
+    return {starts_[0][column], starts_[0][column + 1] - 1, starts_[1][row],
+            starts_[1][row + 1] - 1};
+}
+
 pack::Window PageGrid::clear(Index page) const {
     if (page < glued()) {
         const auto x = clear_range(page % columns_, columns_, 0);
@@ -195,15 +202,6 @@ PageCover PageGrid::cover(const std::vector<const pack::ChartCells*>& images,
         if (cover.owner[part] >= 0)
             cover.cells[at(cover.owner[part])] += parts[part];
     return cover;
-}
-
-Index PageGrid::least_pages(const pack::ChartCells& image, const pack::Spot& spot) const {
-    std::vector<Index> parts = empty_parts();
-    count(image, spot, parts);
-    std::vector<Index> owner = cover_parts(columns_, rows_, parts);
-    owner.push_back(-1); // where nothing is printed
-    std::sort(owner.begin(), owner.end());
-    return static_cast<Index>(std::unique(owner.begin(), owner.end()) - owner.begin()) - 1;
 }
 
 std::vector<Index> PageGrid::pages_of(const pack::ChartCells& image, const pack::Spot& spot,

@@ -48,6 +48,8 @@ public:
     Index pages() const { return glued() + singles_; }
     /// What a page of the sheet shows.
     pack::Window shown(Index page) const;
+    /// What no other page of the sheet shows.
+    pack::Window own(Index page) const;
     /// Where pieces lie that fit on a page.
     pack::Window clear(Index page) const;
     pack::Window sheet() const;
@@ -70,8 +72,6 @@ public:
     /// What is printed where, of pieces with these images and places.
     PageCover cover(const std::vector<const pack::ChartCells*>& images,
                     const pack::Layout& spots) const;
-    /// How many pages of the sheet an image needs there by itself.
-    Index least_pages(const pack::ChartCells& image, const pack::Spot& spot) const;
     /// The pages that an image is printed on, ascending.
     std::vector<Index> pages_of(const pack::ChartCells& image, const pack::Spot& spot,
                                 const PageCover& cover) const;

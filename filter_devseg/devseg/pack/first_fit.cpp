@@ -184,6 +184,17 @@ bool FreeCells::find(const FitImage& image, const FitWindow& window, Spot& spot)
     return false;
 }
 
+const std::vector<FreeCells::Word>* FreeCells::blocked(const FitImage& image, Index y) {
+    last_ = width_ - image.cells.width;
+    if (last_ < 0)
+        return nullptr;
+    const Index end = std::min(y + image.cells.height, static_cast<Index>(room_.size()));
+    for (Index row = y; row < end; ++row)
+        bring_up_to_date(row);
+    std::fill(blocked_.begin(), blocked_.end(), ~Word{0});
+    return find_blocked(image, y, 0) ? &blocked_ : nullptr;
+}
+
 // Calls task(word, mask) for the words of a row that hold a run's cells, while it returns true.
 template <class Task>
 bool FreeCells::all_words(const CellRun& run, Index x, const Task& task) {

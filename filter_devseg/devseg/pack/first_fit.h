@@ -41,6 +41,8 @@ struct FitWindow {
 /// As many rows as are needed.
 class FreeCells {
 public:
+    using Word = std::uint64_t;
+
     /// `longest_run` of all images, cells.
     FreeCells(Index width, Index longest_run);
 
@@ -52,6 +54,9 @@ public:
 
     /// The lowest place of one image in the window, then the leftmost. Nothing is put there.
     bool find(const FitImage& image, const FitWindow& window, Spot& spot);
+    /// A bit for each place of an image in row y, from column 0 on, and more: 1 where it lies on
+    /// others or beyond the width. Nothing where no place is free. Valid until the next call.
+    const std::vector<Word>* blocked(const FitImage& image, Index y);
     /// Whether one place of an image is free and within the width.
     bool is_free(const FitImage& image, const Spot& spot) const;
     void take(const FitImage& image, const Spot& spot);
@@ -59,7 +64,6 @@ public:
     Index height() const { return height_; }
 
 private:
-    using Word = std::uint64_t;
     static constexpr Index word_bits = 64;
 
     Word* level(Index y, Index k) { return bits_.data() + (at(y) * at(levels_) + at(k)) * words_; }
