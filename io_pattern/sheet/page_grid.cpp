@@ -204,6 +204,15 @@ PageCover PageGrid::cover(const std::vector<const pack::ChartCells*>& images,
     return cover;
 }
 
+Index PageGrid::least_pages(const pack::ChartCells& image, const pack::Spot& spot) const {
+    std::vector<Index> parts = empty_parts();
+    count(image, spot, parts);
+    std::vector<Index> owner = cover_parts(columns_, rows_, parts);
+    owner.push_back(-1); // where nothing is printed
+    std::sort(owner.begin(), owner.end());
+    return static_cast<Index>(std::unique(owner.begin(), owner.end()) - owner.begin()) - 1;
+}
+
 std::vector<Index> PageGrid::pages_of(const pack::ChartCells& image, const pack::Spot& spot,
                                       const PageCover& cover) const {
     std::vector<Index> parts = empty_parts();

@@ -25,6 +25,7 @@ struct PageProblem {
     std::vector<std::vector<pack::FitImage>> poses;
     std::vector<std::uint8_t> is_large; // fits on no page
     std::vector<double> area;           // mm², of the cut line
+    double material = 0.0;              // mm², inside all cut lines
 
     double page_area() const { return page.printable().prod(); }
 };
@@ -72,6 +73,8 @@ public:
     /// What is printed where, of pieces with these images and places.
     PageCover cover(const std::vector<const pack::ChartCells*>& images,
                     const pack::Layout& spots) const;
+    /// How many pages of the sheet an image needs there by itself.
+    Index least_pages(const pack::ChartCells& image, const pack::Spot& spot) const;
     /// The pages that an image is printed on, ascending.
     std::vector<Index> pages_of(const pack::ChartCells& image, const pack::Spot& spot,
                                 const PageCover& cover) const;

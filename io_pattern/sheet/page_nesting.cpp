@@ -125,6 +125,8 @@ PageProblem make_problem(const std::vector<SheetPiece>& pieces, const PageFormat
     problem.is_large.assign(pieces.size(), 0);
     for (const SheetPiece& piece : pieces) {
         problem.area.push_back(outline_area(piece));
+        for (std::size_t k = 0; k < piece.cut.size(); ++k)
+            problem.material += (k == 0 ? 1.0 : -1.0) * std::abs(plane::signed_area(piece.cut[k]));
         problem.outlines.push_back(pack::outline_of(piece.cut));
     }
     std::vector<std::uint8_t> is_fine(pieces.size(), 0);

@@ -1,17 +1,5 @@
-// The search for the fewest pages.
-//
-// Two kinds of moves take turns. Some pieces are taken out, and each is laid anew where it needs
-// the fewest new pages, of all free places (ruin and recreate); mostly those of a page that is
-// hardly covered, which is closed meanwhile. Or a page is closed and pieces make room for each
-// other on the pages that are left (pack/separation.h).
-//
-// References
-//   [SSWD00] G. Schrimpf, J. Schneider, H. Stamm-Wilbrandt, G. Dueck: Record Breaking Optimization
-//            Results Using the Ruin and Recreate Principle. J. Comput. Phys. 159, 2000.
-//            doi:10.1006/jcph.1999.6413
-//   [BB17]   E. K. Burke, Y. Bykov: The Late Acceptance Hill-Climbing Heuristic. European Journal
-//   of
-//            Operational Research 258, 2017. doi:10.1016/j.ejor.2016.07.012
+// The search for the fewest pages: one page after the other is closed, and pieces that lay on it
+// find room on those that are left.
 #pragma once
 
 #include "sheet/page_first_fit.h"
