@@ -260,12 +260,13 @@ std::vector<CoarseLayout> lay_pieces_anew(const PageProblem& problem,
     for (int k = 1; k <= tuning.beginnings; ++k)
         searches.emplace_back(problem, pieces, poses, board_size(problem, poses),
                               std::uint64_t{1000} * at(k));
+    auto beginning = progress.part(tuning.beginning);
     parallel_for(
         tuning.beginnings,
         [&](int k) {
-            searches[begun + at(k)].advance(tuning.beginning * work / tuning.beginnings, progress);
+            searches[begun + at(k)].advance(tuning.beginning * work / tuning.beginnings, beginning);
         },
-        progress);
+        beginning);
     std::vector<Search*> better;
     for (Search& search : searches)
         better.push_back(&search);
@@ -273,10 +274,11 @@ std::vector<CoarseLayout> lay_pieces_anew(const PageProblem& problem,
                      [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
     better.resize(std::min(better.size(), tuning.best));
     const double rest = (1.0 - tuning.beginning) * work;
+    auto going_on = progress.part(progress.left());
     parallel_for(
         static_cast<int>(better.size()),
-        [&](int k) { better[at(k)]->advance(rest / static_cast<double>(better.size()), progress); },
-        progress);
+        [&](int k) { better[at(k)]->advance(rest / static_cast<double>(better.size()), going_on); },
+        going_on);
     std::vector<CoarseLayout> found;
     for (const Search& search : searches)
         found.insert(found.end(), search.found().begin(), search.found().end());

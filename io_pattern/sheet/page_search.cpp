@@ -328,7 +328,7 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
                               std::uint64_t{1000} * at(k));
     }
     const double work = tuning.work / (2 * tuning.searches);
-    auto searching = progress.part(0.5);
+    auto searching = progress.part(0.3);
     parallel_for(
         tuning.searches, [&](int k) { searches[at(k)].advance(work, searching); }, searching);
     // The better ones go on.
@@ -337,7 +337,7 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
         better.push_back(&search);
     std::stable_sort(better.begin(), better.end(),
                      [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
-    auto going_on = progress.part(0.9);
+    auto going_on = progress.part(0.3);
     parallel_for(
         tuning.best,
         [&](int k) { better[at(k)]->advance(0.5 * tuning.work / tuning.best, going_on); },
@@ -353,7 +353,8 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
     std::vector<pack::ChartPoses> poses;
     std::vector<CoarseLayout> anew;
     if (start == found.end() || !is_good(problem, coarse, *start->layout)) {
-        const std::vector<BoardPiece> pieces = board_pieces(problem, progress);
+        auto laying = progress.part(progress.left());
+        const std::vector<BoardPiece> pieces = board_pieces(problem, laying);
         poses = poses_of(pieces);
         anew =
             lay_pieces_anew(problem, pieces, poses, start != found.end() ? start->layout : nullptr,
