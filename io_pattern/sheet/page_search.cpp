@@ -358,7 +358,7 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
         poses = poses_of(pieces);
         anew =
             lay_pieces_anew(problem, pieces, poses, start != found.end() ? start->layout : nullptr,
-                            tuning.anew_work, progress);
+                            tuning.anew_work, laying);
     }
     for (const CoarseLayout& layout : anew)
         found.push_back({&layout, &poses});
