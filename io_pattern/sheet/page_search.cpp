@@ -256,6 +256,46 @@ private:
     CoarseLayout current_; // with the fewest pages, almost empty ones or not
 };
 
+// All layouts that searches find which close pages.
+std::vector<CoarseLayout> close_pages(const PageProblem& problem,
+                                      const std::vector<pack::ChartPoses>& coarse,
+                                      Progress& progress) {
+    const auto [least, even] = columns_of(problem, tuning.covered);
+    std::vector<Footprints> footprints(coarse.size());
+    parallel_for(
+        static_cast<int>(coarse.size()),
+        [&](int i) {
+            if (problem.is_large[at(i)] != 0)
+                footprints[at(i)] = find_footprints(problem, coarse[at(i)], progress);
+        },
+        progress);
+    std::vector<Search> searches;
+    for (int k = 0; k < tuning.searches; ++k) {
+        const Index wider = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
+        searches.emplace_back(problem, coarse, footprints, std::max(least, even + wider),
+                              std::uint64_t{1000} * at(k));
+    }
+    const double work = tuning.work / (2 * tuning.searches);
+    auto searching = progress.part(0.3);
+    parallel_for(
+        tuning.searches, [&](int k) { searches[at(k)].advance(work, searching); }, searching);
+    // The better ones go on.
+    std::vector<Search*> better;
+    for (Search& search : searches)
+        better.push_back(&search);
+    std::stable_sort(better.begin(), better.end(),
+                     [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
+    auto going_on = progress.part(0.3);
+    parallel_for(
+        tuning.best,
+        [&](int k) { better[at(k)]->advance(0.5 * tuning.work / tuning.best, going_on); },
+        going_on);
+    std::vector<CoarseLayout> found;
+    for (const Search& search : searches)
+        found.insert(found.end(), search.found().begin(), search.found().end());
+    return found;
+}
+
 std::vector<BoardPiece> board_pieces(const PageProblem& problem, Progress& progress) {
     std::vector<BoardPiece> pieces(problem.poses.size());
     parallel_for(
@@ -313,39 +353,10 @@ PageLayout search_pages(const PageProblem& problem, Progress& progress) {
                 coarse[at(i)].push_back(pack::coarsen(image.cells, problem.factor, tuning.enough));
         },
         progress);
-    std::vector<Footprints> footprints(count);
-    parallel_for(
-        static_cast<int>(count),
-        [&](int i) {
-            if (problem.is_large[at(i)] != 0)
-                footprints[at(i)] = find_footprints(problem, coarse[at(i)], progress);
-        },
-        progress);
-    std::vector<Search> searches;
-    for (int k = 0; k < tuning.searches; ++k) {
-        const Index wider = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
-        searches.emplace_back(problem, coarse, footprints, std::max(least, even + wider),
-                              std::uint64_t{1000} * at(k));
-    }
-    const double work = tuning.work / (2 * tuning.searches);
-    auto searching = progress.part(0.3);
-    parallel_for(
-        tuning.searches, [&](int k) { searches[at(k)].advance(work, searching); }, searching);
-    // The better ones go on.
-    std::vector<Search*> better;
-    for (Search& search : searches)
-        better.push_back(&search);
-    std::stable_sort(better.begin(), better.end(),
-                     [](const Search* a, const Search* b) { return a->goal() < b->goal(); });
-    auto going_on = progress.part(0.3);
-    parallel_for(
-        tuning.best,
-        [&](int k) { better[at(k)]->advance(0.5 * tuning.work / tuning.best, going_on); },
-        going_on);
+    const std::vector<CoarseLayout> closing = close_pages(problem, coarse, progress);
     std::vector<Candidate> found;
-    for (const Search& search : searches)
-        for (const CoarseLayout& layout : search.found())
-            found.push_back({&layout, &coarse});
+    for (const CoarseLayout& layout : closing)
+        found.push_back({&layout, &coarse});
     const auto fewer = [](const Candidate& a, const Candidate& b) {
         return a.layout->goal < b.layout->goal;
     };
