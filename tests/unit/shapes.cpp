@@ -171,6 +171,17 @@ mesh::RawMesh moebius_strip(Index around, Index across) {
     return mesh;
 }
 
+mesh::RawMesh ramp(double turns, double waves) {
+    mesh::RawMesh raw = grid(200, 50);
+    for (Vec3& p : raw.points) {
+        const double angle = 2.0 * pi * turns * p.x();
+        const double radius = 0.5 + 0.5 * p.y();
+        p = Vec3(radius * std::cos(angle), radius * std::sin(angle),
+                 0.02 * angle + waves * std::sin(40.0 * p.x()) * std::sin(17.0 * p.y()));
+    }
+    return raw;
+}
+
 mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise) {
     mesh::RawMesh mesh;
     for (Index i = 0; i <= steps; ++i) {

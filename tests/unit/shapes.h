@@ -48,6 +48,10 @@ mesh::RawMesh plate_with_handle();
 /// where it makes more than one turn.
 mesh::RawMesh helix_strip(Index steps, double turns, double inner, double outer, double rise);
 
+/// A ring of more than a turn, which rises slowly: laid flat, it lies on itself. 20,000 faces, with
+/// waves of that height.
+mesh::RawMesh ramp(double turns = 1.3, double waves = 0.0);
+
 /// Rays from the origin in a zigzag, each at the same angle (radians) from the last: a folded ring
 /// sector of so many sectors, which may be more than a full turn in the plane. Points run along
 /// rows of sectors + 1.

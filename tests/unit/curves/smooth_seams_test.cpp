@@ -262,13 +262,19 @@ TEST(SmoothSeams, SlitsKeepTheirTips) {
         EXPECT_EQ(fine_degree[tip], 1);
 }
 
+// Two charts whose border on a grid is a staircase.
+std::vector<Index> sides_of_stairs(const Mesh& flat) {
+    std::vector<Index> label;
+    for (const Vec3& p : flat.face_centers)
+        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    return label;
+}
+
 // A seam along the ridge of a plate takes up the curvature of its peak: it stays there.
 TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
     mesh::RawMesh plate = shapes::grid(40, 40);
     const Mesh flat = checks::gated(plate);
-    std::vector<Index> label;
-    for (const Vec3& p : flat.face_centers)
-        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    const std::vector<Index> label = sides_of_stairs(flat);
     const std::vector<std::uint8_t> seam = atlas::make_chart_map(flat, label, {}, false).seam;
     Vertex peak;
     for (const HalfEdge h : flat.all_half_edges())
@@ -300,9 +306,7 @@ TEST(SmoothSeams, GoThroughVerticesThatAreCurved) {
 TEST(SmoothSeams, FirmSeamsGoThroughLessCurvedVertices) {
     mesh::RawMesh plate = shapes::grid(40, 40);
     const Mesh flat = checks::gated(plate);
-    std::vector<Index> label;
-    for (const Vec3& p : flat.face_centers)
-        label.push_back(p.x() + 0.5 * p.y() < 0.0 ? 0 : 1);
+    const std::vector<Index> label = sides_of_stairs(flat);
     const std::vector<std::uint8_t> seam = atlas::make_chart_map(flat, label, {}, false).seam;
     Vertex top; // of the stairs that the seam makes
     for (const HalfEdge h : flat.all_half_edges())

@@ -55,18 +55,6 @@ mesh::RawMesh hill() {
     return raw;
 }
 
-// A ring of more than a turn, which rises slowly: laid flat, it lies on itself.
-mesh::RawMesh ramp(double turns = 1.3, double waves = 0.0) {
-    mesh::RawMesh raw = shapes::grid(200, 50);
-    for (Vec3& p : raw.points) {
-        const double angle = 2.0 * pi * turns * p.x();
-        const double radius = 0.5 + 0.5 * p.y();
-        p = Vec3(radius * std::cos(angle), radius * std::sin(angle),
-                 0.02 * angle + waves * std::sin(40.0 * p.x()) * std::sin(17.0 * p.y()));
-    }
-    return raw;
-}
-
 TEST(QuickMaps, OfALargeChartAreNearThoseOfAllItsFaces) {
     const Both maps = judged(hill(), {1.05});
     EXPECT_TRUE(maps.quick.flat);
@@ -77,7 +65,7 @@ TEST(QuickMaps, OfALargeChartAreNearThoseOfAllItsFaces) {
 
 TEST(QuickMaps, SeeThatALargeChartLiesOnItself) {
     for (const bool push_apart : {true, false}) {
-        const Both maps = judged(ramp(), {1.05, push_apart});
+        const Both maps = judged(shapes::ramp(), {1.05, push_apart});
         EXPECT_FALSE(maps.quick.flat);
         expect_alike(maps);
     }
@@ -143,7 +131,7 @@ TEST(QuickMaps, WhatIsTooMuchOnAllFacesIsNotConfirmed) {
 
 // All faces do not come apart: flattening tries fewer of them as well.
 TEST(QuickMaps, WhatIsPushedApartIsLeftInOnePieceByFlattening) {
-    const Mesh mesh = checks::gated(ramp(1.07, 0.02));
+    const Mesh mesh = checks::gated(shapes::ramp(1.07, 0.02));
     Progress progress;
     const auto faces = std::vector<std::vector<Index>>{all_faces(mesh)};
     QuickMaps quick = quick_maps(mesh, faces, no_seams(mesh), {}, progress);

@@ -17,18 +17,6 @@ namespace {
 
 using checks::Disk;
 
-// A ring of more than a turn, which rises slowly: laid flat, its ends lie on each other.
-mesh::RawMesh ramp(double turns, double waves) {
-    mesh::RawMesh raw = shapes::grid(200, 50);
-    for (Vec3& p : raw.points) {
-        const double angle = 2.0 * pi * turns * p.x();
-        const double radius = 0.5 + 0.5 * p.y();
-        p = Vec3(radius * std::cos(angle), radius * std::sin(angle),
-                 0.02 * angle + waves * std::sin(40.0 * p.x()) * std::sin(17.0 * p.y()));
-    }
-    return raw;
-}
-
 atlas::ChartMap one_chart(const Mesh& mesh) {
     return atlas::make_chart_map(mesh, std::vector<Index>(mesh.faces.size(), 0), {}, false);
 }
@@ -49,7 +37,7 @@ void expect_one_to_one(const Disk& disk, const std::vector<Vec2>& uv) {
 }
 
 TEST(CoarseMap, IsNearTheBestOneWhereNothingOverlaps) {
-    const Disk disk(ramp(1.0, 0.03));
+    const Disk disk(shapes::ramp(1.0, 0.03));
     const FlatChart best = whole(disk);
     ASSERT_FALSE(best.torn || best.pushed);
     const auto map = map_by_coarse(disk.mesh, disk.surface, disk.problem, Progress());
@@ -59,7 +47,7 @@ TEST(CoarseMap, IsNearTheBestOneWhereNothingOverlaps) {
 }
 
 TEST(CoarseMap, ComesApartWhereAllFacesDoNot) {
-    const Disk disk(ramp(1.07, 0.02));
+    const Disk disk(shapes::ramp(1.07, 0.02));
     ASSERT_TRUE(whole(disk).torn);
     const auto map = map_by_coarse(disk.mesh, disk.surface, disk.problem, Progress());
     ASSERT_TRUE(map);
