@@ -23,7 +23,7 @@ import hosts
 from conftest import ROOT
 
 INSPECTOR = ROOT / "build" / "release" / "tests" / "libdevseg_window_inspector.so"
-SIZE = (1280, 1024)
+SIZE = (1280, 1600)  # the dialog of "Pattern: Export" is higher than usual screens
 PATIENCE = 120.0  # seconds; software rendering on a busy machine is slow
 
 Widget = dict[str, Any]
